@@ -1,0 +1,83 @@
+#include "baker/core/mesh.h"
+
+#include <algorithm>
+
+namespace ft {
+
+Mesh make_triangle_mesh(std::string name, std::vector<Vec3> positions, std::span<const Triangle> triangles) {
+  Mesh mesh;
+  mesh.name = std::move(name);
+  mesh.positions = std::move(positions);
+  mesh.face_sizes.assign(triangles.size(), 3);
+  for (const Triangle& t : triangles) mesh.face_vertices.insert(mesh.face_vertices.end(), t.begin(), t.end());
+  return mesh;
+}
+
+std::vector<Triangle> triangulate(const Mesh& mesh) {
+  std::vector<Triangle> out;
+  out.reserve(mesh.face_sizes.size());
+  std::size_t begin = 0;
+  for (const int size : mesh.face_sizes) {
+    const int* v = mesh.face_vertices.data() + begin;
+    if (size == 4) {
+      const auto p = [&](int k) -> const Vec3& { return mesh.positions[static_cast<std::size_t>(v[k])]; };
+      // Equal diagonals (a regular grid) always split the same way: the strict comparison decides.
+      if ((p(3) - p(1)).squaredNorm() < (p(2) - p(0)).squaredNorm()) {
+        out.push_back({v[0], v[1], v[3]});
+        out.push_back({v[1], v[2], v[3]});
+      } else {
+        out.push_back({v[0], v[1], v[2]});
+        out.push_back({v[0], v[2], v[3]});
+      }
+    } else {
+      for (int k = 1; k + 1 < size; ++k) out.push_back({v[0], v[k], v[k + 1]});
+    }
+    begin += static_cast<std::size_t>(size);
+  }
+  return out;
+}
+
+std::vector<Edge> unique_edges(std::span<const Triangle> triangles) {
+  std::vector<Edge> edges;
+  edges.reserve(triangles.size() * 3);
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+Adjacency vertex_triangles(int vertex_count, std::span<const Triangle> triangles) {
+  Adjacency out;
+  out.start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
+  for (const Triangle& t : triangles)
+    for (const int v : t) ++out.start[static_cast<std::size_t>(v) + 1];
+  for (std::size_t i = 1; i < out.start.size(); ++i) out.start[i] += out.start[i - 1];
+  out.items.resize(triangles.size() * 3);
+  std::vector<int> next(out.start.begin(), out.start.end() - 1);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const int v : triangles[t])
+      out.items[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = static_cast<int>(t);
+  return out;
+}
+
+std::vector<Vec3> vertex_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  std::vector<Vec3> normals(positions.size(), Vec3::Zero());
+  const auto at = [&](int i) -> const Vec3& { return positions[static_cast<std::size_t>(i)]; };
+  for (const Triangle& t : triangles) {
+    const Vec3 n = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
+    for (const int v : t) normals[static_cast<std::size_t>(v)] += n;
+  }
+  for (Vec3& n : normals) {
+    const double length = n.norm();
+    n = length > 0 ? (n / length).eval() : Vec3::Zero().eval();
+  }
+  return normals;
+}
+
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); }
+
+}  // namespace ft

@@ -1,0 +1,71 @@
+#include "baker/core/state.h"
+
+namespace ft {
+namespace {
+
+constexpr char k_magic[8] = {'F', 'T', 'S', 'T', 'A', 'T', 'E', '1'};
+
+Bytes save_content(const State& state) {
+  ByteWriter out;
+  out.write_raw(k_magic, sizeof k_magic);
+  out.write(static_cast<std::int64_t>(state.frame)).write(state.time);
+  out.write(static_cast<std::uint64_t>(state.blocks.size()));
+  for (const StateBlock& block : state.blocks) {
+    out.write_string(block.name);
+    out.write(static_cast<std::uint64_t>(block.values.size()));
+    out.write_array(std::span<const double>(block.values));
+  }
+  return out.take();
+}
+
+}  // namespace
+
+std::vector<double>& State::block(std::string_view name) {
+  for (StateBlock& b : blocks)
+    if (b.name == name) return b.values;
+  blocks.push_back({std::string(name), {}});
+  return blocks.back().values;
+}
+
+const std::vector<double>* State::find(std::string_view name) const {
+  for (const StateBlock& b : blocks)
+    if (b.name == name) return &b.values;
+  return nullptr;
+}
+
+Hash128 hash(const State& state) { return hash_bytes(save_content(state)); }
+
+Bytes save(const State& state) {
+  Bytes content = save_content(state);
+  const Hash128 h = hash_bytes(content);
+  ByteWriter tail;
+  tail.write(h.low).write(h.high);
+  content.insert(content.end(), tail.bytes().begin(), tail.bytes().end());
+  return content;
+}
+
+Result<State> load_state(std::span<const std::byte> data) {
+  const auto refuse = [](const char* why) { return input_error(std::string("checkpoint ") + why); };
+  if (data.size() < sizeof k_magic + 16) return refuse("is cut off");
+  const auto content = data.first(data.size() - 16);
+  ByteReader tail(data.last(16));
+  const Hash128 said{tail.read<std::uint64_t>(), tail.read<std::uint64_t>()};
+  if (hash_bytes(content) != said) return refuse("is damaged: its content hash does not match");
+  ByteReader in(content);
+  const auto magic = in.read_span(sizeof k_magic);
+  if (!in.ok() || std::memcmp(magic.data(), k_magic, sizeof k_magic) != 0) return refuse("has another version");
+  State state;
+  state.frame = static_cast<int>(in.read<std::int64_t>());
+  state.time = in.read<double>();
+  const auto blocks = in.read<std::uint64_t>();
+  for (std::uint64_t b = 0; b < blocks && in.ok(); ++b) {
+    StateBlock block;
+    block.name = in.read_string();
+    block.values = in.read_array<double>(in.read<std::uint64_t>());
+    state.blocks.push_back(std::move(block));
+  }
+  if (!in.ok() || in.remaining() != 0) return refuse("does not have the length that it states");
+  return state;
+}
+
+}  // namespace ft

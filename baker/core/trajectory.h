@@ -1,0 +1,44 @@
+// The primary, as everybody else sees it: one closed (or nearly closed) triangle surface with constant topology and a position
+// for every vertex at every time of the shot. Positions are metres, Y-up, world space. Thread-safe: sampling changes nothing.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/types.h"
+
+namespace ft {
+
+/// A piece of the surface that moves as one: all that follows one bone, or one closed shell. Overlapping parts are what
+/// makes a collider infeasible, see collision/feasible_collider.h.
+struct SurfacePart {
+  std::string name;
+  int parent = -1;    ///< part it is jointed to, -1 for the root
+  double size = 0;    ///< volume or area measure [m3]; the larger part wins where two overlap
+};
+
+struct Surface {
+  std::vector<Triangle> triangles;
+  std::vector<int> part_of_vertex;     ///< one per vertex, into parts
+  std::vector<SurfacePart> parts;      ///< at least one
+  int vertex_count() const { return static_cast<int>(part_of_vertex.size()); }
+};
+
+/// Times are seconds from the first frame of the shot. t < 0 is the pre-roll: at t <= -preroll the bind pose, placed where the
+/// first frame has the character (position and heading), from there blended into the pose at t = 0.
+class Trajectory {
+ public:
+  virtual ~Trajectory() = default;
+  virtual const Surface& surface() const = 0;
+  /// Positions of all vertices in the pose that garments are modelled on; file placement.
+  virtual void bind_pose(std::span<Vec3> positions) const = 0;
+  virtual void sample(double time, std::span<Vec3> positions) const = 0;
+  /// Takes file placement of the bind pose to where the pre-roll starts: garments are moved by it once.
+  virtual Eigen::Isometry3d bind_to_start() const = 0;
+  /// Length of the pre-roll blend [s], >= 0.
+  virtual double preroll() const = 0;
+};
+
+}  // namespace ft

@@ -1,0 +1,52 @@
+// Candidate pairs between features, over one numbering of all vertices: cloth vertices first [0, cloth_vertex_count), then the
+// collider's. A stencil is four vertices; those at or past cloth_vertex_count are kinematic. Found with FCL's trees
+// (fcl_pair_finder.cpp), sorted, each pair once.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/types.h"
+
+namespace ft {
+
+/// Vertex-face: v[0] is the vertex, v[1..3] the face. Edge-edge: v[0], v[1] one edge, v[2], v[3] the other.
+struct Stencil {
+  std::array<int, 4> v;
+  bool operator==(const Stencil&) const = default;
+  auto operator<=>(const Stencil&) const = default;
+};
+
+struct ContactPairs {
+  std::vector<Stencil> vertex_face;
+  std::vector<Stencil> edge_edge;
+};
+
+/// Single-precision box, outward-rounded, of where one vertex may be during the interval that the pairs must cover.
+struct VertexBox {
+  std::array<float, 3> lo, hi;
+  /// Box of the segment a..b grown by r on every side, rounded outwards.
+  static VertexBox swept(const Vec3& a, const Vec3& b, double r);
+};
+
+class PairFinder {
+ public:
+  /// Triangles index the common numbering; collider_triangles' indices are all >= cloth_vertex_count.
+  PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
+             std::span<const Triangle> collider_triangles);
+  ~PairFinder();
+  PairFinder(PairFinder&&) noexcept;
+
+  /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider, and with
+  /// self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in the list. Pairs
+  /// that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in nothing.
+  void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ft

@@ -1,0 +1,45 @@
+// The feasible collider. Characters intersect themselves: forearm in hip, thigh in thigh. Cloth between overlapping parts must cross
+// one of them, so the guarantee is stated against a collider that leaves room: of two overlapping parts the smaller gives way,
+// each of its vertices inside the larger, or nearer than the gap, is moved onto the larger's surface plus the gap.
+// Long triangles near cloth are refined first (a 230 mm capsule triangle cannot give way).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "baker/core/trajectory.h"
+
+namespace ft {
+
+struct FeasibleSettings {
+  double gap = 6e-3;        ///< room kept between parts [m]; about twice the floor plus layers x thickness plus the cloth's sag
+  double max_edge = 30e-3;  ///< longest edge of the refined collider [m]
+  bool carve = true;        ///< off: the drawn body, refined
+};
+
+struct CarveReport {
+  int moved_vertices = 0;
+  double largest_move = 0;  ///< m
+  int part_a = -1, part_b = -1;  ///< the pair of parts of the largest move: a gave way to b
+};
+
+class FeasibleCollider {
+ public:
+  FeasibleCollider(const Surface& surface, std::span<const Vec3> bind_pose, const FeasibleSettings& settings);
+  ~FeasibleCollider();
+
+  int vertex_count() const;
+  std::span<const Triangle> triangles() const;
+  std::span<const int> part_of_vertex() const;
+  /// Refined positions of the drawn pose, before anything gives way.
+  void refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const;
+  /// Refined and carved positions. Deterministic; thread-safe.
+  CarveReport evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ft

@@ -1,0 +1,63 @@
+// Caches: a mesh with constant topology and a position per vertex and frame. Every format has a writer and a reader; both are
+// listed in registry.cpp and the contract tests run over the list. A cache carries no times of day and no host names: the same
+// bake gives the same bytes. It is valid after every frame: open the file at any moment and all finished frames are there.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/result.h"
+
+namespace ft {
+
+struct CacheInfo {
+  std::string system;     ///< name of the garment; object name in the cache
+  Mesh mesh;              ///< topology, uvs; file order
+  double fps = 24;
+  int first_frame = 1;    ///< frame number of the first sample
+  int frame_count = 0;    ///< writer: frames that will come; reader: frames there are
+  std::vector<std::pair<std::string, std::string>> metadata;  ///< sorted by key; units, version, hash of the inputs
+  bool has_topology = true;   ///< reader: false for formats that hold points only (PC2, MDD)
+  bool has_velocity = false;  ///< reader
+};
+
+class CacheWriter {
+ public:
+  virtual ~CacheWriter() = default;
+  /// Frames written so far, those kept by resume included.
+  virtual int frame_count() const = 0;
+  /// Appends one frame: positions [m], velocities [m/s] (may be empty). Durable when it returns.
+  virtual Status write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities) = 0;
+  virtual Status close() = 0;
+};
+
+class CacheReader {
+ public:
+  virtual ~CacheReader() = default;
+  virtual const CacheInfo& info() const = 0;
+  virtual Status read_frame(int index, std::vector<Vec3f>& positions) = 0;
+};
+
+struct CacheFormat {
+  std::string_view name;       ///< as in [cache] formats: "abc", "pc2"
+  std::string_view extension;  ///< ".abc"
+  std::string_view description;
+  /// keep_frames = 0: a new file; n > 0: continue a file after its first n frames, cutting what follows. A resumed file is
+  /// byte-identical to one written without interruption.
+  std::function<Result<std::unique_ptr<CacheWriter>>(const std::filesystem::path&, const CacheInfo&, int keep_frames)> open_writer;
+  std::function<Result<std::unique_ptr<CacheReader>>(const std::filesystem::path&)> open_reader;
+};
+
+std::span<const CacheFormat> cache_formats();
+const CacheFormat* find_cache_format(std::string_view name);
+/// By content first, extension second.
+Result<std::unique_ptr<CacheReader>> open_cache(const std::filesystem::path& path);
+
+}  // namespace ft

@@ -1,0 +1,38 @@
+// One term of the incremental potential. Value, gradient and a positive semidefinite Hessian; the same bits for any thread count.
+// Energies are listed in solvers/energies/registry.cpp; the contract test (gradient against differences, Hessian against
+// differences of the gradient where it is exact, rigid motion invariance, rest state at zero force) runs over the list.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "baker/core/types.h"
+#include "solvers/linear/block_matrix.h"
+
+namespace ft {
+
+/// What a step knows besides positions. Lagged quantities (damping, wind) use the start of the substep.
+struct StepContext {
+  double h = 1.0 / 240;             ///< substep [s]
+  double beta_h = 1.0 / 240;        ///< effective h of the integrator: h for implicit Euler, 2/3 h for BDF2 at constant h [s]
+  std::span<const Vec3> x_t0;       ///< positions at the start of the substep [m]
+  std::span<const Vec3> v_t0;       ///< velocities at the start of the substep [m/s]
+  double time = 0;                  ///< at the end of the substep [s]
+};
+
+class Energy {
+ public:
+  virtual ~Energy() = default;
+  virtual std::string_view name() const = 0;
+  /// Vertices coupled by each element; builds the pattern.
+  virtual std::vector<std::array<int, 4>> stencils() const = 0;
+  /// Forgets the last step, takes over this one's context.
+  virtual void begin_step(const StepContext&) {}
+  virtual double value(std::span<const Vec3> x) const = 0;                              ///< J
+  virtual void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const = 0;  ///< N
+  virtual void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const = 0;    ///< N/m
+};
+
+}  // namespace ft

@@ -1,0 +1,40 @@
+// Measured fabrics in SI units. The list with sources is in fabrics.cpp.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace ft {
+
+struct Fabric {
+  std::string name;
+  /// Areal density [kg/m2]. 0.05 silk, 0.15 cotton, 0.32 denim.
+  double mass_per_area = 0.15;
+  /// Membrane stiffness in warp (pattern v) and weft (pattern u) direction [N/m]. 100 jersey, 1000 denim.
+  double stretch_warp = 500, stretch_weft = 500;
+  /// In-plane shear modulus [N/m].
+  double shear = 100;
+  /// Poisson's ratio of the membrane [1], 0..0.45.
+  double poisson = 0.3;
+  /// Bending rigidity [N m]. 1e-6 silk, 1e-4 denim. 0 folds freely.
+  double bend_warp = 1e-5, bend_weft = 1e-5;
+  /// Strain-rate damping time of the membrane and of bending [s]: stress = C (strain + time * strain rate). 0 none, 0.01 dull.
+  double damping = 2e-3;
+  /// Air drag: normal and tangential coefficients of the panel law [1].
+  double drag_normal = 1.2, drag_tangential = 0.03;
+  std::string source;
+};
+
+std::span<const Fabric> fabrics();
+const Fabric* find_fabric(std::string_view name);
+/// Sets a member by its name ("mass_per_area"); false when there is no such key. range_* tell what is allowed.
+bool set_fabric_value(Fabric& fabric, std::string_view key, double value);
+struct FabricKey {
+  std::string_view key;
+  double lowest, highest;
+  std::string_view unit;
+};
+std::span<const FabricKey> fabric_keys();
+
+}  // namespace ft

@@ -1,0 +1,48 @@
+// Solves H dx = -g for one Newton step: conjugate gradients with one multigrid V(1,1) cycle as preconditioner (hierarchy from
+// the rest shape), or block Jacobi. Matrix, hierarchy and vectors in float, dot products accumulated in double.
+// Deterministic for any thread count.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solvers/linear/block_matrix.h"
+
+namespace ft {
+
+struct LinearSettings {
+  enum class Preconditioner { k_block_jacobi, k_multigrid };
+  Preconditioner preconditioner = Preconditioner::k_multigrid;
+  double tolerance = 3e-2;   ///< relative residual; 1e-1 is enough with multigrid, 1e-3 buys nothing (see tests/bench/RESULTS.md)
+  int max_iterations = 200;
+};
+
+struct LinearReport {
+  int iterations = 0;
+  double residual = 0;  ///< relative
+  bool converged = false;
+};
+
+class LinearSystem {
+ public:
+  /// rest_positions and triangles shape the hierarchy; the pattern must outlive the system.
+  LinearSystem(const BlockPattern& pattern, std::span<const Vec3> rest_positions, const LinearSettings& settings);
+  ~LinearSystem();
+  LinearSystem(const LinearSystem&) = delete;
+  LinearSystem& operator=(const LinearSystem&) = delete;
+
+  /// The matrix to fill: zeroed by begin(). Energies and the mass add to it.
+  BlockMatrix& begin();
+  /// Contact, friction and pins. Terms whose vertices share the pattern go into the matrix, the others are kept aside as an
+  /// extra sparse block matrix (sorted, so that the sum order is fixed). Call after the energies.
+  void add_pair_terms(std::span<const PairTerm> terms);
+  /// Rows of fixed[i] != 0 are held at zero.
+  LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> solution);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ft

@@ -1,0 +1,73 @@
+// What the conductor knows of a solver: it starts, it advances one frame, it says what it did. Model and scratch live in the
+// solver; everything that changes lives in State, so that a checkpoint is save(State) and nothing else.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/state.h"
+
+namespace ft {
+
+/// Something that a user should look at: where, when, how bad.
+struct Incident {
+  enum class Kind { k_crossing, k_penetration, k_released, k_strain, k_start_inside, k_rewind };
+  Kind kind = Kind::k_crossing;
+  int frame = 0;
+  std::string system;             ///< name of the garment
+  int vertex = -1;                ///< in the garment's file order
+  Vec3 place = Vec3::Zero();      ///< m, world
+  double depth = 0;               ///< m (or 1 for strain)
+  std::string text;               ///< one sentence
+};
+
+const char* name(Incident::Kind kind);
+
+/// Wall time of the phases of a frame [s]; for --profile and the log, never for a cache.
+struct FrameProfile {
+  double candidates = 0, narrow = 0, assembly = 0, linear = 0, advance = 0, certificate = 0, body = 0, total = 0;
+};
+
+/// The certificate of one frame, and what it took.
+struct FrameReport {
+  int frame = 0;
+  int substeps = 0, newton_iterations = 0, linear_iterations = 0, rewinds = 0;
+  int crossings_body = 0;      ///< edge-triangle crossings with the feasible collider, exact
+  int crossings_self = 0;      ///< edge-triangle crossings among the cloths, exact
+  int crossings_drawn = 0;     ///< edge-triangle crossings with the drawn body
+  double smallest_gap = 0;     ///< m, to the feasible collider and among cloths; the contact radius if nothing is nearer
+  double deepest_drawn = 0;    ///< m, deepest cloth vertex inside the drawn body
+  double strain_p99 = 0, strain_max = 0, strain_mean = 0;  ///< edge strain, 1
+  double kinetic_energy = 0;   ///< J
+  int released_vertices = 0;   ///< vertices that were let through a part this frame because there was no room
+  bool finite = true;
+  std::vector<Incident> incidents;  ///< worst first, at most 16 a frame
+  FrameProfile profile;
+};
+
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// One system per cache: a garment, a rope.
+  virtual int system_count() const = 0;
+  virtual const Mesh& system_mesh(int system) const = 0;
+  /// Positions in the vertex order of system_mesh().
+  virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const = 0;
+  /// Per-vertex values for the preview: gap to the nearest surface [m] and strain [1].
+  virtual void system_health(const State& state, int system, std::span<double> gap, std::span<double> strain) const = 0;
+
+  /// Topology of the feasible collider, and its positions at the state's time.
+  virtual std::span<const Triangle> collider_triangles() const = 0;
+  virtual void collider_positions(const State& state, std::vector<Vec3>& positions) const = 0;
+
+  /// State at the start of the pre-roll.
+  virtual State initial_state() const = 0;
+  /// From state.frame to state.frame + 1. Always returns with a finite state; what could not be kept is in the report.
+  virtual FrameReport advance_frame(State& state) const = 0;
+};
+
+}  // namespace ft

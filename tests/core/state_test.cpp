@@ -1,0 +1,40 @@
+#include "baker/core/state.h"
+
+#include <gtest/gtest.h>
+
+namespace ft {
+namespace {
+
+State example() {
+  State s;
+  s.frame = -3;
+  s.time = 0.125;
+  s.block("x") = {1, 2, 3};
+  s.block("v") = {0.5};
+  return s;
+}
+
+TEST(State, Saved_state_loads_equal) {
+  const State s = example();
+  auto loaded = load_state(save(s));
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(hash(*loaded), hash(s));
+  EXPECT_EQ(loaded->frame, -3);
+}
+
+TEST(State, Checkpoint_cut_at_any_byte_is_refused) {
+  const Bytes data = save(example());
+  for (std::size_t n = 0; n < data.size(); ++n) EXPECT_FALSE(load_state(std::span(data).first(n))) << n;
+}
+
+TEST(State, Checkpoint_with_any_flipped_bit_is_refused) {
+  const Bytes data = save(example());
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    Bytes bad = data;
+    bad[i] ^= std::byte{0x10};
+    EXPECT_FALSE(load_state(bad)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace ft
