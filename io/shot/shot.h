@@ -53,7 +53,7 @@ struct ClothSpec {
   double unit_scale = 1;           ///< m per mesh unit
   std::string up = "y";
   Vec3 offset = Vec3::Zero();      ///< m, added after scale and axis
-  double thickness = 1e-3;         ///< m: contact with the body and with cloth begins at this offset, 0.2e-3..10e-3
+  double thickness = 3e-3;         ///< m: contact begins at this distance from the body, 0.5e-3..10e-3
   double friction = 0.4;           ///< Coulomb coefficient against the body, 0..2
   double self_friction = 0.3;      ///< among cloths
   bool self_collision = true;

@@ -1,0 +1,57 @@
+// Cloth on a moving body: all garments of a primary in one system, one potential. Per substep the body advances while the cloth
+// is carried along, checked by conservative CCD; then Newton minimises inertia + elasticity + contact + friction + pins with
+// the body still, every displacement truncated so that nothing crosses. See cloth_solver.cpp for the walk of a frame.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/result.h"
+#include "baker/core/trajectory.h"
+#include "collision/feasible_collider.h"
+#include "solvers/energies/fabric.h"
+#include "solvers/solver.h"
+
+namespace ft {
+
+/// Vertices that are held to the body: each follows the nearest point of the body's bind pose.
+struct ClothPin {
+  std::vector<int> vertices;     ///< garment's file order
+  std::vector<double> weights;   ///< 0..1 each, scales the stiffness; empty: all 1
+  double stiffness = 1e6;        ///< N/m3: spring per garment area and displacement
+  double max_pull = 5e3;         ///< Pa: force limit per garment area; contact wins over pins
+};
+
+struct ClothGarment {
+  std::string name;
+  Mesh mesh;                     ///< bind-pose placement, m; its positions are the rest shape
+  Fabric fabric;
+  std::vector<ClothPin> pins;
+  double thickness = 3e-3;       ///< contact begins at this distance from the body [m], 0.5e-3..10e-3
+  double friction = 0.4;         ///< Coulomb, against the body [1]
+  double self_friction = 0.3;    ///< among cloths [1]
+  bool self_collision = true;
+};
+
+struct ClothSetup {
+  std::vector<ClothGarment> garments;
+  std::shared_ptr<const Trajectory> primary;  ///< may be null: cloth alone
+  int first_frame = 1;
+  double fps = 24;
+  int preroll_frames = 24;
+  Vec3 gravity = Vec3(0, -k_gravity, 0);      ///< m/s2
+  Vec3 wind = Vec3::Zero();                   ///< m/s
+  double air_density = 1.225;                 ///< kg/m3; 0: vacuum
+  int min_substeps = 4, max_substeps = 32;    ///< a frame
+  int newton_iterations = 3;
+  double linear_tolerance = 3e-2;
+  bool bdf2 = true;                           ///< false: implicit Euler
+  FeasibleSettings feasible;
+};
+
+/// Checks the setup (pins in range, garments not empty) and builds the model.
+Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup);
+
+}  // namespace ft
