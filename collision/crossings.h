@@ -18,6 +18,7 @@ bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Ve
 struct Crossing {
   Edge edge;
   Triangle triangle;
+  bool edge_of_first = true;  ///< crossings_between: the edge is of surface a, the triangle of b; false: the other way round
   auto operator<=>(const Crossing&) const = default;
 };
 
