@@ -1,0 +1,51 @@
+// One substep: the body advances with the cloth carried along, as far as conservative CCD allows; the cloth is then solved for with
+// the body still; what is left of the substep follows in the same way. Where there is no room at all, the cloth is let through
+// the part that blocks it (released), so that the walk never stops.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solvers/cloth/implicit_step.h"
+
+namespace ft {
+
+/// The changing part of a cloth system, as vectors; saved in State by cloth_solver.cpp.
+struct ClothMotion {
+  std::vector<Vec3> x, v, x_previous, v_previous;
+  double h_previous = 0;            ///< s; 0: no history
+  std::vector<double> released;     ///< per cloth vertex: collider part that it may pass, -1 none
+};
+
+/// What one substep knows of the outside.
+struct SubstepInput {
+  std::span<const Vec3> body_t0, body_t1;       ///< feasible collider at both ends
+  std::span<const Vec3> pins_t0, pins_t1;       ///< pin targets at both ends
+  double h = 0;                                 ///< s
+  double time_t0 = 0;                           ///< s
+  double shortest = 0;                          ///< pieces shorter than this [s] make the walk release
+  double extra_slack = 0;                       ///< m, added to every vertex's slack after a rewind
+};
+
+struct AdvanceReport {
+  int pieces = 0, newton_iterations = 0, linear_iterations = 0;
+  int released = 0, let_through = 0;
+  double smallest_gap = 0;
+  bool finite = true;
+  double seconds_candidates = 0, seconds_advance = 0, seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
+};
+
+class BodyAdvance {
+ public:
+  explicit BodyAdvance(const ClothModel& model);
+  ~BodyAdvance();
+  AdvanceReport substep(const SubstepInput& input, ClothMotion& motion);
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+  const ClothModel& model_;
+};
+
+}  // namespace ft

@@ -1,0 +1,59 @@
+// What never changes of a cloth system: all garments of a setup as one numbering of vertices, their rest shape, masses, contact
+// data and pins. Built once by build_cloth_model().
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/core/result.h"
+#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/contact_potential.h"
+#include "solvers/cloth/moving_collider.h"
+#include "solvers/energies/cloth_topology.h"
+#include "solvers/energies/energy.h"
+
+namespace ft {
+
+/// A vertex held to a point of the drawn body's surface, with an offset that turns with the triangle.
+struct PinPoint {
+  int vertex = 0;
+  Triangle triangle{-1, -1, -1};   ///< drawn body vertices; -1: held at a fixed place
+  std::array<double, 3> weight{};  ///< barycentric
+  Vec3 offset = Vec3::Zero();      ///< in the triangle's frame [m]; the place itself when triangle is -1 [m]
+  double stiffness = 0;            ///< N/m
+  double max_pull = 0;             ///< N
+};
+
+struct ClothModel {
+  ClothSetup setup;
+  std::vector<int> first_vertex;              ///< of each garment; one more at the end
+  std::vector<Vec3> start;                    ///< placed at the start of the pre-roll [m]
+  std::vector<double> mass;                   ///< lumped [kg]
+  std::vector<Triangle> triangles;
+  std::vector<Edge> edges;
+  std::vector<double> rest_length;            ///< of each edge [m]
+  std::vector<char> self_collides;            ///< per vertex
+  std::vector<char> unused;                   ///< vertices of no face: carried along, never solved for
+  ContactModel contact;
+  std::vector<PinPoint> pins;
+  std::vector<std::unique_ptr<Energy>> energies;
+  BlockPattern pattern;
+  std::unique_ptr<ClothTopology> topology;
+  std::unique_ptr<MovingCollider> collider;   ///< null: cloth alone
+  double start_depth = 0;                     ///< how deep the deepest vertex started inside the body [m]
+
+  int vertex_count() const { return static_cast<int>(mass.size()); }
+  int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
+};
+
+Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup);
+
+/// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without a body.
+PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles);
+
+/// Where the pins are, from the drawn body's positions.
+void pin_targets(const ClothModel& model, std::span<const Vec3> drawn, std::span<Vec3> targets);
+
+}  // namespace ft

@@ -1,0 +1,424 @@
+// The walk of a frame:
+//   collider at both ends -> substeps from the body's speed near the cloth
+//     per substep: collider and pins at its end -> BodyAdvance (carry, CCD, Newton, truncation)
+//   frame certificate: exact crossings; any that released cloth does not explain: back to the frame's start, twice the substeps,
+//   more slack, at most three times
+//   parts that no cloth touches any more hold the cloth again; report
+#include "solvers/cloth/cloth_solver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "collision/crossings.h"
+#include "collision/penetration.h"
+#include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/cloth_model.h"
+
+namespace ft {
+namespace {
+
+constexpr int k_rewinds = 3;
+constexpr std::size_t k_incidents_per_frame = 16;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double elapsed(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+std::vector<double> flat(const std::vector<Vec3>& points) {
+  const double* begin = points.empty() ? nullptr : points[0].data();
+  return {begin, begin + 3 * points.size()};
+}
+
+std::vector<Vec3> points(const std::vector<double>* values, std::size_t count) {
+  CHECK(values && values->size() == 3 * count);
+  const auto view = as_points(*values);
+  return {view.begin(), view.end()};
+}
+
+void store(State& state, const ClothMotion& m) {
+  state.block("x") = flat(m.x);
+  state.block("v") = flat(m.v);
+  state.block("x_previous") = flat(m.x_previous);
+  state.block("v_previous") = flat(m.v_previous);
+  state.block("h_previous") = {m.h_previous};
+  state.block("released") = m.released;
+}
+
+ClothMotion load(const State& state, std::size_t count) {
+  ClothMotion m;
+  m.x = points(state.find("x"), count);
+  m.v = points(state.find("v"), count);
+  m.x_previous = points(state.find("x_previous"), count);
+  m.v_previous = points(state.find("v_previous"), count);
+  const auto* h = state.find("h_previous");
+  const auto* released = state.find("released");
+  CHECK(h && h->size() == 1 && released && released->size() == count);
+  m.h_previous = h->front();
+  m.released = *released;
+  return m;
+}
+
+class ClothSolver final : public Solver {
+ public:
+  explicit ClothSolver(std::unique_ptr<ClothModel> model) : model_(std::move(model)), advance_(*model_) {}
+
+  int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
+  const Mesh& system_mesh(int system) const override { return model_->setup.garments[at(system)].mesh; }
+
+  void system_positions(const State& state, int system, std::span<Vec3> out) const override {
+    const auto* x = state.find("x");
+    CHECK(x);
+    const auto all = as_points(*x);
+    const auto first = at(model_->first_vertex[at(system)]), end = at(model_->first_vertex[at(system) + 1]);
+    CHECK(out.size() == end - first && end <= all.size());
+    std::copy(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(end), out.begin());
+  }
+
+  void system_health(const State& state, int system, std::span<double> gap, std::span<double> strain) const override;
+
+  std::span<const Triangle> collider_triangles() const override {
+    return model_->collider ? model_->collider->triangles() : std::span<const Triangle>{};
+  }
+  void collider_positions(const State& state, std::vector<Vec3>& out) const override {
+    out.clear();
+    if (!model_->collider) return;
+    std::vector<Vec3> drawn;
+    model_->collider->drawn(state.time, drawn);
+    model_->collider->feasible(state.time, drawn, out);
+  }
+
+  State initial_state() const override;
+  FrameReport advance_frame(State& state) const override;
+
+ private:
+  struct Frame;
+  void walk(const Frame& frame, int substeps, double extra_slack, ClothMotion& motion, FrameReport& report) const;
+  int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
+  void certify(const Frame& frame, ClothMotion& motion, FrameReport& report, int* avoidable) const;
+  void describe(const Frame& frame, const ClothMotion& motion, FrameReport& report) const;
+  void incident(FrameReport& report, Incident::Kind kind, int vertex, const Vec3& place, double depth, std::string text) const;
+
+  std::unique_ptr<ClothModel> model_;
+  // Scratch only: forgotten between frames, one frame at a time.
+  mutable BodyAdvance advance_;
+  mutable std::mutex one_at_a_time_;
+};
+
+/// The outside of one frame: body at both ends.
+struct ClothSolver::Frame {
+  int number = 0;  ///< of its end
+  double t0 = 0, t1 = 0;
+  std::vector<Vec3> drawn_t0, drawn_t1, body_t0, body_t1;
+};
+
+State ClothSolver::initial_state() const {
+  State state;
+  const ClothSetup& setup = model_->setup;
+  state.frame = setup.first_frame - setup.preroll_frames;
+  state.time = -setup.preroll_frames / setup.fps;
+  ClothMotion m;
+  m.x = model_->start;
+  m.v.assign(m.x.size(), Vec3::Zero());
+  m.released.assign(m.x.size(), -1.0);
+  // A history of constant acceleration makes BDF2 exact for free fall from the first step on.
+  const double h = 1.0 / (setup.fps * setup.min_substeps);
+  m.x_previous = m.x;
+  m.v_previous = m.v;
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    if (model_->unused[i]) continue;
+    m.x_previous[i] += 0.5 * h * h * setup.gravity;
+    m.v_previous[i] -= h * setup.gravity;
+  }
+  for (const PinPoint& pin : model_->pins) {
+    m.x_previous[at(pin.vertex)] = m.x[at(pin.vertex)];
+    m.v_previous[at(pin.vertex)] = m.v[at(pin.vertex)];
+  }
+  m.h_previous = h;
+  store(state, m);
+  return state;
+}
+
+int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const {
+  const ClothSetup& setup = model_->setup;
+  if (frame.body_t0.empty()) return setup.min_substeps;
+  // Speed of the body relative to the cloth's own mean motion, where cloth is near.
+  const double dt = frame.t1 - frame.t0, cell = 0.06;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& v : m.v) mean += v * (dt / static_cast<double>(m.v.size()));
+  std::vector<std::array<int, 3>> cells;
+  cells.reserve(m.x.size());
+  const auto cell_of = [&](const Vec3& p) {
+    return std::array<int, 3>{static_cast<int>(std::floor(p.x() / cell)), static_cast<int>(std::floor(p.y() / cell)),
+                              static_cast<int>(std::floor(p.z() / cell))};
+  };
+  for (const Vec3& p : m.x) cells.push_back(cell_of(p));
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  double fastest = 0;
+  for (std::size_t i = 0; i < frame.body_t0.size(); ++i) {
+    const double speed = (frame.body_t1[i] - frame.body_t0[i] - mean).norm();
+    if (speed <= fastest) continue;
+    bool near = false;
+    for (const Vec3& p : {frame.body_t0[i], (frame.body_t1[i] - mean).eval()}) {
+      const auto c = cell_of(p);
+      for (int k = 0; k < 27 && !near; ++k)
+        near = std::binary_search(cells.begin(), cells.end(),
+                                  std::array<int, 3>{c[0] + k % 3 - 1, c[1] + k / 3 % 3 - 1, c[2] + k / 9 - 1});
+    }
+    if (near) fastest = speed;
+  }
+  double radius = 1e-3;
+  for (const double r : model_->contact.radius) radius = std::max(radius, r);
+  return std::clamp(static_cast<int>(std::ceil(fastest / (4 * radius))), setup.min_substeps, setup.max_substeps);
+}
+
+void ClothSolver::walk(const Frame& frame, int substeps, double extra_slack, ClothMotion& m, FrameReport& report) const {
+  const double h = (frame.t1 - frame.t0) / substeps;
+  std::vector<Vec3> drawn = frame.drawn_t0, body = frame.body_t0, body_next, pins(model_->pins.size()), pins_next(pins.size());
+  pin_targets(*model_, drawn, pins);
+  for (int k = 0; k < substeps; ++k) {
+    const double t0 = frame.t0 + k * h;
+    const auto clock = std::chrono::steady_clock::now();
+    if (model_->collider) {
+      if (k + 1 == substeps) {
+        drawn = frame.drawn_t1;
+        body_next = frame.body_t1;
+      } else {
+        model_->collider->drawn(t0 + h, drawn);
+        model_->collider->feasible(t0 + h, drawn, body_next);
+      }
+    }
+    pin_targets(*model_, drawn, pins_next);
+    report.profile.body += elapsed(clock);
+    SubstepInput in;
+    in.body_t0 = body;
+    in.body_t1 = body_next;
+    in.pins_t0 = pins;
+    in.pins_t1 = pins_next;
+    in.h = h;
+    in.time_t0 = t0;
+    in.shortest = (frame.t1 - frame.t0) / 512;
+    in.extra_slack = extra_slack;
+    const AdvanceReport step = advance_.substep(in, m);
+    report.substeps += step.pieces;
+    report.newton_iterations += step.newton_iterations;
+    report.linear_iterations += step.linear_iterations;
+    report.smallest_gap = std::min(report.smallest_gap, step.smallest_gap);
+    report.finite = report.finite && step.finite;
+    report.profile.candidates += step.seconds_candidates;
+    report.profile.advance += step.seconds_advance;
+    report.profile.assembly += step.seconds_assembly;
+    report.profile.linear += step.seconds_linear;
+    report.profile.narrow += step.seconds_contact;
+    body.swap(body_next);
+    pins.swap(pins_next);
+  }
+}
+
+void ClothSolver::incident(FrameReport& report, Incident::Kind kind, int vertex, const Vec3& place, double depth,
+                           std::string text) const {
+  Incident out;
+  out.kind = kind;
+  out.frame = report.frame;
+  if (vertex >= 0) {
+    const int garment = model_->garment_of(vertex);
+    out.system = model_->setup.garments[at(garment)].name;
+    out.vertex = vertex - model_->first_vertex[at(garment)];
+  }
+  out.place = place;
+  out.depth = depth;
+  out.text = std::move(text);
+  report.incidents.push_back(std::move(out));
+}
+
+void ClothSolver::certify(const Frame& frame, ClothMotion& m, FrameReport& report, int* avoidable) const {
+  *avoidable = 0;
+  const auto explained = [&](std::span<const int> cloth_vertices, int part) {
+    for (const int v : cloth_vertices)
+      if (m.released[at(v)] == part) return true;
+    return false;
+  };
+  std::vector<char> touched;
+  if (model_->collider) {
+    const auto parts = model_->collider->part_of_vertex();
+    touched.assign(model_->collider->trajectory().surface().parts.size(), 0);
+    const auto crossings = crossings_between(m.x, model_->triangles, frame.body_t1, model_->collider->triangles());
+    report.crossings_body = static_cast<int>(crossings.size());
+    for (const Crossing& c : crossings) {
+      const int part = parts[at(c.edge_of_first ? c.triangle[0] : c.edge[0])];
+      touched[at(part)] = 1;
+      if (!(c.edge_of_first ? explained(c.edge, part) : explained(c.triangle, part))) ++*avoidable;
+      const int vertex = c.edge_of_first ? c.edge[0] : c.triangle[0];
+      if (report.incidents.size() < k_incidents_per_frame)
+        incident(report, Incident::Kind::k_crossing, vertex, m.x[at(vertex)], 0,
+                 "cloth crosses the collider's part " + model_->collider->trajectory().surface().parts[at(part)].name);
+    }
+  }
+  const auto own = crossings_within(m.x, model_->triangles);
+  for (const Crossing& c : own) {
+    if (!model_->self_collides[at(c.edge[0])] || !model_->self_collides[at(c.triangle[0])]) continue;
+    ++report.crossings_self;
+    ++*avoidable;
+    if (report.incidents.size() < k_incidents_per_frame)
+      incident(report, Incident::Kind::k_crossing, c.edge[0], m.x[at(c.edge[0])], 0, "cloth crosses cloth");
+  }
+  // A part holds the cloth again once none of the cloth that it let through crosses it or is inside it.
+  if (std::any_of(m.released.begin(), m.released.end(), [](double p) { return p >= 0; })) {
+    const auto parts = model_->collider->part_of_vertex();
+    for (std::size_t part = 0; part < touched.size(); ++part) {
+      std::vector<Vec3> through;
+      std::vector<int> index;
+      for (std::size_t i = 0; i < m.released.size(); ++i)
+        if (m.released[i] == static_cast<double>(part)) through.push_back(m.x[i]), index.push_back(static_cast<int>(i));
+      if (through.empty()) continue;
+      report.released_vertices += static_cast<int>(through.size());
+      std::vector<Triangle> shell;
+      for (const Triangle& t : model_->collider->triangles())
+        if (parts[at(t[0])] == static_cast<int>(part)) shell.push_back(t);
+      double deepest = 0;
+      int worst = index[0];
+      for (const Penetration& p : penetrations(through, frame.body_t1, shell))
+        if (p.depth > deepest) deepest = p.depth, worst = index[at(p.vertex)];
+      const std::string name = model_->collider->trajectory().surface().parts[part].name;
+      incident(report, Incident::Kind::k_released, worst, m.x[at(worst)], deepest,
+               "no room: " + std::to_string(through.size()) + " vertices let through part " + name);
+      if (!touched[part] && deepest == 0)
+        for (const int i : index) m.released[at(i)] = -1;
+    }
+  }
+}
+
+void ClothSolver::describe(const Frame& frame, const ClothMotion& m, FrameReport& report) const {
+  std::vector<double> strain(model_->edges.size());
+  double sum = 0;
+  for (std::size_t e = 0; e < strain.size(); ++e) {
+    const Edge& edge = model_->edges[e];
+    strain[e] = (m.x[at(edge[0])] - m.x[at(edge[1])]).norm() / model_->rest_length[e] - 1;
+    sum += strain[e];
+  }
+  if (!strain.empty()) {
+    report.strain_mean = sum / static_cast<double>(strain.size());
+    std::sort(strain.begin(), strain.end());
+    report.strain_max = strain.back();
+    report.strain_p99 = strain[strain.size() * 99 / 100];
+  }
+  for (std::size_t i = 0; i < m.v.size(); ++i) report.kinetic_energy += 0.5 * model_->mass[i] * m.v[i].squaredNorm();
+  if (model_->collider) {
+    const auto& surface = model_->collider->trajectory().surface();
+    report.crossings_drawn =
+        static_cast<int>(crossings_between(m.x, model_->triangles, frame.drawn_t1, surface.triangles).size());
+    int worst = -1;
+    for (const Penetration& p : penetrations(m.x, frame.drawn_t1, surface.triangles))
+      if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
+    if (worst >= 0 && report.deepest_drawn > 1e-3)
+      incident(report, Incident::Kind::k_penetration, worst, m.x[at(worst)], report.deepest_drawn,
+               "cloth is inside the drawn body, where it overlaps itself or leaves no room");
+  }
+  std::stable_sort(report.incidents.begin(), report.incidents.end(),
+                   [](const Incident& a, const Incident& b) { return a.depth > b.depth; });
+  if (report.incidents.size() > k_incidents_per_frame) report.incidents.resize(k_incidents_per_frame);
+}
+
+FrameReport ClothSolver::advance_frame(State& state) const {
+  const std::lock_guard lock(one_at_a_time_);
+  const auto clock = std::chrono::steady_clock::now();
+  const ClothSetup& setup = model_->setup;
+  Frame frame;
+  frame.number = state.frame + 1;
+  frame.t0 = (state.frame - setup.first_frame) / setup.fps;
+  frame.t1 = (frame.number - setup.first_frame) / setup.fps;
+  if (model_->collider) {
+    model_->collider->drawn(frame.t0, frame.drawn_t0);
+    model_->collider->feasible(frame.t0, frame.drawn_t0, frame.body_t0);
+    model_->collider->drawn(frame.t1, frame.drawn_t1);
+    model_->collider->feasible(frame.t1, frame.drawn_t1, frame.body_t1);
+  }
+  const ClothMotion start = load(state, at(model_->vertex_count()));
+  const int substeps = choose_substeps(frame, start);
+  FrameReport report, best_report;
+  ClothMotion motion, best;
+  int fewest = -1;
+  FrameProfile spent;
+  for (int attempt = 0; attempt <= k_rewinds; ++attempt) {
+    motion = start;
+    report = {};
+    report.frame = frame.number;
+    report.rewinds = attempt;
+    report.smallest_gap = std::numeric_limits<double>::infinity();
+    report.profile = spent;
+    walk(frame, substeps << attempt, attempt * 2e-3, motion, report);
+    if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
+    const auto certificate = std::chrono::steady_clock::now();
+    int avoidable = 0;
+    certify(frame, motion, report, &avoidable);
+    report.profile.certificate += elapsed(certificate);
+    spent = report.profile;
+    const int score = report.finite ? avoidable : std::numeric_limits<int>::max();
+    if (fewest < 0 || score < fewest) {
+      fewest = score;
+      best_report = report;
+      best = motion;
+    }
+    if (score == 0) break;
+  }
+  report = std::move(best_report);
+  motion = std::move(best);
+  report.profile = spent;
+  if (!std::isfinite(report.smallest_gap)) report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
+  const auto certificate = std::chrono::steady_clock::now();
+  describe(frame, motion, report);
+  report.profile.certificate += elapsed(certificate);
+  store(state, motion);
+  state.frame = frame.number;
+  state.time = frame.t1;
+  report.profile.total = elapsed(clock);
+  return report;
+}
+
+void ClothSolver::system_health(const State& state, int system, std::span<double> gap, std::span<double> strain) const {
+  const ClothMotion m = load(state, at(model_->vertex_count()));
+  const std::size_t first = at(model_->first_vertex[at(system)]), end = at(model_->first_vertex[at(system) + 1]);
+  CHECK(gap.size() == end - first && strain.size() == end - first);
+  std::fill(strain.begin(), strain.end(), 0.0);
+  for (std::size_t e = 0; e < model_->edges.size(); ++e) {
+    const Edge& edge = model_->edges[e];
+    const double value = (m.x[at(edge[0])] - m.x[at(edge[1])]).norm() / model_->rest_length[e] - 1;
+    for (const int v : edge)
+      if (at(v) >= first && at(v) < end && std::abs(value) > std::abs(strain[at(v) - first])) strain[at(v) - first] = value;
+  }
+  // Gap up to 2 cm, from vertex-face pairs with the collider.
+  constexpr double k_far = 0.02;
+  std::fill(gap.begin(), gap.end(), k_far);
+  if (!model_->collider) return;
+  std::vector<Vec3> all = m.x, body;
+  collider_positions(state, body);
+  all.insert(all.end(), body.begin(), body.end());
+  std::vector<Triangle> shifted(model_->collider->triangles().begin(), model_->collider->triangles().end());
+  for (Triangle& t : shifted)
+    for (int& v : t) v += model_->vertex_count();
+  PairFinder finder(model_->vertex_count(), model_->triangles, static_cast<int>(body.size()), shifted);
+  std::vector<VertexBox> boxes(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) boxes[i] = VertexBox::swept(all[i], all[i], 0.5 * k_far);
+  ContactPairs pairs;
+  finder.find(boxes, false, pairs);
+  for (const Stencil& s : pairs.vertex_face) {
+    if (at(s.v[0]) < first || at(s.v[0]) >= end) continue;
+    const double d = vertex_face_geometry(all[at(s.v[0])], all[at(s.v[1])], all[at(s.v[2])], all[at(s.v[3])]).distance;
+    double& g = gap[at(s.v[0]) - first];
+    g = std::min(g, d);
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup) {
+  auto model = build_cloth_model(std::move(setup));
+  if (!model) return model.error();
+  return std::unique_ptr<Solver>(std::make_unique<ClothSolver>(std::move(*model)));
+}
+
+}  // namespace ft

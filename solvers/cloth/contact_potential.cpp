@@ -1,0 +1,212 @@
+#include "solvers/cloth/contact_potential.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "baker/core/parallel.h"
+
+namespace ft {
+namespace {
+
+constexpr std::size_t k_block = 2048;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+PairGeometry geometry_of(bool vertex_face, const std::array<int, 4>& v, std::span<const Vec3> x) {
+  return vertex_face ? vertex_face_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])])
+                     : edge_edge_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])]);
+}
+
+Vec3 slip(const std::array<int, 4>& v, const std::array<double, 4>& weight, std::span<const Vec3> x,
+          std::span<const Vec3> x_start) {
+  Vec3 u = Vec3::Zero();
+  for (std::size_t k = 0; k < 4; ++k) u += weight[k] * (x[at(v[k])] - x_start[at(v[k])]);
+  return u;
+}
+
+}  // namespace
+
+ContactLaw contact_law(double d, double r, double k) {
+  if (d >= r) return {0, 0, 0};
+  const double half = 0.5 * r;
+  if (d > half) return {0.5 * k * (r - d) * (r - d), k * (r - d), k};
+  const double a = 0.25 * k * r * r;
+  const double safe = std::max(d, 1e-9);
+  return {0.125 * k * r * r - a * std::log(safe / half), a / safe, a / (safe * safe)};
+}
+
+void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h) {
+  pairs_ = &pairs;
+  x_start_ = x_start;
+  h_ = h;
+  moved_total_ = 0;
+  state_vf_.assign(pairs.vertex_face.size(), {-1.f, 0.f});
+  state_ee_.assign(pairs.edge_edge.size(), {-1.f, 0.f});
+  contacts_.clear();
+  lagged_.clear();
+}
+
+double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_face, double* friction, double* area) const {
+  const int n = model_.cloth_vertex_count;
+  const bool first_cloth = v[0] < n, second_cloth = v[3] < n;
+  double r = 0, mu = 0, a = 0;
+  if (first_cloth && second_cloth) {
+    r = 1e9;
+    for (const int i : v) {
+      r = std::min(r, model_.self_radius[at(i)]);
+      mu = std::max(mu, model_.self_friction[at(i)]);
+      a += 0.25 * model_.area[at(i)];
+    }
+    if (model_.garment[at(v[0])] == model_.garment[at(v[3])]) {
+      const double rest = geometry_of(vertex_face, v, model_.rest).distance;
+      r = std::min(r, 0.5 * rest);
+    }
+  } else {
+    int count = 0;
+    for (const int i : v) {
+      if (i >= n) continue;
+      r = std::max(r, model_.radius[at(i)]);
+      mu = std::max(mu, model_.friction[at(i)]);
+      a += model_.area[at(i)];
+      ++count;
+    }
+    a /= std::max(count, 1);
+  }
+  *friction = mu;
+  *area = a;
+  return r;
+}
+
+void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, double moved, double reach) {
+  const auto& list = vertex_face ? pairs_->vertex_face : pairs_->edge_edge;
+  auto& state = vertex_face ? state_vf_ : state_ee_;
+  const int n = model_.cloth_vertex_count;
+  const std::size_t blocks = block_count(list.size(), k_block);
+  if (block_contacts_.size() < blocks) block_contacts_.resize(blocks);
+  const float total = static_cast<float>(moved_total_);
+  (void)moved;
+  parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    auto& out = block_contacts_[begin / k_block];
+    out.clear();
+    for (std::size_t p = begin; p < end; ++p) {
+      const auto& v = list[p].v;
+      PairState& s = state[p];
+      const bool self = v[0] < n && v[3] < n;
+      double largest = 0;
+      for (const int i : v)
+        if (i < n) largest = std::max(largest, self ? model_.self_radius[at(i)] : model_.radius[at(i)]);
+      const double wanted = std::max(largest, reach);
+      // Both features may have moved towards each other; the body stands still in a solve, which only makes this safer.
+      if (s.distance >= 0 && s.distance - 2.0001f * (total - s.moved_at) > static_cast<float>(wanted) + 1e-6f) continue;
+      const PairGeometry g = geometry_of(vertex_face, v, x);
+      s = {static_cast<float>(g.distance), total};
+      if (g.distance >= largest || g.distance <= 0) continue;
+      if (!vertex_face && !g.interior) continue;
+      Contact c;
+      c.vertex = v;
+      c.geometry = g;
+      double area = 0;
+      c.radius = pair_radius(v, vertex_face, &c.friction, &area);
+      if (g.distance >= c.radius) continue;
+      c.stiffness = model_.stiffness_per_area * area;
+      out.push_back(c);
+    }
+  });
+  for (std::size_t b = 0; b < blocks; ++b)
+    contacts_.insert(contacts_.end(), block_contacts_[b].begin(), block_contacts_[b].end());
+}
+
+void ContactPotential::update(std::span<const Vec3> x, double moved, double reach) {
+  moved_total_ += moved;
+  contacts_.clear();
+  update_kind(true, x, moved, reach);
+  update_kind(false, x, moved, reach);
+}
+
+void ContactPotential::lag_friction() {
+  lagged_.clear();
+  for (const Contact& c : contacts_) {
+    if (c.friction <= 0) continue;
+    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
+    lagged_.push_back({law.force, c.geometry.normal, c.geometry.weight, c.vertex, c.friction});
+  }
+}
+
+double ContactPotential::value(std::span<const Vec3> x) const {
+  double energy = 0;
+  for (const Contact& c : contacts_) energy += contact_law(c.geometry.distance, c.radius, c.stiffness).energy;
+  const double eps = model_.sliding_speed * h_;
+  for (const Lagged& f : lagged_) {
+    Vec3 u = slip(f.vertex, f.weight, x, x_start_);
+    u -= f.normal * f.normal.dot(u);
+    const double s = u.norm();
+    energy += f.friction * f.normal_force * (s > eps ? s - 0.5 * eps : 0.5 * s * s / eps);
+  }
+  return energy;
+}
+
+void ContactPotential::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
+  const int n = model_.cloth_vertex_count;
+  for (const Contact& c : contacts_) {
+    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
+    const Vec3 g = -law.force * c.geometry.normal;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (c.vertex[k] < n) gradient[at(c.vertex[k])] += c.geometry.weight[k] * g;
+  }
+  const double eps = model_.sliding_speed * h_;
+  for (const Lagged& f : lagged_) {
+    Vec3 u = slip(f.vertex, f.weight, x, x_start_);
+    u -= f.normal * f.normal.dot(u);
+    const Vec3 g = (f.friction * f.normal_force / std::max(u.norm(), eps)) * u;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (f.vertex[k] < n) gradient[at(f.vertex[k])] += f.weight[k] * g;
+  }
+}
+
+void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const {
+  const int n = model_.cloth_vertex_count;
+  const auto add = [&](const std::array<int, 4>& v, const std::array<double, 4>& weight, const Mat3& stiffness) {
+    PairTerm term;
+    for (std::size_t k = 0; k < 4; ++k) {
+      term.vertex[k] = v[k] < n ? v[k] : -1;
+      term.weight[k] = static_cast<float>(weight[k]);
+    }
+    term.stiffness = stiffness.cast<float>();
+    terms.push_back(term);
+  };
+  for (const Contact& c : contacts_) {
+    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
+    add(c.vertex, c.geometry.weight, law.stiffness * c.geometry.normal * c.geometry.normal.transpose());
+  }
+  const double eps = model_.sliding_speed * h_;
+  for (const Lagged& f : lagged_) {
+    Vec3 u = slip(f.vertex, f.weight, x, x_start_);
+    u -= f.normal * f.normal.dot(u);
+    const double k = f.friction * f.normal_force / std::max(u.norm(), eps);
+    add(f.vertex, f.weight, k * (Mat3::Identity() - f.normal * f.normal.transpose()));
+  }
+}
+
+void ContactPotential::near_pairs(double distance, ContactPairs& out) const {
+  out.vertex_face.clear();
+  out.edge_edge.clear();
+  const float total = static_cast<float>(moved_total_);
+  const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, std::vector<Stencil>& to) {
+    for (std::size_t p = 0; p < list.size(); ++p)
+      if (state[p].distance - 2.0001f * (total - state[p].moved_at) < static_cast<float>(distance) + 1e-6f)
+        to.push_back(list[p]);
+  };
+  take(pairs_->vertex_face, state_vf_, out.vertex_face);
+  take(pairs_->edge_edge, state_ee_, out.edge_edge);
+}
+
+double ContactPotential::smallest_gap() const {
+  double gap = std::numeric_limits<double>::infinity();
+  const float total = static_cast<float>(moved_total_);
+  for (const auto* state : {&state_vf_, &state_ee_})
+    for (const PairState& s : *state)
+      if (s.moved_at == total) gap = std::min(gap, static_cast<double>(s.distance));
+  return gap;
+}
+
+}  // namespace ft

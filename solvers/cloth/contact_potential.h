@@ -1,0 +1,92 @@
+// Contact and friction as terms of the incremental potential, over the pairs that can touch in one solve.
+//   E(d) = k/2 (r - d)^2             r/2 < d < r
+//   E(d) = -k r^2/4 ln(2d/r) + c     d < r/2      (C2 at r/2: force k r/2, stiffness k; unbounded as d -> 0)
+// k = stiffness per area times the lumped cloth area of the pair, so that pressure does not depend on the mesh. The radius is
+// cut to half the rest distance for pairs of cloth that are near each other at rest: neighbours never repel. Friction is lagged
+// (normal force of the current linearisation), relative to the moving surface, smooth below eps_v.
+// Offset geometric contact's rule keeps each contact once: edge-edge pairs count only where both parameters are interior.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/contact_pairs.h"
+#include "collision/pair_geometry.h"
+#include "solvers/linear/block_matrix.h"
+
+namespace ft {
+
+/// Per vertex of the common numbering (cloth first); the pair takes the mean, or for friction the larger.
+struct ContactModel {
+  int cloth_vertex_count = 0;
+  double stiffness_per_area = 1e6;    ///< N/m3. 1e5 soft, 1e7 hard; gravity on cotton is 1.5 Pa, so 1e6 rests 1.5 um deep
+  double sliding_speed = 2e-5;        ///< below this speed friction is viscous [m/s]: the creep of a contact at rest
+  std::vector<double> area;           ///< lumped area of each cloth vertex [m2]
+  std::vector<double> radius;         ///< contact radius against the body of each cloth vertex [m]
+  std::vector<double> self_radius;    ///< among cloths [m]
+  std::vector<double> friction, self_friction;  ///< Coulomb coefficient [1]
+  std::vector<Vec3> rest;             ///< rest positions of the cloth vertices [m]
+  std::vector<int> garment;           ///< of each cloth vertex
+};
+
+/// One active contact of the current linearisation.
+struct Contact {
+  std::array<int, 4> vertex;
+  PairGeometry geometry;
+  double radius = 0, stiffness = 0, friction = 0;
+};
+
+class ContactPotential {
+ public:
+  explicit ContactPotential(const ContactModel& model) : model_(model) {}
+
+  /// Takes the pairs of one solve. x_start: all positions at the start of the step (friction measures slip from there), h: its
+  /// length [s].
+  void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h);
+
+  /// Finds the active contacts at x (all vertices); moved: no vertex has moved further than this since the last call [m].
+  /// reach: distances up to it are kept exact for near_pairs().
+  void update(std::span<const Vec3> x, double moved, double reach);
+  /// Fixes normal forces for friction at the contacts of the last update.
+  void lag_friction();
+
+  double value(std::span<const Vec3> x) const;  ///< J, at the positions of the last update
+  void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const;  ///< N, cloth vertices only
+  void add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const;
+
+  /// Pairs nearer than `distance` at the last update, for truncation.
+  void near_pairs(double distance, ContactPairs& out) const;
+  std::span<const Contact> contacts() const { return contacts_; }
+  double smallest_gap() const;  ///< m, over all pairs of this solve at the last update
+
+ private:
+  struct Lagged {
+    double normal_force;
+    Vec3 normal;
+    std::array<double, 4> weight;
+    std::array<int, 4> vertex;
+    double friction;
+  };
+  double pair_radius(const std::array<int, 4>& v, bool vertex_face, double* friction, double* area) const;
+  void update_kind(bool vertex_face, std::span<const Vec3> x, double moved, double reach);
+
+  const ContactModel& model_;
+  const ContactPairs* pairs_ = nullptr;
+  std::span<const Vec3> x_start_;
+  double h_ = 0, moved_total_ = 0;
+  struct PairState {
+    float distance, moved_at;
+  };
+  std::vector<PairState> state_vf_, state_ee_;
+  std::vector<Contact> contacts_;
+  std::vector<Lagged> lagged_;
+  std::vector<std::vector<Contact>> block_contacts_;
+};
+
+/// E, -dE/dd and d2E/dd2 of the contact law above.
+struct ContactLaw {
+  double energy, force, stiffness;
+};
+ContactLaw contact_law(double distance, double radius, double stiffness);
+
+}  // namespace ft

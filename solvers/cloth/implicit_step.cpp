@@ -1,0 +1,206 @@
+#include "solvers/cloth/implicit_step.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "baker/core/parallel.h"
+#include "collision/truncate_dat.h"
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Distance that truncation always keeps [m].
+constexpr double k_floor = 1e-5;
+/// Newton stops when nothing moves further than this share of the contact radius.
+constexpr double k_still = 1e-4;
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+struct PinForce {
+  Vec3 gradient;
+  double stiffness, energy;
+};
+
+/// Spring with a force limit: quadratic up to the limit, linear beyond.
+PinForce pin_force(const PinPoint& pin, const Vec3& x, const Vec3& target) {
+  const Vec3 d = x - target;
+  const double length = d.norm();
+  const double pull = pin.stiffness * length;
+  if (pull <= pin.max_pull) return {pin.stiffness * d, pin.stiffness, 0.5 * pin.stiffness * length * length};
+  const double elastic = pin.max_pull / pin.stiffness;
+  return {pin.max_pull / length * d, pin.max_pull / length, pin.max_pull * (length - 0.5 * elastic)};
+}
+
+}  // namespace
+
+IntegratorWeights integrator_weights(double h, double h_previous, bool bdf2) {
+  if (!bdf2 || h_previous <= 0 || h > 2 * h_previous) return {};
+  const double w = h / h_previous;
+  return {(1 + w) * (1 + w) / (1 + 2 * w), w * w / (1 + 2 * w), (1 + w) / (1 + 2 * w)};
+}
+
+struct ImplicitStep::Scratch {
+  Scratch(const ClothModel& model, const LinearSettings& settings)
+      : system(model.pattern, model.contact.rest, settings), contact(model.contact) {}
+  LinearSystem system;
+  ContactPotential contact;
+  std::vector<Vec3> y, gradient, direction, all, trial;
+  std::vector<double> share;
+  std::vector<PairTerm> terms;
+  ContactPairs near;
+};
+
+ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
+  LinearSettings settings;
+  settings.tolerance = model.setup.linear_tolerance;
+  scratch_ = std::make_unique<Scratch>(model, settings);
+}
+ImplicitStep::~ImplicitStep() = default;
+
+StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::span<Vec3> v_out) {
+  Scratch& s = *scratch_;
+  const std::size_t n = at(model_.vertex_count());
+  const IntegratorWeights w = integrator_weights(in.h, in.h_previous, model_.setup.bdf2);
+  const double bh = w.beta * in.h;
+  const double inertia = 1.0 / (bh * bh);
+  StepResult result;
+  Stopwatch watch;
+
+  StepContext context;
+  context.h = in.h;
+  context.beta_h = bh;
+  context.x_t0 = in.x_t0;
+  context.v_t0 = in.v_t0;
+  context.time = in.time;
+  for (const auto& energy : model_.energies) energy->begin_step(context);
+
+  s.y.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    s.y[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i]) +
+             bh * bh * model_.setup.gravity;
+  s.all.assign(in.all_begin.begin(), in.all_begin.end());
+  s.trial = s.all;
+  s.gradient.resize(n);
+  s.direction.resize(n);
+  s.share.resize(n);
+
+  const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
+  const auto potential = [&](std::vector<Vec3>& all) {
+    const std::span<const Vec3> x(all.data(), n);
+    double e = parallel_sum(n, 1024, 0.0, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) sum += model_.mass[i] * (x[i] - s.y[i]).squaredNorm();
+      return sum;
+    });
+    e *= 0.5 * inertia;
+    for (const auto& energy : model_.energies) e += energy->value(x);
+    for (std::size_t p = 0; p < model_.pins.size(); ++p)
+      e += pin_force(model_.pins[p], x[at(model_.pins[p].vertex)], in.pin_target[p]).energy;
+    return e + s.contact.value(all);
+  };
+
+  double smallest_radius = 1e-3;
+  for (const double r : model_.contact.radius) smallest_radius = std::min(smallest_radius, r);
+  s.contact.begin(*in.pairs, in.all_start, in.h);
+  s.contact.update(s.all, 0, 0);
+  result.seconds_contact += watch.lap();
+
+  for (int iteration = 0; iteration < in.newton_iterations; ++iteration) {
+    s.contact.lag_friction();
+    const std::span<const Vec3> x(s.all.data(), n);
+    parallel_for(n, 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) s.gradient[i] = (model_.mass[i] * inertia) * (x[i] - s.y[i]);
+    });
+    BlockMatrix& hessian = s.system.begin();
+    for (std::size_t i = 0; i < n; ++i)
+      hessian.blocks[at(model_.pattern.diagonal[i])].diagonal().array() += static_cast<float>(model_.mass[i] * inertia);
+    for (const auto& energy : model_.energies) {
+      energy->add_gradient(x, s.gradient);
+      energy->add_hessian(x, hessian);
+    }
+    s.terms.clear();
+    for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+      const PinPoint& pin = model_.pins[p];
+      const PinForce f = pin_force(pin, x[at(pin.vertex)], in.pin_target[p]);
+      s.gradient[at(pin.vertex)] += f.gradient;
+      PairTerm term;
+      term.vertex[0] = pin.vertex;
+      term.weight[0] = 1;
+      term.stiffness = Mat3f::Identity() * static_cast<float>(f.stiffness);
+      s.terms.push_back(term);
+    }
+    s.contact.add_gradient(s.all, s.gradient);
+    s.contact.add_terms(s.all, s.terms);
+    s.system.add_pair_terms(s.terms);
+    for (Vec3& g : s.gradient) g = -g;
+    const double before = potential(s.all);
+    result.seconds_assembly += watch.lap();
+    const LinearReport linear = s.system.solve(s.gradient, model_.unused, s.direction);
+    result.linear_iterations += linear.iterations;
+    ++result.newton_iterations;
+    result.seconds_linear += watch.lap();
+
+    double longest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!s.direction[i].allFinite()) s.direction[i].setZero(), result.finite = false;
+      // Stay in the ball around the carried position, inside which the list of pairs is complete.
+      const Vec3 from = s.all[i] - in.all_begin[i];
+      const double room = in.slack[i];
+      if ((from + s.direction[i]).squaredNorm() > room * room) {
+        const double dd = s.direction[i].squaredNorm(), fd = from.dot(s.direction[i]);
+        const double cc = from.squaredNorm() - room * room;
+        const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;
+        s.direction[i] *= std::clamp(t, 0.0, 1.0);
+      }
+      longest = std::max(longest, s.direction[i].norm());
+    }
+    s.contact.near_pairs(2.2 * longest + k_floor, s.near);
+    truncate_displacements(s.all, s.direction, model_.vertex_count(), s.near, k_floor, s.share);
+
+    double moved = 0, factor = 1;
+    bool accepted = false;
+    for (int cut = 0; cut < 5 && !accepted; ++cut, factor *= 0.5) {
+      double step = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 d = (factor * s.share[i]) * s.direction[i];
+        s.trial[i] = s.all[i] + d;
+        step = std::max(step, d.norm());
+      }
+      moved += step;
+      s.contact.update(s.trial, moved, 0);
+      moved = step;  // a further cut moves back by at most this much
+      const double after = potential(s.trial);
+      // Truncation and lagged friction leave the exact descent direction: a small rise is no reason to stop.
+      accepted = std::isfinite(after) && after <= before + 1e-9 + 1e-3 * std::abs(before);
+      if (!accepted) ++result.backtracks;
+      result.last_move = step;
+    }
+    std::copy_n(s.trial.begin(), n, s.all.begin());
+    result.seconds_contact += watch.lap();
+    if (result.last_move < k_still * smallest_radius) break;
+  }
+  result.smallest_gap = s.contact.smallest_gap();
+  const std::span<const Vec3> x = cloth(s.all);
+  for (std::size_t i = 0; i < n; ++i) {
+    x_out[i] = x[i];
+    v_out[i] = (x[i] - w.a * in.x_t0[i] + w.b * in.x_tm1[i]) / bh;
+  }
+  result.finite = result.finite && all_finite(x_out);
+  return result;
+}
+
+}  // namespace ft

@@ -1,0 +1,56 @@
+// One implicit step of the cloth with the body standing still: minimises
+//   1/(2 (beta h)^2) |x - y|_M^2 + elasticity + contact + friction + pins
+// by Newton's method with a positive definite Hessian, every displacement truncated so that no pair crosses, with energy backtracking
+// as a safety net. Time integration is BDF2 with variable steps (implicit Euler as an option and where the step ratio exceeds 2,
+// beyond which BDF2 is not zero-stable).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solvers/cloth/cloth_model.h"
+#include "solvers/linear/linear_system.h"
+
+namespace ft {
+
+/// x_1 = a x_0 - b x_-1 + beta h v_1, and the same for v.
+struct IntegratorWeights {
+  double a = 1, b = 0, beta = 1;
+};
+IntegratorWeights integrator_weights(double h, double h_previous, bool bdf2);
+
+struct StepInput {
+  std::span<const Vec3> x_t0, v_t0, x_tm1, v_tm1;  ///< cloth
+  double h = 0, h_previous = 0;                    ///< s
+  double time = 0;                                 ///< at the end [s]
+  std::span<const Vec3> all_start;                 ///< cloth and body at the start: slip is measured from here
+  std::span<const Vec3> all_begin;                 ///< carried cloth and body at the end of the step
+  std::span<const Vec3> pin_target;                ///< per pin, at the end of the step
+  std::span<const double> slack;                   ///< how far each cloth vertex may go from all_begin [m]
+  const ContactPairs* pairs = nullptr;             ///< complete within the slack
+  int newton_iterations = 3;
+};
+
+struct StepResult {
+  int newton_iterations = 0, linear_iterations = 0, backtracks = 0;
+  double last_move = 0;     ///< largest displacement of the last iteration [m]
+  double smallest_gap = 0;  ///< m
+  bool finite = true;
+  double seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
+};
+
+class ImplicitStep {
+ public:
+  explicit ImplicitStep(const ClothModel& model);
+  ~ImplicitStep();
+  /// Fills x and v of the cloth at the end of the step.
+  StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+  const ClothModel& model_;
+};
+
+}  // namespace ft

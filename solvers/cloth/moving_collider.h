@@ -1,0 +1,43 @@
+// The body as the cloth solver meets it: the drawn pose of the trajectory, refined, made feasible, and during the pre-roll drawn in
+// where garments start inside it, so that the growing surface pushes them out without a crossing.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "baker/core/trajectory.h"
+#include "collision/feasible_collider.h"
+
+namespace ft {
+
+class MovingCollider {
+ public:
+  MovingCollider(std::shared_ptr<const Trajectory> primary, const FeasibleSettings& settings);
+
+  int vertex_count() const { return feasible_->vertex_count(); }
+  std::span<const Triangle> triangles() const { return feasible_->triangles(); }
+  std::span<const int> part_of_vertex() const { return feasible_->part_of_vertex(); }
+  const Trajectory& trajectory() const { return *primary_; }
+
+  /// Draws the body in at the start of the pre-roll so that this cloth (placed by bind_to_start) does not cross it and keeps
+  /// about `clearance` [m]. Returns how deep the deepest point was inside [m]. Without a pre-roll nothing is drawn in.
+  double draw_in_for(std::span<const Vec3> points, std::span<const Triangle> cloth, double clearance);
+  /// Largest inset [m].
+  double largest_inset() const { return largest_inset_; }
+
+  void drawn(double time, std::vector<Vec3>& positions) const;
+  /// Feasible positions, from the drawn ones at the same time.
+  CarveReport feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions) const;
+
+ private:
+  /// 1 at the start of the pre-roll, 0 from 60 % of it on.
+  double inset_share(double time) const;
+
+  std::shared_ptr<const Trajectory> primary_;
+  std::unique_ptr<FeasibleCollider> feasible_;
+  std::vector<double> inset_;  ///< per collider vertex [m]; empty: none
+  double largest_inset_ = 0;
+};
+
+}  // namespace ft

@@ -1,0 +1,62 @@
+// Pins: where they are on the body, and where the body takes them.
+#include <algorithm>
+#include <cmath>
+
+#include "collision/pair_geometry.h"
+#include "solvers/cloth/cloth_model.h"
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Orthonormal frame of a triangle: first edge, in-plane, normal. Identity for a degenerate one.
+Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 e = b - a, n = e.cross(c - a);
+  if (e.norm() < 1e-12 || n.norm() < 1e-18) return Mat3::Identity();
+  Mat3 frame;
+  frame.col(0) = e.normalized();
+  frame.col(2) = n.normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+}  // namespace
+
+PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles) {
+  PinPoint pin;
+  pin.vertex = vertex;
+  pin.offset = place;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : triangles) {
+    const Vec3 &a = body[at(t[0])], &b = body[at(t[1])], &c = body[at(t[2])];
+    // Cheap rejection: no point of the triangle is nearer than its first corner less its longest side.
+    const double reach = std::max((b - a).norm(), (c - a).norm());
+    if ((place - a).norm() - reach > nearest) continue;
+    const PairGeometry g = vertex_face_geometry(place, a, b, c);
+    if (g.distance >= nearest) continue;
+    nearest = g.distance;
+    pin.triangle = t;
+    pin.weight = {-g.weight[1], -g.weight[2], -g.weight[3]};
+  }
+  if (pin.triangle[0] >= 0) {
+    const Vec3 &a = body[at(pin.triangle[0])], &b = body[at(pin.triangle[1])], &c = body[at(pin.triangle[2])];
+    const Vec3 foot = pin.weight[0] * a + pin.weight[1] * b + pin.weight[2] * c;
+    pin.offset = triangle_frame(a, b, c).transpose() * (place - foot);
+  }
+  return pin;
+}
+
+void pin_targets(const ClothModel& model, std::span<const Vec3> drawn, std::span<Vec3> targets) {
+  for (std::size_t p = 0; p < model.pins.size(); ++p) {
+    const PinPoint& pin = model.pins[p];
+    if (pin.triangle[0] < 0) {
+      targets[p] = pin.offset;
+      continue;
+    }
+    const Vec3 &a = drawn[at(pin.triangle[0])], &b = drawn[at(pin.triangle[1])], &c = drawn[at(pin.triangle[2])];
+    targets[p] = pin.weight[0] * a + pin.weight[1] * b + pin.weight[2] * c + triangle_frame(a, b, c) * pin.offset;
+  }
+}
+
+}  // namespace ft
