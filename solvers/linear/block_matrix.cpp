@@ -1,0 +1,41 @@
+#include "solvers/linear/block_matrix.h"
+
+#include <algorithm>
+
+#include "baker/core/check.h"
+
+namespace ft {
+
+int BlockPattern::find(int row, int col) const {
+  const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
+  const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
+  const auto it = std::lower_bound(begin, end, col);
+  return it != end && *it == col ? static_cast<int>(it - column.begin()) : -1;
+}
+
+BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::array<int, 4>>> stencil_lists) {
+  std::vector<std::vector<int>> rows(static_cast<std::size_t>(vertex_count));
+  for (int v = 0; v < vertex_count; ++v) rows[static_cast<std::size_t>(v)].push_back(v);
+  for (const auto& list : stencil_lists)
+    for (const auto& stencil : list)
+      for (const int a : stencil)
+        for (const int b : stencil) {
+          if (a < 0 || b < 0 || a == b) continue;
+          CHECK(a < vertex_count && b < vertex_count);
+          rows[static_cast<std::size_t>(a)].push_back(b);
+        }
+  BlockPattern pattern;
+  pattern.row_start.push_back(0);
+  for (int v = 0; v < vertex_count; ++v) {
+    auto& row = rows[static_cast<std::size_t>(v)];
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    const auto self = std::lower_bound(row.begin(), row.end(), v) - row.begin();
+    pattern.diagonal.push_back(static_cast<int>(pattern.column.size()) + static_cast<int>(self));
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+}  // namespace ft

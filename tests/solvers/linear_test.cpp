@@ -1,0 +1,221 @@
+// The linear solver against dense solutions, its scaling, and what it does with held rows, contacts and broken input.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "baker/core/parallel.h"
+#include "baker/core/random.h"
+#include "solvers/linear/interpolation.h"
+#include "solvers/linear/linear_system.h"
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double noise(std::size_t element, std::uint64_t draw) { return 2 * random_uniform({.element = element}, draw) - 1; }
+
+/// A crumpled sheet of springs: stiff along the springs, a thousand times softer across them, as cloth is.
+struct Sheet {
+  int n;
+  std::vector<Vec3> rest, x;
+  std::vector<std::array<int, 4>> springs;
+  BlockPattern pattern;
+
+  explicit Sheet(int cells) : n(cells + 1) {
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const std::size_t v = rest.size();
+        const double h = 1.0 / cells;
+        rest.emplace_back(h * (i + 0.2 * noise(v, 0)), h * (j + 0.2 * noise(v, 1)), 0);
+        x.push_back(rest.back() + Vec3(0, 0, 0.05 * std::sin(9 * rest.back().x()) * std::cos(7 * rest.back().y())));
+      }
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const int v = j * n + i;
+        if (i + 1 < n) springs.push_back({v, v + 1, -1, -1});
+        if (j + 1 < n) springs.push_back({v, v + n, -1, -1});
+        if (i + 1 < n && j + 1 < n) springs.push_back({v, v + n + 1, -1, -1});
+      }
+    pattern = make_pattern(n * n, std::array{springs});
+  }
+
+  void fill(BlockMatrix& m) const {
+    for (std::size_t i = 0; i < x.size(); ++i) m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity() * 0.02f * float(1e4 / (n * n));
+    for (const auto& s : springs) {
+      const Vec3 d = (x[at(s[1])] - x[at(s[0])]).normalized();
+      const Mat3f k = (1000 * d * d.transpose() + Mat3::Identity()).cast<float>();
+      for (const int a : {0, 1})
+        for (const int b : {0, 1})
+          m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += a == b ? k : Mat3f(-k);
+    }
+  }
+
+  std::vector<Vec3> load() const {
+    std::vector<Vec3> b;
+    for (std::size_t i = 0; i < x.size(); ++i) b.emplace_back(noise(i, 5), noise(i, 6) - 2, noise(i, 7));
+    return b;
+  }
+};
+
+Eigen::VectorXd dense_solution(const Sheet& sheet, std::span<const PairTerm> terms, std::span<const char> fixed) {
+  BlockMatrix m;
+  m.reset(sheet.pattern);
+  sheet.fill(m);
+  const int n = sheet.pattern.vertex_count();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (int i = 0; i < n; ++i)
+    for (int k = sheet.pattern.row_start[at(i)]; k < sheet.pattern.row_start[at(i) + 1]; ++k)
+      a.block<3, 3>(3 * i, 3 * sheet.pattern.column[at(k)]) += m.blocks[at(k)].cast<double>();
+  for (const PairTerm& t : terms)
+    for (std::size_t p = 0; p < 4; ++p)
+      for (std::size_t q = 0; q < 4; ++q)
+        if (t.vertex[p] >= 0 && t.vertex[q] >= 0)
+          a.block<3, 3>(3 * t.vertex[p], 3 * t.vertex[q]) += (t.weight[p] * t.weight[q] * t.stiffness).cast<double>();
+  Eigen::VectorXd b(3 * n);
+  const auto load = sheet.load();
+  for (int i = 0; i < n; ++i) b.segment<3>(3 * i) = load[at(i)];
+  for (int i = 0; i < n; ++i)
+    if (fixed[at(i)]) {
+      a.middleRows(3 * i, 3).setZero();
+      a.middleCols(3 * i, 3).setZero();
+      a.block<3, 3>(3 * i, 3 * i).setIdentity();
+      b.segment<3>(3 * i).setZero();
+    }
+  return a.ldlt().solve(b);
+}
+
+double relative_error(std::span<const Vec3> x, const Eigen::VectorXd& exact) {
+  double error = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) error += (x[i] - exact.segment<3>(3 * static_cast<int>(i))).squaredNorm();
+  return std::sqrt(error) / exact.norm();
+}
+
+std::vector<PairTerm> contacts(const Sheet& sheet) {
+  std::vector<PairTerm> terms;
+  const int n = sheet.n * sheet.n;
+  for (int k = 0; k < 20; ++k) {
+    PairTerm t;  // a vertex of one end of the sheet against a triangle of the other: outside the pattern
+    t.vertex = {k, n - 2 - k, n - 3 - k, n - 2 - sheet.n - k};
+    t.weight = {1, -0.3f, -0.5f, -0.2f};
+    const Vec3f normal = Vec3f(float(noise(at(k), 1)), float(noise(at(k), 2)), 1).normalized();
+    t.stiffness = 500 * normal * normal.transpose();
+    terms.push_back(t);
+  }
+  return terms;
+}
+
+class Solves : public testing::TestWithParam<LinearSettings::Preconditioner> {};
+
+TEST_P(Solves, the_same_as_a_dense_factorisation_with_held_rows_and_contacts) {
+  const Sheet sheet(12);
+  std::vector<char> fixed(sheet.x.size(), 0);
+  fixed[0] = fixed[3] = fixed[40] = 1;
+  const auto terms = contacts(sheet);
+  LinearSystem system(sheet.pattern, sheet.rest, {.preconditioner = GetParam(), .tolerance = 1e-5, .max_iterations = 2000});
+  sheet.fill(system.begin());
+  system.add_pair_terms(terms);
+  std::vector<Vec3> x(sheet.x.size());
+  const LinearReport report = system.solve(sheet.load(), fixed, x);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LT(relative_error(x, dense_solution(sheet, terms, fixed)), 2e-3);
+  EXPECT_EQ(x[40], Vec3(0, 0, 0));
+}
+
+TEST_P(Solves, reports_failure_and_stays_finite_on_an_indefinite_or_broken_matrix) {
+  const Sheet sheet(12);
+  const std::vector<char> fixed(sheet.x.size(), 0);
+  for (const float poison : {-1e5f, std::numeric_limits<float>::quiet_NaN()}) {
+    LinearSystem system(sheet.pattern, sheet.rest, {.preconditioner = GetParam(), .tolerance = 1e-6});
+    BlockMatrix& m = system.begin();
+    sheet.fill(m);
+    for (std::size_t i = 0; i < sheet.x.size(); i += 3) m.blocks[at(sheet.pattern.diagonal[i])].diagonal().array() += poison;
+    system.add_pair_terms({});
+    std::vector<Vec3> x(sheet.x.size());
+    const LinearReport report = system.solve(sheet.load(), fixed, x);
+    EXPECT_FALSE(report.converged);
+    EXPECT_TRUE(all_finite(x));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, Solves,
+                         testing::Values(LinearSettings::Preconditioner::k_block_jacobi, LinearSettings::Preconditioner::k_multigrid));
+
+TEST(LinearSystem, needs_about_as_many_multigrid_iterations_for_a_fine_sheet_as_for_a_coarse_one) {
+  int iterations[2] = {};
+  for (const int which : {0, 1}) {
+    const Sheet sheet(which == 0 ? 25 : 100);
+    const std::vector<char> fixed(sheet.x.size(), 0);
+    LinearSystem system(sheet.pattern, sheet.rest, {.tolerance = 1e-3});
+    sheet.fill(system.begin());
+    system.add_pair_terms({});
+    std::vector<Vec3> x(sheet.x.size());
+    const LinearReport report = system.solve(sheet.load(), fixed, x);
+    EXPECT_TRUE(report.converged);
+    iterations[which] = report.iterations;
+  }
+  EXPECT_LE(iterations[1], 2 * iterations[0] + 4) << iterations[0];
+  EXPECT_LT(iterations[1], 40);
+}
+
+TEST(LinearSystem, gives_the_same_bits_for_any_number_of_threads) {
+  const Sheet sheet(60);
+  const std::vector<char> fixed(sheet.x.size(), 0);
+  const auto terms = contacts(sheet);
+  std::vector<Vec3> first;
+  for (const int threads : {1, 2, 3, 8}) {
+    const ThreadLimit limit(threads);
+    LinearSystem system(sheet.pattern, sheet.rest, {.tolerance = 1e-3});
+    sheet.fill(system.begin());
+    system.add_pair_terms(terms);
+    std::vector<Vec3> x(sheet.x.size());
+    system.solve(sheet.load(), fixed, x);
+    if (first.empty()) first = x;
+    EXPECT_EQ(first, x) << threads;
+  }
+}
+
+TEST(LinearSystem, solves_loose_vertices_and_separate_pieces) {
+  std::vector<std::array<int, 4>> springs;
+  for (int i = 0; i < 199; ++i)
+    if (i != 99) springs.push_back({i, i + 1, -1, -1});
+  const BlockPattern pattern = make_pattern(400, std::array{springs});  // two ropes and 200 loose vertices
+  std::vector<Vec3> rest;
+  for (int i = 0; i < 400; ++i) rest.emplace_back(0.01 * i, 0, 0);
+  LinearSystem system(pattern, rest, {.tolerance = 1e-6});
+  BlockMatrix& m = system.begin();
+  for (std::size_t i = 0; i < 400; ++i) m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity();
+  for (const auto& s : springs)
+    for (const int a : {0, 1})
+      for (const int b : {0, 1}) m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += Mat3f::Identity() * (a == b ? 50.f : -50.f);
+  system.add_pair_terms({});
+  std::vector<Vec3> x(400);
+  const LinearReport report = system.solve(std::vector<Vec3>(400, Vec3(1, 2, 3)), std::vector<char>(400, 0), x);
+  EXPECT_TRUE(report.converged);
+  for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-4);
+}
+
+TEST(Interpolation, sums_to_one_and_nearly_reproduces_linear_fields) {
+  const Sheet sheet(40);
+  const Interpolation p = make_interpolation(sheet.pattern, sheet.rest);
+  EXPECT_LT(p.coarse_count(), 40 * 40 / 3);
+  double squared = 0;
+  for (std::size_t i = 0; i < sheet.rest.size(); ++i) {
+    Vec3 x = Vec3::Zero();
+    float sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (p.rows[i].coarse[k] < 0) continue;
+      x += double(p.rows[i].weight[k]) * sheet.rest[at(p.coarse_to_fine[at(p.rows[i].coarse[k])])];
+      sum += p.rows[i].weight[k];
+      EXPECT_GE(p.rows[i].weight[k], 0);
+    }
+    EXPECT_NEAR(sum, 1, 1e-6);
+    squared += (x - sheet.rest[i]).squaredNorm();
+  }
+  const double cell = 1.0 / 40;
+  EXPECT_LT(std::sqrt(squared / double(sheet.rest.size())), 0.25 * cell);
+}
+
+}  // namespace
+}  // namespace ft
