@@ -1,0 +1,217 @@
+// Judges a garment before it is simulated: for the artist, all faults in one message, with counts and the first places.
+// Caution: two vertices at one place start in contact with themselves and are never equal for a solver; so are seams that
+// were modelled as separate borders. They are refused rather than joined silently, because joining changes the vertex count.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "io/shot/mesh_file.h"
+
+namespace ft {
+namespace {
+
+/// Twice the area of a triangle over its longest edge squared; below it the rest shape cannot be inverted in double precision
+/// without losing more than ten digits.
+constexpr double k_flat_triangle = 1e-10;
+/// Vertices nearer than this fraction of the bounding diagonal are at one place: the sixth decimal of a file in metres.
+constexpr double k_same_place = 1e-7;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// "3 faces (12, 15, 99)", "1 face (12)", "90 faces (1, 2, 3, ...)".
+std::string places(std::size_t count, std::string_view singular, std::string_view plural, const std::vector<std::string>& first) {
+  std::string out = std::to_string(count) + " " + std::string(count == 1 ? singular : plural) + " (";
+  for (std::size_t i = 0; i < first.size(); ++i) out += (i > 0 ? ", " : "") + first[i];
+  return out + (count > first.size() ? ", ...)" : ")");
+}
+
+/// Counts places of one kind and keeps the first few.
+struct Finding {
+  std::size_t count = 0;
+  std::vector<std::string> first;
+  void add(std::string place) {
+    if (++count <= 5) first.push_back(std::move(place));
+  }
+};
+
+struct HalfEdge {
+  Edge edge;
+  int face = 0;
+  bool forward = true;  ///< runs from the smaller to the larger vertex
+};
+
+std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
+  std::vector<HalfEdge> out;
+  out.reserve(mesh.face_vertices.size());
+  std::size_t begin = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const std::size_t size = at(mesh.face_sizes[at(f)]);
+    for (std::size_t k = 0; k < size; ++k) {
+      const int a = mesh.face_vertices[begin + k], b = mesh.face_vertices[begin + (k + 1) % size];
+      if (a != b) out.push_back({{std::min(a, b), std::max(a, b)}, f, a < b});
+    }
+    begin += size;
+  }
+  std::sort(out.begin(), out.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.face < b.face;
+  });
+  return out;
+}
+
+/// False when sizes or indices do not fit together: nothing else can be judged then.
+bool well_formed(const Mesh& mesh) {
+  std::size_t corners = 0;
+  for (const int size : mesh.face_sizes) {
+    if (size < 3) return false;
+    corners += at(size);
+  }
+  return corners == mesh.face_vertices.size() && std::all_of(mesh.face_vertices.begin(), mesh.face_vertices.end(),
+                                                             [&](int v) { return v >= 0 && v < mesh.vertex_count(); });
+}
+
+void judge_numbers(const Mesh& mesh, GarmentFindings& out) {
+  Finding bad;
+  for (int i = 0; i < mesh.vertex_count(); ++i)
+    if (!mesh.positions[at(i)].allFinite()) bad.add(std::to_string(i + 1));
+  if (bad.count > 0) out.faults.push_back(places(bad.count, "vertex is", "vertices are", bad.first) + " not a finite point");
+}
+
+void judge_faces(const Mesh& mesh, GarmentFindings& out) {
+  Finding repeated, flat;
+  std::size_t begin = 0;
+  Mesh one;
+  one.positions = mesh.positions;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto first = mesh.face_vertices.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::vector<int> corners(first, first + mesh.face_sizes[at(f)]);
+    begin += corners.size();
+    one.face_sizes.assign(1, static_cast<int>(corners.size()));
+    one.face_vertices = corners;
+    std::sort(corners.begin(), corners.end());
+    if (std::adjacent_find(corners.begin(), corners.end()) != corners.end()) {
+      repeated.add(std::to_string(f + 1));
+      continue;
+    }
+    for (const Triangle& t : triangulate(one)) {
+      const Vec3 &a = mesh.positions[at(t[0])], &b = mesh.positions[at(t[1])], &c = mesh.positions[at(t[2])];
+      const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+      if (!(2 * triangle_area(a, b, c) > k_flat_triangle * longest)) {
+        flat.add(std::to_string(f + 1));
+        break;
+      }
+    }
+  }
+  if (repeated.count > 0) out.faults.push_back(places(repeated.count, "face uses", "faces use", repeated.first) + " a vertex twice");
+  if (flat.count > 0) out.faults.push_back(places(flat.count, "face has", "faces have", flat.first) + " no area");
+}
+
+void judge_edges(const Mesh& mesh, GarmentFindings& out) {
+  const auto half_edges = sorted_half_edges(mesh);
+  Finding crowded, mixed;
+  for (std::size_t i = 0, end = 0; i < half_edges.size(); i = end) {
+    end = i + 1;
+    while (end < half_edges.size() && half_edges[end].edge == half_edges[i].edge) ++end;
+    const std::string name = std::to_string(half_edges[i].edge[0] + 1) + "-" + std::to_string(half_edges[i].edge[1] + 1);
+    if (end - i > 2) crowded.add(name);
+    else if (end - i == 2 && half_edges[i].forward == half_edges[i + 1].forward) mixed.add(name);
+  }
+  if (crowded.count > 0)
+    out.faults.push_back(places(crowded.count, "edge has", "edges have", crowded.first) + " more than two faces (non-manifold)");
+  if (mixed.count > 0)
+    out.notes.push_back(places(mixed.count, "edge lies", "edges lie", mixed.first) + " between faces of opposite winding; normals point both ways");
+}
+
+void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
+  std::vector<char> used(mesh.positions.size(), 0);
+  for (const int v : mesh.face_vertices) used[at(v)] = 1;
+  Finding isolated, coincident;
+  std::vector<int> order;
+  Box box;
+  for (int i = 0; i < mesh.vertex_count(); ++i) {
+    if (!used[at(i)]) {
+      isolated.add(std::to_string(i + 1));
+      continue;
+    }
+    order.push_back(i);
+    box.include(mesh.positions[at(i)]);
+  }
+  if (isolated.count > 0)
+    out.notes.push_back(places(isolated.count, "vertex belongs", "vertices belong", isolated.first) + " to no face; carried along rigidly");
+
+  // Sweep along the longest side of the box; of vertices at one place, each is counted once, against the first.
+  const double near = k_same_place * box.size().norm();
+  int axis = 0;
+  box.size().maxCoeff(&axis);
+  const auto& x = mesh.positions;
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return x[at(a)][axis] != x[at(b)][axis] ? x[at(a)][axis] < x[at(b)][axis] : a < b;
+  });
+  std::vector<std::pair<int, int>> twins;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t j = i + 1; j < order.size() && x[at(order[j])][axis] - x[at(order[i])][axis] <= near; ++j)
+      if ((x[at(order[j])] - x[at(order[i])]).squaredNorm() <= near * near)
+        twins.emplace_back(std::max(order[i], order[j]), std::min(order[i], order[j]));
+  std::sort(twins.begin(), twins.end());
+  int last = -1;
+  for (const auto& [later, earlier] : twins) {
+    if (later == last) continue;
+    last = later;
+    coincident.add(std::to_string(later + 1) + " on " + std::to_string(earlier + 1));
+  }
+  if (coincident.count > 0)
+    out.faults.push_back(places(coincident.count, "vertex lies", "vertices lie", coincident.first) +
+                         " exactly on another (merge them by distance in the modelling tool, or set weld for this cloth)");
+}
+
+/// Connected pieces: a garment that falls apart into several is legal, but good to know of.
+void count_pieces(const Mesh& mesh, GarmentFindings& out) {
+  std::vector<int> root(mesh.positions.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int v) {
+    while (root[at(v)] != v) v = root[at(v)] = root[at(root[at(v)])];
+    return v;
+  };
+  std::size_t begin = 0;
+  for (const int size : mesh.face_sizes) {
+    for (int k = 1; k < size; ++k) {
+      const int a = find(mesh.face_vertices[begin]), b = find(mesh.face_vertices[begin + at(k)]);
+      if (a != b) root[at(std::max(a, b))] = std::min(a, b);
+    }
+    begin += at(size);
+  }
+  std::vector<char> is_piece(mesh.positions.size(), 0);
+  for (const int v : mesh.face_vertices) is_piece[at(find(v))] = 1;
+  const auto pieces = std::count(is_piece.begin(), is_piece.end(), 1);
+  if (pieces > 1) out.notes.push_back("falls into " + std::to_string(pieces) + " pieces that are not joined");
+}
+
+}  // namespace
+
+GarmentFindings inspect_garment(const Mesh& mesh) {
+  GarmentFindings out;
+  if (mesh.positions.empty() || mesh.face_sizes.empty()) {
+    out.faults.push_back(mesh.positions.empty() ? "has no vertices" : "has no faces");
+    return out;
+  }
+  if (!well_formed(mesh)) {
+    out.faults.push_back("has faces that name vertices which do not exist");
+    return out;
+  }
+  judge_numbers(mesh, out);
+  if (!out.faults.empty()) return out;
+  judge_faces(mesh, out);
+  judge_edges(mesh, out);
+  judge_vertices(mesh, out);
+  count_pieces(mesh, out);
+  return out;
+}
+
+Status check_garment(const Mesh& mesh) {
+  const GarmentFindings findings = inspect_garment(mesh);
+  if (findings.faults.empty()) return {};
+  std::string what = "cannot be simulated: ";
+  for (std::size_t i = 0; i < findings.faults.size(); ++i) what += (i > 0 ? "; " : "") + findings.faults[i];
+  return input_error(what, mesh.name.empty() ? "mesh" : "mesh \"" + mesh.name + "\"");
+}
+
+}  // namespace ft

@@ -1,0 +1,288 @@
+// OBJ reader (Wavefront's "Advanced Visualizer" appendix B1): v, vt, f, g, o; the rest is skipped. One pass over the text,
+// numbers by std::from_chars. Caution: faces may name vertices that come later, so indices are judged at the end.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <unordered_map>
+
+#include "baker/core/file.h"
+#include "io/shot/mesh_file.h"
+
+namespace ft {
+namespace {
+
+constexpr std::uint64_t k_max_obj_bytes = std::uint64_t{1} << 30;
+constexpr std::size_t k_shown_faults = 5;  ///< messages printed in full; the rest is counted
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+/// Cuts the next word off the front of `line`; empty at the end.
+std::string_view next_word(std::string_view& line) {
+  std::size_t begin = 0;
+  while (begin < line.size() && is_blank(line[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < line.size() && !is_blank(line[end])) ++end;
+  const std::string_view word = line.substr(begin, end - begin);
+  line.remove_prefix(end);
+  return word;
+}
+
+bool parse_number(std::string_view word, double& out) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), out);
+  if (end != word.data() + word.size() || word.empty()) return false;
+  // Too small or too large for a double: strtod tells which (0 or infinity).
+  if (fault == std::errc::result_out_of_range) out = std::strtod(std::string(word).c_str(), nullptr);
+  return fault == std::errc{} || fault == std::errc::result_out_of_range;
+}
+
+bool parse_index(std::string_view word, long long& out) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), out);
+  return !word.empty() && fault == std::errc{} && end == word.data() + word.size();
+}
+
+class ObjParser {
+ public:
+  explicit ObjParser(std::string_view where) : where_(where) {}
+
+  void parse(std::string_view text) {
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    std::string joined;
+    while (!text.empty()) {
+      ++line_number_;
+      std::string_view line = cut_line(text);
+      if (continues(line)) {
+        const int first = line_number_;
+        joined.clear();
+        while (continues(line)) {
+          joined.append(line.substr(0, line.find_last_of('\\')));
+          joined.push_back(' ');
+          line = {};
+          if (text.empty()) break;
+          line = cut_line(text);
+          ++continued_;
+        }
+        joined.append(line);
+        parse_line(joined);
+        line_number_ = first + continued_;
+        continued_ = 0;
+      } else {
+        parse_line(line);
+      }
+    }
+  }
+
+  Result<Mesh> finish() {
+    if (fault_count_ == 0 && mesh_.positions.empty())
+      return input_error("holds no vertices; is it an OBJ file?", std::string(where_), "garment meshes are Wavefront OBJ");
+    judge_indices();
+    if (fault_count_ > 0) return collected_faults();
+    if (uv_corner_count_ != mesh_.face_vertices.size() || mesh_.face_vertices.empty()) {
+      mesh_.uvs.clear();
+      mesh_.face_uvs.clear();
+    }
+    finish_groups();
+    return std::move(mesh_);
+  }
+
+ private:
+  struct FaceGroup {
+    std::string name;
+    std::vector<int> vertices;
+  };
+
+  static std::string_view cut_line(std::string_view& text) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    return line;
+  }
+
+  static bool continues(std::string_view line) {
+    while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+    return line.ends_with('\\');
+  }
+
+  void fault(std::string what) {
+    if (++fault_count_ <= k_shown_faults) faults_.push_back(std::to_string(line_number_) + ": " + std::move(what));
+  }
+
+  void parse_line(std::string_view line) {
+    const std::string_view key = next_word(line);
+    if (key == "v") parse_vertex(line);
+    else if (key == "f") parse_face(line);
+    else if (key == "vt") parse_uv(line);
+    else if (key == "g") parse_names(line, group_names_);
+    else if (key == "o") parse_names(line, object_names_);
+  }
+
+  /// Up to 7 finite numbers of a line (a comment ends it); -1 after a fault.
+  int parse_numbers(std::string_view line, double (&values)[8], const char* kind) {
+    int count = 0;
+    for (auto word = next_word(line); !word.empty() && word.front() != '#' && count < 8; word = next_word(line)) {
+      double& value = values[count++];
+      if (!parse_number(word, value)) return fault(std::string(kind) + " has \"" + shown(word) + "\" for a number" + comma(word)), -1;
+      if (!std::isfinite(value)) return fault(std::string(kind) + " has the value " + shown(word) + ", which is not finite"), -1;
+    }
+    return count;
+  }
+
+  static std::string shown(std::string_view word) {
+    std::string out;
+    for (const char c : word.substr(0, 24)) out.push_back(c >= 32 && c < 127 ? c : '?');
+    return word.size() > 24 ? out + "..." : out;
+  }
+  static std::string comma(std::string_view word) {
+    return word.find(',') != std::string_view::npos ? " (decimal comma? OBJ uses points)" : "";
+  }
+
+  void parse_vertex(std::string_view line) {
+    double x[8] = {};
+    const int count = parse_numbers(line, x, "vertex");
+    if (count >= 0 && count < 3) fault("vertex has " + std::to_string(count) + " coordinates, three are needed");
+    mesh_.positions.emplace_back(x[0], x[1], x[2]);  // a faulty one keeps its number, so that later faults are not made up
+    if (count == 6 || count == 7) {
+      const int first = count == 6 ? 3 : 4;
+      colours_.resize(mesh_.positions.size() - 1, Vec3::Zero());
+      colours_.emplace_back(x[first], x[first + 1], x[first + 2]);
+    }
+  }
+
+  void parse_uv(std::string_view line) {
+    double x[8] = {};
+    if (parse_numbers(line, x, "texture vertex") == 0) fault("texture vertex has no coordinates");
+    mesh_.uvs.emplace_back(x[0], x[1]);
+  }
+
+  /// Index of `word` from 0; negative ones count back from the last element so far. -1 after a fault.
+  int resolve(std::string_view word, std::size_t count_so_far, const char* kind) {
+    long long index = 0;
+    if (!parse_index(word, index)) return fault("face has \"" + shown(word) + "\" for a " + kind), -1;
+    const long long resolved = index > 0 ? index - 1 : static_cast<long long>(count_so_far) + index;
+    if (index == 0) return fault(std::string("face names ") + kind + " 0; they count from 1"), -1;
+    if (resolved < 0 || resolved >= std::numeric_limits<int>::max())
+      return fault(std::string("face names ") + kind + " " + shown(word) + ", which does not exist"), -1;
+    return static_cast<int>(resolved);
+  }
+
+  void parse_face(std::string_view line) {
+    const std::size_t begin = mesh_.face_vertices.size(), uv_begin = mesh_.face_uvs.size();
+    bool good = true;
+    for (auto word = next_word(line); !word.empty() && word.front() != '#'; word = next_word(line)) {
+      const std::size_t slash = word.find('/');
+      const int vertex = resolve(word.substr(0, slash), mesh_.positions.size(), "vertex");
+      int uv = -1;
+      if (slash != std::string_view::npos) {
+        const std::string_view rest = word.substr(slash + 1);
+        const std::string_view uv_word = rest.substr(0, rest.find('/'));
+        if (!uv_word.empty()) uv = resolve(uv_word, mesh_.uvs.size(), "texture vertex"), good = good && uv >= 0;
+      }
+      good = good && vertex >= 0;
+      mesh_.face_vertices.push_back(vertex);
+      mesh_.face_uvs.push_back(uv);
+    }
+    const std::size_t size = mesh_.face_vertices.size() - begin;
+    if (good && size < 3) fault("face has " + std::to_string(size) + " corners, three are needed"), good = false;
+    if (!good) {
+      mesh_.face_vertices.resize(begin);
+      mesh_.face_uvs.resize(uv_begin);
+      return;
+    }
+    for (std::size_t k = uv_begin; k < mesh_.face_uvs.size(); ++k) uv_corner_count_ += mesh_.face_uvs[k] >= 0 ? 1 : 0;
+    mesh_.face_sizes.push_back(static_cast<int>(size));
+    face_lines_.push_back(line_number_);
+    for (const auto* names : {&group_names_, &object_names_})
+      for (const std::size_t group : *names) {
+        auto& vertices = groups_[group].vertices;
+        vertices.insert(vertices.end(), mesh_.face_vertices.begin() + static_cast<std::ptrdiff_t>(begin), mesh_.face_vertices.end());
+      }
+  }
+
+  void parse_names(std::string_view line, std::vector<std::size_t>& current) {
+    current.clear();
+    for (auto word = next_word(line); !word.empty() && word.front() != '#'; word = next_word(line)) {
+      const auto [place, added] = group_of_name_.try_emplace(std::string(word), groups_.size());
+      if (added) groups_.push_back({std::string(word), {}});
+      if (std::find(current.begin(), current.end(), place->second) == current.end()) current.push_back(place->second);
+    }
+  }
+
+  void judge_indices() {
+    const int vertex_count = mesh_.vertex_count(), uv_count = static_cast<int>(mesh_.uvs.size());
+    std::size_t corner = 0;
+    for (std::size_t f = 0; f < mesh_.face_sizes.size(); ++f)
+      for (int k = 0; k < mesh_.face_sizes[f]; ++k, ++corner) {
+        line_number_ = face_lines_[f];
+        const int v = mesh_.face_vertices[corner], uv = mesh_.face_uvs[corner];
+        if (v >= vertex_count) fault("face names vertex " + std::to_string(v + 1) + ", the file has " + std::to_string(vertex_count));
+        if (uv >= uv_count) fault("face names texture vertex " + std::to_string(uv + 1) + ", the file has " + std::to_string(uv_count));
+      }
+  }
+
+  Error collected_faults() const {
+    std::string what = faults_.front();
+    for (std::size_t i = 1; i < faults_.size(); ++i) what.append("\n").append(where_).append(":").append(faults_[i]);
+    if (fault_count_ > faults_.size()) what.append("\nand ").append(std::to_string(fault_count_ - faults_.size())).append(" more");
+    // The line number belongs to the place: "dress.obj:12" "face has ...".
+    const std::size_t colon = what.find(": ");
+    return input_error(what.substr(colon + 2), std::string(where_).append(":").append(what, 0, colon),
+                       "the file may be cut or damaged; export it again");
+  }
+
+  void finish_groups() {
+    for (FaceGroup& group : groups_) {
+      auto& v = group.vertices;
+      std::sort(v.begin(), v.end());
+      v.erase(std::unique(v.begin(), v.end()), v.end());
+      if (v.empty()) continue;
+      mesh_.groups.push_back({std::move(group.name), std::move(v), {}});
+      mesh_.groups.back().weights.assign(mesh_.groups.back().vertices.size(), 1.0);
+    }
+    if (colours_.empty()) return;
+    const char* names[3] = {"red", "green", "blue"};
+    for (int channel = 0; channel < 3; ++channel) {
+      VertexGroup group{names[channel], {}, {}};
+      for (std::size_t i = 0; i < colours_.size(); ++i) {
+        const double weight = std::clamp(colours_[i][channel], 0.0, 1.0);
+        if (weight > 0) group.vertices.push_back(static_cast<int>(i)), group.weights.push_back(weight);
+      }
+      const bool taken = group_of_name_.contains(names[channel]);  // a face group of that name wins
+      if (!group.vertices.empty() && !taken) mesh_.groups.push_back(std::move(group));
+    }
+  }
+
+  std::string_view where_;
+  Mesh mesh_;
+  int line_number_ = 0, continued_ = 0;
+  std::size_t uv_corner_count_ = 0, fault_count_ = 0;
+  std::vector<std::string> faults_;
+  std::vector<int> face_lines_;
+  std::vector<Vec3> colours_;
+  std::vector<FaceGroup> groups_;
+  std::unordered_map<std::string, std::size_t> group_of_name_;  ///< looked up only, never walked
+  std::vector<std::size_t> group_names_, object_names_;         ///< in force now
+};
+
+}  // namespace
+
+Result<Mesh> parse_obj(std::string_view text, std::string_view where) {
+  // Every element costs at least four bytes of text; beyond this an int could overflow.
+  if (text.size() > k_max_obj_bytes) return input_error("is larger than 1 GiB", std::string(where));
+  ObjParser parser(where);
+  parser.parse(text);
+  return parser.finish();
+}
+
+Result<Mesh> read_obj(const std::filesystem::path& path) {
+  const auto data = read_file(path, k_max_obj_bytes);
+  if (!data) return data.error();
+  const std::string_view text(reinterpret_cast<const char*>(data->data()), data->size());
+  auto mesh = parse_obj(text, path.string());
+  if (mesh) mesh->name = path.stem().string();
+  return mesh;
+}
+
+}  // namespace ft
