@@ -1,12 +1,19 @@
 // Closest points of a vertex-face or an edge-edge pair, in double, with a stated answer for degenerate features
 // (Ericson 2005, chapter 5). The offset vector is p_first - p_second = sum weight[i] * x[i].
+//
+// Degenerate features: a face without area is its three edges, an edge without length is a point; parallel edges answer with
+// a closest pair that has an end point in it. Caution: closeness decides between candidates, so the answer is never farther
+// than a true closest pair by more than rounding, but which of several equally close pairs is given is not specified.
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "baker/core/types.h"
 
 namespace ft {
+
+enum class PairKind { k_vertex_face, k_edge_edge };
 
 struct PairGeometry {
   double distance = 0;                 ///< m
@@ -17,5 +24,24 @@ struct PairGeometry {
 
 PairGeometry vertex_face_geometry(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 PairGeometry edge_edge_geometry(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1);
+
+/// Either of the two, on the vertices of a stencil.
+inline PairGeometry pair_geometry(PairKind kind, const std::array<Vec3, 4>& x) {
+  return kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
+                                         : edge_edge_geometry(x[0], x[1], x[2], x[3]);
+}
+
+/// How many of the four vertices belong to the first feature.
+constexpr int first_feature_size(PairKind kind) { return kind == PairKind::k_vertex_face ? 1 : 2; }
+
+/// Width of the slab across geometry.normal that has the first feature on one side and the second on the other [m]; negative
+/// when there is none. A lower bound of the true distance for any normal, so it is proof where the closest points are only
+/// an answer (slivers).
+double separation(PairKind kind, const std::array<Vec3, 4>& x, const PairGeometry& geometry);
+
+/// True when all vertices really lie on their sides, at least floor [m] apart.
+inline bool separates(PairKind kind, const std::array<Vec3, 4>& x, const PairGeometry& geometry, double floor) {
+  return separation(kind, x, geometry) >= floor;
+}
 
 }  // namespace ft
