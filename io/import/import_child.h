@@ -1,0 +1,16 @@
+// The parent's side of the import: a child process of this very program reads the file under limits on CPU time, memory and
+// wall-clock time, and hands over a Character. However the child ends, the parent gets a Character or one clear Error.
+#pragma once
+
+#include <filesystem>
+
+#include "io/import/character.h"
+#include "io/import/import.h"
+
+namespace ft {
+
+/// Runs `/proc/self/exe --import-child file result` and checks what comes back. The program's main() must call
+/// import_child_main() first.
+Result<Character> import_in_child(const std::filesystem::path& file, const ImportLimits& limits);
+
+}  // namespace ft
