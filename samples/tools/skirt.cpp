@@ -1,0 +1,121 @@
+#include "samples/tools/skirt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ft::garments {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr int k_directions = 360;
+
+Vec2 direction(int k) {
+  const double angle = 2 * std::numbers::pi * k / k_directions;
+  return Vec2(std::cos(angle), std::sin(angle));
+}
+
+/// Radius in every direction of the body between two heights, with clearance all around it.
+std::vector<double> profile(const BodyShape& shape, double from, double to, double clearance) {
+  std::vector<Vec2> points;
+  for (const Slice& slice : shape.slices) {
+    if (slice.height < from - shape.spacing || slice.height > to + shape.spacing) continue;
+    for (const Vec2& p : slice.outline)
+      for (int k = 0; k < 16; ++k) points.push_back(p + clearance * direction(k * k_directions / 16));
+  }
+  const std::vector<Vec2> hull = convex_hull(std::move(points));
+  std::vector<double> radius(at(k_directions), 0.0);
+  if (hull.size() >= 3)
+    for (int k = 0; k < k_directions; ++k) radius[at(k)] = hull_distance(hull, shape.waist_centre, direction(k));
+  return radius;
+}
+
+/// Averages over +-3 degrees, but never goes below: corners of the hull do not show in the cloth.
+void round_off(std::vector<double>& radius) {
+  std::vector<double> smooth(radius.size());
+  for (int k = 0; k < k_directions; ++k) {
+    double sum = 0;
+    for (int j = -3; j <= 3; ++j) sum += radius[at((k + j + k_directions) % k_directions)];
+    smooth[at(k)] = std::max(radius[at(k)], sum / 7);
+  }
+  radius = std::move(smooth);
+}
+
+/// Points that share the closed curve's length equally, beginning in direction 0.
+std::vector<Vec2> share_equally(const std::vector<double>& radius, const Vec2& centre, int count) {
+  std::vector<double> length(at(k_directions + 1), 0.0);
+  const auto point = [&](int k) { return (centre + radius[at(k % k_directions)] * direction(k)).eval(); };
+  for (int k = 0; k < k_directions; ++k) length[at(k + 1)] = length[at(k)] + (point(k + 1) - point(k)).norm();
+  std::vector<Vec2> points;
+  int k = 0;
+  for (int j = 0; j < count; ++j) {
+    const double wanted = length.back() * j / count;
+    while (length[at(k + 1)] < wanted) ++k;
+    const double s = (wanted - length[at(k)]) / (length[at(k + 1)] - length[at(k)]);
+    points.push_back((1 - s) * point(k) + s * point(k + 1));
+  }
+  return points;
+}
+
+}  // namespace
+
+Mesh make_skirt(const BodyShape& shape, const SkirtSettings& settings) {
+  const double body_height = shape.bounds.size().y();
+  const double length = settings.length > 0 ? settings.length : shape.waist - shape.bounds.lo.y() - 0.30 * body_height;
+  // Fine levels from waist to hem; the rings are chosen among them afterwards.
+  const int level_count = std::max(2, static_cast<int>(std::ceil(length / 4e-3)));
+  std::vector<std::vector<double>> levels;
+  std::vector<double> meridian{0.0};  // mean arc length down to each level
+  for (int level = 0; level <= level_count; ++level) {
+    const double share = static_cast<double>(level) / level_count, y = shape.waist - length * share;
+    std::vector<double> radius = profile(shape, y - 8e-3, y + 8e-3, settings.clearance);
+    round_off(radius);
+    if (level > 0) {
+      double sum = 0;
+      for (int k = 0; k < k_directions; ++k) {
+        const double above = levels.back()[at(k)], waist = levels.front()[at(k)];
+        // Below the widest of the hips the body no longer counts: only the flare goes on.
+        radius[at(k)] = std::max({radius[at(k)], above, waist + settings.flare * share});
+        sum += std::hypot(radius[at(k)] - above, length / level_count);
+      }
+      meridian.push_back(meridian.back() + sum / k_directions);
+    }
+    levels.push_back(std::move(radius));
+  }
+
+  Mesh mesh;
+  mesh.name = "skirt";
+  for (int ring = 0; ring < settings.rings; ++ring) {
+    const double wanted = meridian.back() * ring / (settings.rings - 1);
+    int level = 0;
+    while (level + 1 < level_count && meridian[at(level + 1)] < wanted) ++level;
+    const double s = std::clamp((wanted - meridian[at(level)]) / (meridian[at(level + 1)] - meridian[at(level)]), 0.0, 1.0);
+    std::vector<double> radius(at(k_directions));
+    for (int k = 0; k < k_directions; ++k) radius[at(k)] = (1 - s) * levels[at(level)][at(k)] + s * levels[at(level + 1)][at(k)];
+    const double y = shape.waist - length * (level + s) / level_count;
+    double around = 0;
+    const std::vector<Vec2> points = share_equally(radius, shape.waist_centre, settings.segments);
+    for (int k = 0; k <= settings.segments; ++k) {
+      const Vec2& p = points[at(k % settings.segments)];
+      if (k > 0) around += (p - points[at(k - 1)]).norm();
+      if (k < settings.segments) mesh.positions.emplace_back(p.x(), y, p.y());
+      mesh.uvs.emplace_back(-around, meridian.back() - wanted);
+    }
+  }
+  // The ring runs from x to z, so ring direction times downwards points outwards: corners go on, then down.
+  const int n = settings.segments;
+  VertexGroup waist{"waist", {}, {}};
+  for (int v = 0; v < 2 * n; ++v) waist.vertices.push_back(v), waist.weights.push_back(1);
+  for (int ring = 0; ring + 1 < settings.rings; ++ring)
+    for (int k = 0; k < n; ++k) {
+      const int next = (k + 1) % n, a = ring * n, b = a + n, ua = ring * (n + 1), ub = ua + n + 1;
+      mesh.face_sizes.push_back(4);
+      mesh.face_vertices.insert(mesh.face_vertices.end(), {a + k, a + next, b + next, b + k});
+      mesh.face_uvs.insert(mesh.face_uvs.end(), {ua + k, ua + k + 1, ub + k + 1, ub + k});
+    }
+  mesh.groups.push_back(std::move(waist));
+  return mesh;
+}
+
+}  // namespace ft::garments
