@@ -1,0 +1,23 @@
+// How deep points are inside a drawn surface: for garments that start inside the body, for reports and for judging a bake.
+// Inside is decided by the winding along three rays, the majority wins, so that a slightly open mesh (a missing cap, a
+// neck hole) still has an inside; depth is the distance to the nearest triangle, whichever part of the body that is.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/types.h"
+
+namespace ft {
+
+struct Penetration {
+  int vertex = -1;   ///< index into points
+  double depth = 0;  ///< distance to the surface [m]
+};
+
+/// Points inside by more than least_depth [m], by ascending vertex. Triangles counter-clockwise seen from outside.
+std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
+                                      std::span<const Triangle> triangles, double least_depth = 1e-5);
+
+}  // namespace ft
