@@ -19,13 +19,15 @@ namespace ft {
 
 struct CacheInfo {
   std::string system;     ///< name of the garment; object name in the cache
-  Mesh mesh;              ///< topology, uvs; file order
+  Mesh mesh;              ///< topology, uvs, rest positions; file order. Reader: positions of the first frame
   double fps = 24;
   int first_frame = 1;    ///< frame number of the first sample
+  int vertex_count = 0;   ///< reader: points per frame, known even where mesh is empty; writers take mesh.vertex_count()
   int frame_count = 0;    ///< writer: frames that will come; reader: frames there are
   std::vector<std::pair<std::string, std::string>> metadata;  ///< sorted by key; units, version, hash of the inputs
   bool has_topology = true;   ///< reader: false for formats that hold points only (PC2, MDD)
   bool has_velocity = false;  ///< reader
+  bool has_fps = true;        ///< reader: false where the format stores no frame rate (PC2); fps is then a guess
 };
 
 class CacheWriter {
@@ -42,7 +44,10 @@ class CacheReader {
  public:
   virtual ~CacheReader() = default;
   virtual const CacheInfo& info() const = 0;
+  /// index counts from 0; positions [m], all finite. An index outside [0, frame_count) is an error.
   virtual Status read_frame(int index, std::vector<Vec3f>& positions) = 0;
+  /// Velocities [m/s]; an error where info().has_velocity is false.
+  virtual Status read_velocities(int index, std::vector<Vec3f>& velocities);
 };
 
 struct CacheFormat {
@@ -53,6 +58,7 @@ struct CacheFormat {
   /// byte-identical to one written without interruption.
   std::function<Result<std::unique_ptr<CacheWriter>>(const std::filesystem::path&, const CacheInfo&, int keep_frames)> open_writer;
   std::function<Result<std::unique_ptr<CacheReader>>(const std::filesystem::path&)> open_reader;
+  std::string_view magic;  ///< first bytes of every file of the format
 };
 
 std::span<const CacheFormat> cache_formats();
