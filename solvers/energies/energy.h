@@ -20,13 +20,20 @@ struct StepContext {
   std::span<const Vec3> x_t0;       ///< positions at the start of the substep [m]
   std::span<const Vec3> v_t0;       ///< velocities at the start of the substep [m/s]
   double time = 0;                  ///< at the end of the substep [s]
+  /// The integrator's rate of any q: (q - a q_t0 + b q_tm1) / beta_h, with a - b = 1. Without x_tm1 (empty): (q - q_t0) / h.
+  std::span<const Vec3> x_tm1;      ///< positions one substep earlier [m]; may be empty
+  double a = 1, b = 0;
+
+  bool has_history() const { return !x_tm1.empty(); }
+  /// Seconds between q and what the rate subtracts from it.
+  double rate_time() const { return has_history() ? beta_h : h; }
 };
 
 class Energy {
  public:
   virtual ~Energy() = default;
   virtual std::string_view name() const = 0;
-  /// Vertices coupled by each element; builds the pattern.
+  /// Vertices coupled by each element; builds the pattern. -1 marks an unused slot.
   virtual std::vector<std::array<int, 4>> stencils() const = 0;
   /// Forgets the last step, takes over this one's context.
   virtual void begin_step(const StepContext&) {}

@@ -1,0 +1,102 @@
+#include "solvers/energies/air_drag.h"
+
+#include <cmath>
+
+#include "baker/core/check.h"
+#include "baker/core/parallel.h"
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t k_block = 512;
+
+}  // namespace
+
+AirDrag::AirDrag(const ClothTopology& topology, const AirSettings& air) : air_(air) {
+  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+    if (topology.rest_area[t] == 0) continue;
+    const Fabric& fabric = topology.fabric_of_triangle(t);
+    const double factor = 0.5 * air.density * topology.rest_area[t] / 3;
+    triangles_.push_back(topology.triangles[t]);
+    normal_factor_.push_back(factor * fabric.drag_normal);
+    tangential_factor_.push_back(factor * fabric.drag_tangential);
+    still_ = still_ && normal_factor_.back() == 0 && tangential_factor_.back() == 0;
+  }
+  around_ = vertex_triangles(topology.vertex_count, triangles_);
+}
+
+AirDrag::Panel AirDrag::panel(std::size_t triangle, const StepContext& context) const {
+  const Triangle& t = triangles_[triangle];
+  Vec3 corner[3], velocity = -air_.wind;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& v = context.v_t0[at(t[k])];
+    corner[k] = context.x_t0[at(t[k])] + context.h * v;
+    velocity += v / 3;
+  }
+  Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  const double length = normal.norm();
+  if (!(length > 1e-30)) return {};
+  normal /= length;
+  const Vec3 vn = normal * normal.dot(velocity), vt = velocity - vn;
+  const double dn = normal_factor_[triangle] * vn.norm(), dt = tangential_factor_[triangle] * vt.norm();
+  const Mat3 across = normal * normal.transpose();
+  Panel out;
+  out.damping = 2 * dn * across + 2 * dt * (Mat3::Identity() - across);
+  out.force = out.damping * air_.wind + dn * vn + dt * vt;  // -(D (v - w) - dn vn - dt vt) at v = 0
+  return out;
+}
+
+void AirDrag::begin_step(const StepContext& context) {
+  if (still_) return;
+  CHECK(context.v_t0.size() == context.x_t0.size());
+  rate_time_ = context.rate_time();
+  panels_.resize(triangles_.size());
+  parallel_for(triangles_.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) panels_[t] = panel(t, context);
+  });
+  const std::size_t n = context.x_t0.size();
+  vertices_.resize(n);
+  reference_.resize(n);
+  const bool history = context.has_history();
+  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Panel sum;
+      if (i + 1 < around_.start.size())
+        for (const int t : around_.row(static_cast<int>(i)))
+          sum.damping += panels_[at(t)].damping, sum.force += panels_[at(t)].force;
+      vertices_[i] = sum;
+      reference_[i] = history ? (context.a * context.x_t0[i] - context.b * context.x_tm1[i]).eval() : context.x_t0[i];
+    }
+  });
+}
+
+double AirDrag::value(std::span<const Vec3> x) const {
+  if (still_ || vertices_.empty()) return 0;
+  return parallel_sum(x.size(), k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 v = (x[i] - reference_[i]) / rate_time_;
+      sum += rate_time_ * v.dot(0.5 * (vertices_[i].damping * v) - vertices_[i].force);
+    }
+    return sum;
+  });
+}
+
+void AirDrag::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
+  if (still_ || vertices_.empty()) return;
+  parallel_for(x.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      gradient[i] += vertices_[i].damping * ((x[i] - reference_[i]) / rate_time_) - vertices_[i].force;
+  });
+}
+
+void AirDrag::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
+  if (still_ || vertices_.empty()) return;
+  parallel_for(x.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      hessian.blocks[at(hessian.pattern->diagonal[i])] += (vertices_[i].damping / rate_time_).cast<float>();
+  });
+}
+
+}  // namespace ft

@@ -1,0 +1,50 @@
+// Air drag of cloth panels, per area, relative to the wind:
+//   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: normal and tangential parts of the panel's velocity against the wind
+// A third of each panel moves with each of its corners. The normal and the speed are those expected at the end of the step, the law
+// is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0| v0, so that the potential is quadratic, stable for any wind
+// and step, and second order in time. Vacuum (density or coefficients 0) is exactly nothing.
+#pragma once
+
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "solvers/energies/cloth_topology.h"
+#include "solvers/energies/energy.h"
+
+namespace ft {
+
+struct AirSettings {
+  double density = 1.225;      ///< kg/m3; 0 vacuum, 1.225 air at sea level
+  Vec3 wind = Vec3::Zero();    ///< m/s
+};
+
+class AirDrag final : public Energy {
+ public:
+  AirDrag(const ClothTopology& topology, const AirSettings& air);
+  std::string_view name() const override { return "air_drag"; }
+  std::vector<std::array<int, 4>> stencils() const override { return {}; }
+  void begin_step(const StepContext& context) override;
+  double value(std::span<const Vec3> x) const override;
+  void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
+  void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
+
+ private:
+  /// A panel's damping matrix [kg/s] per corner and the force that its linearised law has at zero velocity [N] per corner.
+  struct Panel {
+    Mat3 damping = Mat3::Zero();
+    Vec3 force = Vec3::Zero();
+  };
+  Panel panel(std::size_t triangle, const StepContext& context) const;
+
+  AirSettings air_;
+  std::vector<Triangle> triangles_;
+  std::vector<double> normal_factor_, tangential_factor_;  ///< rho/2 C A / 3 of each triangle [kg/m]
+  Adjacency around_;                                       ///< vertex -> triangles
+  bool still_ = true;                                      ///< vacuum
+  // Of the step, per vertex: U = rate_time/2 v.D v - rate_time f.v with v = (x - reference) / rate_time.
+  std::vector<Panel> panels_, vertices_;
+  std::vector<Vec3> reference_;
+  double rate_time_ = 1;
+};
+
+}  // namespace ft

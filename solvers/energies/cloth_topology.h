@@ -1,0 +1,59 @@
+// The rest shape of a cloth system as the energies need it: triangles with material axes, hinges with rest angles, lumped masses.
+// Several garments share one numbering; each piece has its own fabric. Never changes after it is built.
+// Caution: uvs give only the direction of the yarns; lengths are those of the rest positions. Material axis 1 is weft (pattern u),
+// axis 2 is warp (pattern v).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "baker/core/types.h"
+#include "solvers/energies/fabric.h"
+
+namespace ft {
+
+/// A garment: a range of vertices of one fabric.
+struct ClothPiece {
+  int first_vertex = 0;
+  int vertex_count = 0;
+  Fabric fabric;
+};
+
+/// Two triangles at a common edge: (v0, v1, v2) and (v1, v0, v3) in the orientation of the first.
+struct Hinge {
+  std::array<int, 4> vertex{};
+  double rest_angle = 0;    ///< rad, -pi..pi, signed as hinge_angle() says
+  double stiffness = 0;     ///< N m: moment per radian of the whole hinge
+  double rest_area = 0;     ///< of both triangles [m2]
+  int piece = 0;
+};
+
+struct ClothTopology {
+  int vertex_count = 0;
+  std::vector<Vec3> rest;                        ///< m
+  std::vector<Triangle> triangles;
+  std::vector<int> triangle_piece;
+  std::vector<double> rest_area;                 ///< of each triangle [m2]; 0 where the triangle is degenerate and carries nothing
+  /// Inverse of the 2x2 matrix of rest edges (x1 - x0, x2 - x0) in material axes, row by row [1/m]; zero when degenerate.
+  std::vector<std::array<double, 4>> rest_inverse;
+  std::vector<Hinge> hinges;
+  std::vector<double> mass;                      ///< kg per vertex: a third of each triangle around it
+  std::vector<ClothPiece> pieces;
+
+  const Fabric& fabric_of_triangle(std::size_t t) const {
+    return pieces[static_cast<std::size_t>(triangle_piece[t])].fabric;
+  }
+};
+
+/// triangle_uvs: pattern coordinates of the three corners of each triangle, or empty. Without them (or where they are degenerate)
+/// warp is the rest shape's vertical, projected into the triangle; in flat-lying triangles, world z.
+/// Vertices of no piece get no mass; a triangle belongs to the piece of its first vertex.
+ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Triangle> triangles,
+                                  std::span<const ClothPiece> pieces,
+                                  std::span<const std::array<Vec2, 3>> triangle_uvs = {});
+
+/// Signed angle between the normals of (x0, x1, x2) and (x1, x0, x3), about x1 - x0 [rad]; 0 when flat or degenerate.
+double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
+
+}  // namespace ft

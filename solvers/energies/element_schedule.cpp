@@ -1,0 +1,72 @@
+#include "solvers/energies/element_schedule.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Spreads the lower 10 bits, two zeros between each.
+std::uint32_t spread(std::uint32_t v) {
+  v = (v | (v << 16)) & 0x030000FFu;
+  v = (v | (v << 8)) & 0x0300F00Fu;
+  v = (v | (v << 4)) & 0x030C30C3u;
+  return (v | (v << 2)) & 0x09249249u;
+}
+
+std::uint32_t morton(const Vec3& p, const Box& box) {
+  const double size = std::max(box.size().maxCoeff(), 1e-12);
+  const Vec3 q = ((p - box.lo) * (1023 / size)).cwiseMax(0.0).cwiseMin(1023.0);
+  return spread(static_cast<std::uint32_t>(q.x())) | spread(static_cast<std::uint32_t>(q.y())) << 1 |
+         spread(static_cast<std::uint32_t>(q.z())) << 2;
+}
+
+}  // namespace
+
+ElementSchedule make_element_schedule(std::span<const std::array<int, 4>> stencils, std::span<const Vec3> rest) {
+  ElementSchedule out;
+  const Box box = bounds(rest);
+  std::vector<std::pair<std::uint32_t, int>> keys(stencils.size());
+  for (std::size_t i = 0; i < stencils.size(); ++i) {
+    Vec3 centre = Vec3::Zero();
+    int corners = 0;
+    for (const int v : stencils[i])
+      if (v >= 0) centre += rest[at(v)], ++corners;
+    keys[i] = {morton(centre / std::max(corners, 1), box), static_cast<int>(i)};
+  }
+  std::sort(keys.begin(), keys.end());
+  const std::size_t groups = block_count(stencils.size(), k_lanes);
+  out.slot.assign(groups * k_lanes, -1);
+  for (std::size_t i = 0; i < keys.size(); ++i) out.slot[i] = keys[i].second;
+
+  // Greedy colours. A chunk that finds all 64 taken gets a colour of its own.
+  std::vector<std::uint64_t> taken(rest.size(), 0);
+  std::vector<std::vector<int>> own;
+  constexpr std::size_t slots = k_chunk_groups * k_lanes;
+  for (std::size_t chunk = 0; chunk * slots < out.slot.size(); ++chunk) {
+    const std::size_t end = std::min(out.slot.size(), (chunk + 1) * slots);
+    const auto for_each_vertex = [&](auto&& visit) {
+      for (std::size_t s = chunk * slots; s < end; ++s)
+        if (out.slot[s] >= 0)
+          for (const int v : stencils[at(out.slot[s])])
+            if (v >= 0) visit(taken[at(v)]);
+    };
+    std::uint64_t used = 0;
+    for_each_vertex([&](std::uint64_t& t) { used |= t; });
+    if (used == ~std::uint64_t{0}) {
+      own.push_back({static_cast<int>(chunk)});
+      continue;
+    }
+    int colour = 0;
+    while (used >> colour & 1) ++colour;
+    for_each_vertex([&](std::uint64_t& t) { t |= std::uint64_t{1} << colour; });
+    if (out.colours.size() <= at(colour)) out.colours.resize(at(colour) + 1);
+    out.colours[at(colour)].push_back(static_cast<int>(chunk));
+  }
+  out.colours.insert(out.colours.end(), own.begin(), own.end());
+  return out;
+}
+
+}  // namespace ft

@@ -1,0 +1,46 @@
+// In which order the energies visit their elements: sorted along a space-filling curve, in chunks of equal size, chunks coloured so
+// that two of one colour share no vertex. Chunks of a colour may run at the same time and add straight into the result; every entry
+// receives its terms in an order that does not depend on the number of threads.
+// For membrane and bending. Elements of a chunk come in groups of k_lanes, for vector instructions.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "baker/core/parallel.h"
+#include "baker/core/types.h"
+
+namespace ft {
+
+inline constexpr int k_lanes = 8;
+
+struct ElementSchedule {
+  std::vector<int> slot;                  ///< element of each slot, k_lanes slots a group; -1 pads the last group
+  std::vector<std::vector<int>> colours;  ///< chunks of each colour
+  std::size_t group_count() const { return slot.size() / k_lanes; }
+};
+
+/// Groups of one chunk.
+inline constexpr std::size_t k_chunk_groups = 32;
+
+ElementSchedule make_element_schedule(std::span<const std::array<int, 4>> stencils, std::span<const Vec3> rest);
+
+/// body(first group, end group) for every chunk, colour after colour.
+template <class Body>
+void for_each_chunk(const ElementSchedule& schedule, Body&& body) {
+  const std::size_t groups = schedule.group_count();
+  for (const std::vector<int>& chunks : schedule.colours)
+    parallel_tasks(chunks.size(), [&](std::size_t i) {
+      const std::size_t begin = static_cast<std::size_t>(chunks[i]) * k_chunk_groups;
+      body(begin, begin + k_chunk_groups < groups ? begin + k_chunk_groups : groups);
+    });
+}
+
+/// Sum of body(first group, end group) over the chunks, in their order.
+template <class Body>
+double sum_over_chunks(const ElementSchedule& schedule, Body&& body) {
+  return parallel_sum(schedule.group_count(), k_chunk_groups, 0.0, body);
+}
+
+}  // namespace ft

@@ -1,0 +1,52 @@
+// In-plane elasticity of cloth: constant-strain triangles, orthotropic St. Venant-Kirchhoff, with strain-rate damping.
+//   U = sum A/2 (E.CE + d (E - E_ref).C(E - E_ref)),   d = damping time / rate time of the integrator
+// E is the Green strain (E11, E22, 2 E12) in weft/warp axes, E_ref what the integrator's rate formula subtracts from E: a body that
+// moves rigidly feels neither term, exactly. Hessian: Gauss-Newton plus the geometric term with the positive part of the 2x2 stress
+// (closed form, no 9x9 eigenproblem). For cloth, mats, sails.
+// Caution: StVK softens under strong compression; cloth buckles out of the plane long before.
+#pragma once
+
+#include <vector>
+
+#include "solvers/energies/block_positions.h"
+#include "solvers/energies/cloth_topology.h"
+#include "solvers/energies/element_schedule.h"
+#include "solvers/energies/energy.h"
+
+namespace ft {
+
+/// Plane-stress stiffness in weft (1) and warp (2) axes: C11, C22, C12, C33 [N/m]. Positive definite for poisson in [0, 1).
+std::array<double, 4> membrane_stiffness(const Fabric& fabric);
+
+class Membrane final : public Energy {
+ public:
+  explicit Membrane(const ClothTopology& topology);
+  std::string_view name() const override { return "membrane"; }
+  std::vector<std::array<int, 4>> stencils() const override { return stencils_; }
+  void begin_step(const StepContext& context) override;
+  double value(std::span<const Vec3> x) const override;
+  void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
+  void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
+
+  /// k_lanes triangles; all zero in padding.
+  struct Group {
+    int vertex[3][k_lanes];
+    double rest_inverse[4][k_lanes];  ///< 1/m
+    double stiffness[4][k_lanes];     ///< area times C11, C22, C12, C33 [N m]
+    double damping_time[k_lanes];     ///< s
+  };
+  struct Reference {
+    double strain[3][k_lanes];  ///< E_ref
+  };
+
+ private:
+  std::vector<std::array<int, 4>> stencils_;
+  ElementSchedule schedule_;
+  std::vector<Group> groups_;
+  // Of the step.
+  std::vector<Reference> reference_;
+  double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
+  mutable BlockPositions<3> positions_;
+};
+
+}  // namespace ft

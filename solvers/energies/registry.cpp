@@ -1,0 +1,34 @@
+#include "solvers/energies/registry.h"
+
+#include "solvers/energies/bending.h"
+#include "solvers/energies/membrane.h"
+
+namespace ft {
+namespace {
+
+template <class T>
+std::unique_ptr<Energy> make_plain(const ClothTopology& topology, const AirSettings&) {
+  return std::make_unique<T>(topology);
+}
+
+std::unique_ptr<Energy> make_air_drag(const ClothTopology& topology, const AirSettings& air) {
+  return std::make_unique<AirDrag>(topology, air);
+}
+
+constexpr ClothEnergyKind k_kinds[] = {
+    {"membrane", make_plain<Membrane>, true},
+    {"bending", make_plain<Bending>, true},
+    {"air_drag", make_air_drag, false},
+};
+
+}  // namespace
+
+std::span<const ClothEnergyKind> cloth_energy_kinds() { return k_kinds; }
+
+std::vector<std::unique_ptr<Energy>> make_cloth_energies(const ClothTopology& topology, const AirSettings& air) {
+  std::vector<std::unique_ptr<Energy>> out;
+  for (const ClothEnergyKind& kind : k_kinds) out.push_back(kind.make(topology, air));
+  return out;
+}
+
+}  // namespace ft
