@@ -32,6 +32,9 @@ class FeasibleCollider {
   int vertex_count() const;
   std::span<const Triangle> triangles() const;
   std::span<const int> part_of_vertex() const;
+  /// True when the two parts are kept apart wherever they meet: not jointed, and neither overlapping nor nearer than the gap in
+  /// the bind pose. Parts that touch in the bind pose are kept as far apart as they are there, up to the gap, vertex by vertex.
+  bool kept_apart(int part_a, int part_b) const;
   /// Refined positions of the drawn pose, before anything gives way.
   void refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const;
   /// Refined and carved positions. Deterministic; thread-safe.

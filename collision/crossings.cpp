@@ -1,0 +1,152 @@
+// See crossings.h. Candidates by two box trees; each edge is tested from the one triangle that owns it (its first), so nothing
+// is tested twice. Degenerate triangles are the segments that they have shrunk to and count like them.
+#include "collision/crossings.h"
+
+#include <algorithm>
+
+#include "collision/crossing_predicates.h"
+#include "collision/triangle_tree.h"
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+Vec2 drop(const Vec3& v, int axis) { return {v[(axis + 1) % 3], v[(axis + 2) % 3]}; }
+
+bool boxes_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  for (int k = 0; k < 3; ++k)
+    if (std::max(p[k], q[k]) < std::min(r[k], s[k]) || std::max(r[k], s[k]) < std::min(p[k], q[k])) return false;
+  return true;
+}
+
+bool segments_meet_2d(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) {
+  for (int k = 0; k < 2; ++k)
+    if (std::max(p[k], q[k]) < std::min(r[k], s[k]) || std::max(r[k], s[k]) < std::min(p[k], q[k])) return false;
+  return orientation_2d(p, q, r) * orientation_2d(p, q, s) <= 0 && orientation_2d(r, s, p) * orientation_2d(r, s, q) <= 0;
+}
+
+/// An axis along which a, b, c do not fall into one line; -1 when they are in line in space.
+int injective_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (orientation_2d(drop(a, axis), drop(b, axis), drop(c, axis)) != 0) return axis;
+  return -1;
+}
+
+bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  if (!boxes_meet(p, q, r, s) || orientation(p, q, r, s) != 0) return false;
+  int axis = injective_axis(p, q, r);
+  if (axis < 0) axis = injective_axis(p, q, s);
+  if (axis < 0) axis = injective_axis(p, r, s);
+  if (axis < 0) axis = injective_axis(q, r, s);
+  // All in one line: intervals meet exactly when their boxes do.
+  return axis < 0 || segments_meet_2d(drop(p, axis), drop(q, axis), drop(r, axis), drop(s, axis));
+}
+
+bool inside_2d(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
+  const int u = orientation_2d(a, b, p), v = orientation_2d(b, c, p), w = orientation_2d(c, a, p);
+  return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+}
+
+/// p, q in the plane of a, b, c; or the triangle has no area.
+bool coplanar_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const int axis = injective_axis(a, b, c);
+  if (axis < 0) return segments_meet(p, q, a, b) || segments_meet(p, q, b, c) || segments_meet(p, q, c, a);
+  const Vec2 p2 = drop(p, axis), q2 = drop(q, axis), a2 = drop(a, axis), b2 = drop(b, axis), c2 = drop(c, axis);
+  return inside_2d(p2, a2, b2, c2) || segments_meet_2d(p2, q2, a2, b2) || segments_meet_2d(p2, q2, b2, c2) ||
+         segments_meet_2d(p2, q2, c2, a2);
+}
+
+/// For each triangle the edges that it owns, as bits.
+std::vector<unsigned char> owned_edges(std::span<const Triangle> triangles) {
+  std::vector<std::pair<Edge, int>> all;
+  all.reserve(3 * triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = triangles[i][k], b = triangles[i][(k + 1) % 3];
+      all.push_back({{std::min(a, b), std::max(a, b)}, static_cast<int>(3 * i + k)});
+    }
+  std::sort(all.begin(), all.end());
+  std::vector<unsigned char> owned(triangles.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i == 0 || all[i].first != all[i - 1].first)
+      owned[at(all[i].second / 3)] |= static_cast<unsigned char>(1 << (all[i].second % 3));
+  return owned;
+}
+
+/// Calls found(edge) for the owned edges of t that cross the triangle.
+template <class Found>
+void edges_through(const Triangle& t, unsigned char owned, std::span<const Vec3> x, const Vec3& a, const Vec3& b,
+                   const Vec3& c, Found&& found) {
+  for (int k = 0; k < 3; ++k) {
+    if ((owned >> k & 1) == 0) continue;
+    const int i = t[at(k)], j = t[at((k + 1) % 3)];
+    if (edge_crosses_triangle(x[at(i)], x[at(j)], a, b, c)) found(Edge{std::min(i, j), std::max(i, j)});
+  }
+}
+
+Box box_of(const Triangle& t, std::span<const Vec3> x) {
+  Box box;
+  for (const int v : t) box.include(x[at(v)]);
+  return box;
+}
+
+void sort_unique(std::vector<Crossing>& crossings) {
+  std::sort(crossings.begin(), crossings.end());
+  crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
+}
+
+}  // namespace
+
+bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  for (int k = 0; k < 3; ++k)
+    if (std::max(p[k], q[k]) < std::min({a[k], b[k], c[k]}) || std::max({a[k], b[k], c[k]}) < std::min(p[k], q[k]))
+      return false;
+  const int side_p = orientation(a, b, c, p), side_q = orientation(a, b, c, q);
+  if (side_p * side_q > 0) return false;
+  if (side_p == 0 && side_q == 0) return coplanar_meet(p, q, a, b, c);
+  const int u = orientation(p, q, a, b), v = orientation(p, q, b, c);
+  if (u * v < 0) return false;
+  const int w = orientation(p, q, c, a);
+  return u * w >= 0 && v * w >= 0;
+}
+
+std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::span<const Triangle> triangles_a,
+                                        std::span<const Vec3> positions_b, std::span<const Triangle> triangles_b) {
+  std::vector<Crossing> out;
+  if (triangles_a.empty() || triangles_b.empty()) return out;
+  const TriangleTree tree_a(positions_a, triangles_a), tree_b(positions_b, triangles_b);
+  const auto owned_a = owned_edges(triangles_a), owned_b = owned_edges(triangles_b);
+  tree_a.for_each_pair(tree_b, [&](int i, int j) {
+    const Triangle &s = triangles_a[at(i)], &t = triangles_b[at(j)];
+    if (!box_of(s, positions_a).overlaps(box_of(t, positions_b))) return;
+    edges_through(s, owned_a[at(i)], positions_a, positions_b[at(t[0])], positions_b[at(t[1])], positions_b[at(t[2])],
+                  [&](const Edge& e) { out.push_back({e, t, true}); });
+    edges_through(t, owned_b[at(j)], positions_b, positions_a[at(s[0])], positions_a[at(s[1])], positions_a[at(s[2])],
+                  [&](const Edge& e) { out.push_back({e, s, false}); });
+  });
+  sort_unique(out);
+  return out;
+}
+
+std::vector<Crossing> crossings_within(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  std::vector<Crossing> out;
+  if (triangles.empty()) return out;
+  const TriangleTree tree(positions, triangles);
+  const auto owned = owned_edges(triangles);
+  const auto test = [&](int i, int j) {
+    const Triangle &s = triangles[at(i)], &t = triangles[at(j)];
+    edges_through(s, owned[at(i)], positions, positions[at(t[0])], positions[at(t[1])], positions[at(t[2])], [&](const Edge& e) {
+      if (std::find(t.begin(), t.end(), e[0]) == t.end() && std::find(t.begin(), t.end(), e[1]) == t.end())
+        out.push_back({e, t, true});
+    });
+  };
+  tree.for_each_own_pair([&](int i, int j) {
+    if (!box_of(triangles[at(i)], positions).overlaps(box_of(triangles[at(j)], positions))) return;
+    test(i, j);
+    test(j, i);
+  });
+  sort_unique(out);
+  return out;
+}
+
+}  // namespace ft

@@ -1,0 +1,59 @@
+// See penetration.h.
+#include "collision/penetration.h"
+
+#include <cmath>
+
+#include "baker/core/parallel.h"
+#include "collision/triangle_tree.h"
+
+namespace ft {
+namespace {
+
+/// Signed crossings of a ray: leaving counts +1, entering -1; positive when the ray starts inside.
+int winding(const TriangleTree& tree, const Vec3& p, const Vec3& direction, std::span<const Vec3> x,
+            std::span<const Triangle> triangles) {
+  int sum = 0;
+  tree.for_each_along(p, direction, std::numeric_limits<double>::infinity(), [&](int i) {
+    const Triangle& t = triangles[static_cast<std::size_t>(i)];
+    const Vec3& a = x[static_cast<std::size_t>(t[0])];
+    const Vec3 e = x[static_cast<std::size_t>(t[1])] - a, f = x[static_cast<std::size_t>(t[2])] - a, s = p - a;
+    const Vec3 h = direction.cross(f);
+    const double determinant = e.dot(h);
+    if (determinant == 0) return;
+    const double u = s.dot(h) / determinant;
+    const Vec3 q = s.cross(e);
+    const double v = direction.dot(q) / determinant;
+    if (u < 0 || v < 0 || u + v > 1 || !(f.dot(q) / determinant > 0)) return;
+    sum += e.cross(f).dot(direction) > 0 ? 1 : -1;
+  });
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
+                                      std::span<const Triangle> triangles, double least_depth) {
+  std::vector<Penetration> out;
+  if (points.empty() || triangles.empty()) return out;
+  const Vec3 directions[3] = {Vec3(0.577, 0.61, 0.543).normalized(), Vec3(-0.31, 0.88, 0.36).normalized(),
+                              Vec3(0.23, -0.41, -0.88).normalized()};
+  const TriangleTree tree(surface, triangles);
+  std::vector<double> depth(points.size(), 0.0);
+  parallel_for(points.size(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (tree.box().squared_distance(points[i]) > 0) continue;
+      int votes = 0;
+      for (int k = 0; k < 3 && votes < 2 && votes + 3 - k >= 2; ++k)
+        votes += winding(tree, points[i], directions[k], surface, triangles) > 0 ? 1 : 0;
+      if (votes < 2) continue;
+      TriangleTree::Hit hit;
+      tree.closest(points[i], surface, triangles, hit);
+      depth[i] = std::sqrt(hit.closest.squared_distance);
+    }
+  });
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (depth[i] > least_depth) out.push_back({static_cast<int>(i), depth[i]});
+  return out;
+}
+
+}  // namespace ft
