@@ -51,11 +51,27 @@ void Source::fail(std::string what) {
   if (ok()) fault_ = std::move(what);
 }
 
+bool Source::read_at(std::uint64_t offset, std::span<std::byte> out) {
+  constexpr std::uint64_t k_window_size = 16384;
+  if (offset > file_.size() || out.size() > file_.size() - offset) return false;
+  if (out.size() > k_window_size) return file_.read_at(offset, out);
+  if (offset < window_offset_ || offset + out.size() > window_offset_ + window_.size()) {
+    window_.resize(static_cast<std::size_t>(std::min(k_window_size, file_.size() - offset)));
+    window_offset_ = offset;
+    if (!file_.read_at(offset, window_)) {
+      window_.clear();
+      return false;
+    }
+  }
+  if (!out.empty()) std::memcpy(out.data(), window_.data() + (offset - window_offset_), out.size());
+  return true;
+}
+
 std::vector<Reference> Source::group(Reference reference) {
   if (!ok() || reference == k_empty_group) return {};
   std::uint64_t count = 0;
   if ((reference & k_data_bit) != 0 || reference < k_header_size ||
-      !file_.read_at(reference, std::as_writable_bytes(std::span(&count, 1)))) {
+      !read_at(reference, std::as_writable_bytes(std::span(&count, 1)))) {
     fail("is damaged or cut: a group lies outside the file");
     return {};
   }
@@ -65,7 +81,7 @@ std::vector<Reference> Source::group(Reference reference) {
   }
   references_left_ -= count;
   std::vector<Reference> children(static_cast<std::size_t>(count));
-  if (!file_.read_at(reference + sizeof count, std::as_writable_bytes(std::span(children)))) {
+  if (!read_at(reference + sizeof count, std::as_writable_bytes(std::span(children)))) {
     fail("cannot be read");
     return {};
   }
@@ -77,7 +93,7 @@ std::uint64_t Source::data_size(Reference reference) {
   const std::uint64_t offset = reference & ~k_data_bit;
   std::uint64_t size = 0;
   if ((reference & k_data_bit) == 0 || offset < k_header_size ||
-      !file_.read_at(offset, std::as_writable_bytes(std::span(&size, 1))) || size > file_.size() - offset - sizeof size) {
+      !read_at(offset, std::as_writable_bytes(std::span(&size, 1))) || size > file_.size() - offset - sizeof size) {
     fail("is damaged or cut: data lies outside the file");
     return 0;
   }
@@ -92,7 +108,7 @@ Bytes Source::data(Reference reference, std::uint64_t max_size) {
   }
   bytes_left_ -= size;
   Bytes out(static_cast<std::size_t>(size));
-  if (size > 0 && !file_.read_at((reference & ~k_data_bit) + sizeof size, out)) {
+  if (size > 0 && !read_at((reference & ~k_data_bit) + sizeof size, out)) {
     fail("cannot be read");
     return {};
   }

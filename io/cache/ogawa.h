@@ -56,7 +56,12 @@ class Source {
   Bytes data(Reference reference, std::uint64_t max_size);
 
  private:
+  /// Through a window, because an archive is thousands of small nodes.
+  bool read_at(std::uint64_t offset, std::span<std::byte> out);
+
   const InputFile& file_;
+  Bytes window_;
+  std::uint64_t window_offset_ = 0;
   std::uint64_t references_left_, bytes_left_;
   Reference root_ = 0;
   std::string fault_;
