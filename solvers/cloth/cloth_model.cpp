@@ -1,0 +1,164 @@
+#include "solvers/cloth/cloth_model.h"
+
+#include <algorithm>
+
+#include "solvers/energies/registry.h"
+
+namespace ft {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Pattern coordinates of the corners of each triangle of triangulate(); empty when the mesh has none.
+std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles) {
+  std::vector<std::array<Vec2, 3>> out;
+  if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size()) return out;
+  out.reserve(triangles.size());
+  std::size_t begin = 0, next = 0;
+  for (const int size : mesh.face_sizes) {
+    for (int k = 0; k + 2 < size; ++k, ++next) {
+      std::array<Vec2, 3> uv;
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::size_t corner = begin;
+        while (corner < begin + at(size) && mesh.face_vertices[corner] != triangles[next][c]) ++corner;
+        const int index = corner < begin + at(size) ? mesh.face_uvs[corner] : -1;
+        uv[c] = index >= 0 && at(index) < mesh.uvs.size() ? mesh.uvs[at(index)] : Vec2::Zero();
+      }
+      out.push_back(uv);
+    }
+    begin += at(size);
+  }
+  return out;
+}
+
+Status check(const ClothSetup& setup) {
+  if (setup.garments.empty()) return input_error("a cloth system needs at least one garment");
+  for (const ClothGarment& g : setup.garments) {
+    if (g.mesh.positions.empty() || g.mesh.face_sizes.empty())
+      return input_error("cloth \"" + g.name + "\" has no faces");
+    if (!all_finite(g.mesh.positions)) return input_error("cloth \"" + g.name + "\" has a vertex that is not a number");
+    for (const ClothPin& pin : g.pins) {
+      for (const int v : pin.vertices)
+        if (v < 0 || v >= g.mesh.vertex_count())
+          return input_error("cloth \"" + g.name + "\": pin names vertex " + std::to_string(v) + " of " +
+                             std::to_string(g.mesh.vertex_count()));
+      if (!pin.weights.empty() && pin.weights.size() != pin.vertices.size())
+        return input_error("cloth \"" + g.name + "\": a pin needs one weight per vertex");
+    }
+  }
+  if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps || setup.newton_iterations < 1)
+    return input_error("cloth settings are out of range");
+  return {};
+}
+
+/// Vertices, triangles and rest shape of all garments in one numbering, each a piece of the topology.
+void concatenate(ClothModel& model) {
+  std::vector<ClothPiece> pieces;
+  std::vector<std::array<Vec2, 3>> uvs;
+  bool all_have_uvs = true;
+  ContactModel& contact = model.contact;
+  for (std::size_t g = 0; g < model.setup.garments.size(); ++g) {
+    const ClothGarment& garment = model.setup.garments[g];
+    const int first = static_cast<int>(contact.rest.size());
+    const std::size_t count = garment.mesh.positions.size();
+    model.first_vertex.push_back(first);
+    pieces.push_back({first, static_cast<int>(count), garment.fabric});
+    contact.rest.insert(contact.rest.end(), garment.mesh.positions.begin(), garment.mesh.positions.end());
+    const auto triangles = triangulate(garment.mesh);
+    const auto own_uvs = corner_uvs(garment.mesh, triangles);
+    all_have_uvs = all_have_uvs && !own_uvs.empty();
+    uvs.insert(uvs.end(), own_uvs.begin(), own_uvs.end());
+    if (own_uvs.empty()) uvs.resize(uvs.size() + triangles.size(), {Vec2::Zero(), Vec2::Zero(), Vec2::Zero()});
+    for (Triangle t : triangles) {
+      for (int& v : t) v += first;
+      model.triangles.push_back(t);
+    }
+    contact.radius.resize(contact.radius.size() + count, garment.thickness);
+    contact.self_radius.resize(contact.self_radius.size() + count, garment.thickness * 2 / 3);
+    contact.friction.resize(contact.friction.size() + count, garment.friction);
+    contact.self_friction.resize(contact.self_friction.size() + count, garment.self_friction);
+    contact.garment.resize(contact.garment.size() + count, static_cast<int>(g));
+    model.self_collides.resize(model.self_collides.size() + count, garment.self_collision);
+  }
+  model.first_vertex.push_back(static_cast<int>(contact.rest.size()));
+  contact.cloth_vertex_count = static_cast<int>(contact.rest.size());
+  // Degenerate uvs (all zero) fall back to the rest shape's own axes.
+  model.topology = std::make_unique<ClothTopology>(make_cloth_topology(contact.rest, model.triangles, pieces, uvs));
+}
+
+void weigh(ClothModel& model) {
+  const std::size_t n = model.contact.rest.size();
+  model.mass = model.topology->mass;
+  model.contact.area.assign(n, 0.0);
+  model.unused.assign(n, 1);
+  for (const Triangle& t : model.triangles) {
+    const auto& rest = model.contact.rest;
+    const double area = triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
+    for (const int v : t) {
+      model.contact.area[at(v)] += area / 3;
+      model.unused[at(v)] = 0;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(model.mass[i] > 0)) model.unused[i] = 1;
+  for (const Edge& e : unique_edges(model.triangles)) {
+    const double length = (model.contact.rest[at(e[0])] - model.contact.rest[at(e[1])]).norm();
+    if (!(length > 0)) continue;
+    model.edges.push_back(e);
+    model.rest_length.push_back(length);
+  }
+}
+
+void place_and_pin(ClothModel& model) {
+  const ClothSetup& setup = model.setup;
+  std::vector<Vec3> bind;
+  std::vector<Triangle> body;
+  model.start = model.contact.rest;
+  if (setup.primary) {
+    bind.resize(at(setup.primary->surface().vertex_count()));
+    setup.primary->bind_pose(bind);
+    body = setup.primary->surface().triangles;
+    const Eigen::Isometry3d place = setup.primary->bind_to_start();
+    for (Vec3& x : model.start) x = place * x;
+  }
+  for (std::size_t g = 0; g < setup.garments.size(); ++g)
+    for (const ClothPin& pin : setup.garments[g].pins)
+      for (std::size_t k = 0; k < pin.vertices.size(); ++k) {
+        const int v = model.first_vertex[g] + pin.vertices[k];
+        const double weight = pin.weights.empty() ? 1.0 : pin.weights[k];
+        if (weight <= 0 || model.unused[at(v)]) continue;
+        PinPoint point = bind_pin(v, model.contact.rest[at(v)], bind, body);
+        const double area = model.contact.area[at(v)];
+        point.stiffness = weight * pin.stiffness * area;
+        point.max_pull = weight * pin.max_pull * area;
+        model.pins.push_back(point);
+      }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
+  if (Status status = check(setup); !status) return status.error();
+  auto model = std::make_unique<ClothModel>();
+  model->setup = std::move(setup);
+  concatenate(*model);
+  weigh(*model);
+  place_and_pin(*model);
+  const ClothSetup& s = model->setup;
+  AirSettings air;
+  air.wind = s.wind;
+  air.density = s.air_density;
+  model->energies = make_cloth_energies(*model->topology, air);
+  std::vector<std::vector<std::array<int, 4>>> stencils;
+  for (const auto& energy : model->energies) stencils.push_back(energy->stencils());
+  model->pattern = make_pattern(model->vertex_count(), stencils);
+  if (s.primary) {
+    model->collider = std::make_unique<MovingCollider>(s.primary, s.feasible);
+    double thickness = 0;
+    for (const ClothGarment& g : s.garments) thickness = std::max(thickness, g.thickness);
+    model->start_depth = model->collider->draw_in_for(model->start, model->triangles, thickness);
+  }
+  return model;
+}
+
+}  // namespace ft
