@@ -254,7 +254,7 @@ Result<BodyShape> measure_body(const Body& body, double waist) {
   shape.neck = slice_height(neck_index);
   const double neck_width = shape.slices[at(neck_index)].width_x;
   int base = neck_index;
-  while (base > waist_index + 1 && shape.slices[at(base)].width_x < 1.8 * neck_width) --base;
+  while (base > waist_index + 1 && shape.slices[at(base)].width_x < 1.4 * neck_width) --base;
   shape.neck_base = slice_height(base);
   shape.chest_half_width = 0.5 * shape.slice_at(shape.waist + 0.45 * (shape.neck_base - shape.waist)).width_x;
   return shape;

@@ -31,15 +31,23 @@ std::vector<double> profile(const BodyShape& shape, double from, double to, doub
   return radius;
 }
 
-/// Averages over +-3 degrees, but never goes below: corners of the hull do not show in the cloth.
-void round_off(std::vector<double>& radius) {
-  std::vector<double> smooth(radius.size());
-  for (int k = 0; k < k_directions; ++k) {
-    double sum = 0;
-    for (int j = -3; j <= 3; ++j) sum += radius[at((k + j + k_directions) % k_directions)];
-    smooth[at(k)] = std::max(radius[at(k)], sum / 7);
-  }
-  radius = std::move(smooth);
+/// Averages over +-8 degrees and +-24 mm of height: the slices are pixels, the cloth shall not show them. Convex places lose
+/// about a millimetre.
+void round_off(std::vector<std::vector<double>>& levels) {
+  const int count = static_cast<int>(levels.size());
+  std::vector<std::vector<double>> around = levels;
+  for (int level = 0; level < count; ++level)
+    for (int k = 0; k < k_directions; ++k) {
+      double sum = 0;
+      for (int j = -8; j <= 8; ++j) sum += levels[at(level)][at((k + j + k_directions) % k_directions)];
+      around[at(level)][at(k)] = sum / 17;
+    }
+  for (int level = 0; level < count; ++level)
+    for (int k = 0; k < k_directions; ++k) {
+      double sum = 0;
+      for (int j = -6; j <= 6; ++j) sum += around[at(std::clamp(level + j, 0, count - 1))][at(k)];
+      levels[at(level)][at(k)] = sum / 13;
+    }
 }
 
 /// Points that share the closed curve's length equally, beginning in direction 0.
@@ -67,21 +75,23 @@ Mesh make_skirt(const BodyShape& shape, const SkirtSettings& settings) {
   const int level_count = std::max(2, static_cast<int>(std::ceil(length / 4e-3)));
   std::vector<std::vector<double>> levels;
   std::vector<double> meridian{0.0};  // mean arc length down to each level
+  const double allowance = settings.clearance + 3.5e-3;  // half a pixel of the slices, and what rounding off takes
   for (int level = 0; level <= level_count; ++level) {
-    const double share = static_cast<double>(level) / level_count, y = shape.waist - length * share;
-    std::vector<double> radius = profile(shape, y - 8e-3, y + 8e-3, settings.clearance);
-    round_off(radius);
-    if (level > 0) {
-      double sum = 0;
-      for (int k = 0; k < k_directions; ++k) {
-        const double above = levels.back()[at(k)], waist = levels.front()[at(k)];
-        // Below the widest of the hips the body no longer counts: only the flare goes on.
-        radius[at(k)] = std::max({radius[at(k)], above, waist + settings.flare * share});
-        sum += std::hypot(radius[at(k)] - above, length / level_count);
-      }
-      meridian.push_back(meridian.back() + sum / k_directions);
+    const double y = shape.waist - length * level / level_count;
+    // 15 mm ahead of the body, so that the cloth widens before the hips do.
+    levels.push_back(profile(shape, y - 15e-3, y + 8e-3, allowance));
+  }
+  round_off(levels);
+  for (int level = 1; level <= level_count; ++level) {
+    double sum = 0;
+    for (int k = 0; k < k_directions; ++k) {
+      // Below the widest of the hips the body no longer counts: only the flare goes on.
+      const double above = levels[at(level - 1)][at(k)];
+      double& radius = levels[at(level)][at(k)];
+      radius = std::max({radius, above, levels[0][at(k)] + settings.flare * level / level_count});
+      sum += std::hypot(radius - above, length / level_count);
     }
-    levels.push_back(std::move(radius));
+    meridian.push_back(meridian.back() + sum / k_directions);
   }
 
   Mesh mesh;

@@ -16,8 +16,10 @@ using Field = std::function<double(const Vec3&)>;
 
 struct QuadMesh {
   std::vector<Vec3> positions;
-  std::vector<std::array<int, 4>> quads;
+  std::vector<std::array<int, 4>> quads;  ///< the last corner is -1 in a triangle
 };
+
+int corner_count(const std::array<int, 4>& quad) { return quad[3] < 0 ? 3 : 4; }
 
 /// Naive surface nets of field = 0 over the cells of a box: one vertex per cell that the surface passes, one quad per grid
 /// edge that it crosses. Quads at the border of the box, which miss a cell, are left out: that is the cut.
@@ -87,7 +89,7 @@ void keep_largest_piece(QuadMesh& mesh) {
     return v;
   };
   for (const auto& quad : mesh.quads)
-    for (const int v : quad) root[at(find(v))] = find(quad[0]);
+    for (int k = 1; k < corner_count(quad); ++k) root[at(find(quad[at(k)]))] = find(quad[0]);
   std::map<int, int> count;
   for (const auto& quad : mesh.quads) ++count[find(quad[0])];
   int largest = -1;
@@ -97,7 +99,8 @@ void keep_largest_piece(QuadMesh& mesh) {
   std::vector<int> number(mesh.positions.size(), -1);
   for (auto quad : mesh.quads) {
     if (find(quad[0]) != largest) continue;
-    for (int& v : quad) {
+    for (int k = 0; k < corner_count(quad); ++k) {
+      int& v = quad[at(k)];
       if (number[at(v)] < 0) {
         number[at(v)] = static_cast<int>(kept.positions.size());
         kept.positions.push_back(mesh.positions[at(v)]);
@@ -107,6 +110,29 @@ void keep_largest_piece(QuadMesh& mesh) {
     kept.quads.push_back(quad);
   }
   mesh = std::move(kept);
+}
+
+/// A cut that slants through the grid leaves a staircase. Corners that only one quad uses are cut off (a triangle stays), and
+/// quads with two such corners go.
+void cut_stairs(QuadMesh& mesh) {
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<int> uses(mesh.positions.size(), 0);
+    for (const auto& quad : mesh.quads)
+      for (const int v : quad) ++uses[at(v)];
+    again = std::erase_if(mesh.quads, [&](const auto& quad) {
+              return std::count_if(quad.begin(), quad.end(), [&](int v) { return uses[at(v)] == 1; }) >= 2;
+            }) > 0;
+  }
+  std::vector<int> uses(mesh.positions.size(), 0);
+  for (const auto& quad : mesh.quads)
+    for (const int v : quad) ++uses[at(v)];
+  for (auto& quad : mesh.quads)
+    for (int k = 0; k < 4; ++k)
+      if (uses[at(quad[at(k)])] == 1) {
+        quad = {quad[at((k + 1) % 4)], quad[at((k + 2) % 4)], quad[at((k + 3) % 4)], -1};
+        break;
+      }
 }
 
 Vec3 slope(const Field& field, const Vec3& p, double step) {
@@ -126,7 +152,8 @@ struct Cut {
 void relax(QuadMesh& mesh, const Field& field, const std::vector<Cut>& planes, double cell, int rounds) {
   std::map<Edge, int> uses;
   for (const auto& q : mesh.quads)
-    for (int k = 0; k < 4; ++k) ++uses[{std::min(q[at(k)], q[at((k + 1) % 4)]), std::max(q[at(k)], q[at((k + 1) % 4)])}];
+    for (int k = 0, n = corner_count(q); k < n; ++k)
+      ++uses[{std::min(q[at(k)], q[at((k + 1) % n)]), std::max(q[at(k)], q[at((k + 1) % n)])}];
   std::vector<std::vector<int>> inner(mesh.positions.size()), border(mesh.positions.size());
   for (const auto& [edge, count] : uses)
     for (int k = 0; k < 2; ++k) (count == 1 ? border : inner)[at(edge[at(k)])].push_back(edge[at(1 - k)]);
@@ -185,6 +212,7 @@ Result<Mesh> make_top(const Body& body, const BodyShape& shape, const TopSetting
     return sum / 8 - settings.distance;
   };
   QuadMesh net = surface_nets(field, box, cell);
+  cut_stairs(net);
   keep_largest_piece(net);
   if (net.quads.size() < 100) return input_error("found no torso to put a top on", "", "try another --waist");
   const std::vector<Cut> planes = {{0, box.lo.x() + 0.5 * cell}, {0, box.hi.x() - 0.5 * cell},
@@ -203,12 +231,14 @@ Result<Mesh> make_top(const Body& body, const BodyShape& shape, const TopSetting
   const double shoulder_height = box.hi.y() - 0.25 * (box.hi.y() - shape.waist);
   std::vector<char> on_shoulder(mesh.positions.size(), 0);
   for (const auto& quad : net.quads) {
-    mesh.face_sizes.push_back(4);
-    mesh.face_vertices.insert(mesh.face_vertices.end(), quad.begin(), quad.end());
-    const Vec3 normal = (mesh.positions[at(quad[2])] - mesh.positions[at(quad[0])]).cross(mesh.positions[at(quad[3])] - mesh.positions[at(quad[1])]).normalized();
+    const int corners = corner_count(quad);
+    mesh.face_sizes.push_back(corners);
+    mesh.face_vertices.insert(mesh.face_vertices.end(), quad.begin(), quad.begin() + corners);
+    const auto corner = [&](int k) { return mesh.positions[at(quad[at(k)])]; };
+    const Vec3 normal = (corner(2) - corner(0)).cross(corner(corners - 1) - corner(1)).normalized();
     const Vec3& p = mesh.positions[at(quad[0])];
     if (normal.y() > 0.5 && p.y() > shoulder_height && std::abs(p.x() - middle) < shape.chest_half_width)
-      for (const int v : quad) on_shoulder[at(v)] = 1;
+      for (int k = 0; k < corners; ++k) on_shoulder[at(quad[at(k)])] = 1;
   }
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (on_shoulder[at(v)]) shoulders.vertices.push_back(v), shoulders.weights.push_back(1);
