@@ -1,6 +1,8 @@
 // The common case is a foot point well inside a well-shaped feature: then the normal of the feature decides and the distance
 // is measured along it, which is exact to rounding even at a millionth of the edge length. All other cases compare the
 // candidates on the boundary (and the interior one, if there is any) by their measured distance and take the nearest.
+// In slim features a cross product is wrong by 1 / sin(angle) in every direction, also along the feature; two orthogonal
+// directions found one after the other are wrong in the harmless direction only, so the interior candidate is found with them.
 #include "collision/pair_geometry.h"
 
 #include <algorithm>
@@ -10,7 +12,7 @@ namespace ft {
 namespace {
 
 /// Below this sin^2 of the angle between two edges the interior solution is only one candidate among the others.
-constexpr double k_well_shaped = 1e-6;
+constexpr double k_well_shaped = 1e-4;
 
 struct FootPoint {
   double t;         ///< parameter along the segment, in [0, 1]
@@ -18,11 +20,13 @@ struct FootPoint {
   double squared;   ///< its squared length
 };
 
-/// Of the point at q + from, from being its offset from the segment's start. An edge without length is its start.
+/// Of the point that lies from away from the segment's start. An edge without length is its start.
 inline FootPoint segment_foot(const Vec3& from, const Vec3& edge, double edge_squared) {
   FootPoint f;
   f.t = edge_squared > 0 ? std::clamp(from.dot(edge) / edge_squared, 0.0, 1.0) : 0.0;
   f.offset = f.t < 1 ? Vec3(from - f.t * edge) : Vec3(from - edge);
+  // The last bits of a long edge are many of a short offset: square it again, or its direction tilts along the edge.
+  if (f.t > 0 && f.t < 1) f.offset -= (f.offset.dot(edge) / edge_squared) * edge;
   f.squared = f.offset.squaredNorm();
   return f;
 }
@@ -39,6 +43,20 @@ inline void set_offset(PairGeometry& g, const Vec3& offset, double squared) {
     g.distance = largest * length;
     g.normal = scaled / length;
   }
+}
+
+/// Solves u e + v f = r as well as it can be done (least squares), e not shorter than f. False when e and f are parallel.
+inline bool solve_slim(const Vec3& e, const Vec3& f, const Vec3& r, double& u, double& v) {
+  const double ee = e.squaredNorm();
+  if (!(ee > 0)) return false;
+  const double along = f.dot(e) / ee;
+  Vec3 across = f - along * e;
+  across -= (across.dot(e) / ee) * e;  // twice is enough
+  const double cc = across.squaredNorm();
+  if (!(cc > 0)) return false;
+  v = r.dot(across) / cc;
+  u = r.dot(e) / ee - v * (f.dot(e) / ee);
+  return std::isfinite(u) && std::isfinite(v);
 }
 
 /// Distance along a normal that is not unit; side is its product with the offset.
@@ -58,13 +76,11 @@ PairGeometry vertex_face_geometry(const Vec3& p, const Vec3& a, const Vec3& b, c
 
   PairGeometry g;
   g.weight[0] = 1;
-  bool inside = false;
   double v = 0, w = 0;
-  if (n2 > 0) {
+  if (n2 > k_well_shaped * ab2 * ac2) {
     v = ap.cross(ac).dot(n) / n2;
     w = ab.cross(ap).dot(n) / n2;
-    inside = v > 0 && w > 0 && v + w < 1;
-    if (inside && n2 > k_well_shaped * ab2 * ac2) {
+    if (v > 0 && w > 0 && v + w < 1) {
       set_along(g, n, n2, ap.dot(n));
       g.weight = {1, -(1 - v - w), -v, -w};
       g.interior = true;
@@ -86,14 +102,17 @@ PairGeometry vertex_face_geometry(const Vec3& p, const Vec3& a, const Vec3& b, c
     best = &on_bc;
     g.weight = {1, 0, -(1 - on_bc.t), -on_bc.t};
   }
-  if (inside) {
-    const Vec3 offset = ap - v * ab - w * ac;
-    const double squared = offset.squaredNorm();
-    if (squared < best->squared) {
-      g.weight = {1, -(1 - v - w), -v, -w};
-      g.interior = true;
-      set_offset(g, offset, squared);
-      return g;
+  if (n2 <= k_well_shaped * ab2 * ac2) {
+    const bool found = ab2 >= ac2 ? solve_slim(ab, ac, ap, v, w) : solve_slim(ac, ab, ap, w, v);
+    if (found && v > 0 && w > 0 && v + w < 1) {
+      const Vec3 offset = ap - v * ab - w * ac;
+      const double squared = offset.squaredNorm();
+      if (squared < best->squared) {
+        g.weight = {1, -(1 - v - w), -v, -w};
+        g.interior = true;
+        set_offset(g, offset, squared);
+        return g;
+      }
     }
   }
   set_offset(g, best->offset, best->squared);
@@ -107,13 +126,11 @@ PairGeometry edge_edge_geometry(const Vec3& a0, const Vec3& a1, const Vec3& b0, 
   const double n2 = n.squaredNorm();
 
   PairGeometry g;
-  bool inside = false;
   double s = 0, t = 0;
-  if (n2 > 0) {
+  if (n2 > k_well_shaped * aa * bb) {
     s = db.cross(r).dot(n) / n2;
     t = da.cross(r).dot(n) / n2;
-    inside = s > 0 && s < 1 && t > 0 && t < 1;
-    if (inside && n2 > k_well_shaped * aa * bb) {
+    if (s > 0 && s < 1 && t > 0 && t < 1) {
       set_along(g, n, n2, r.dot(n));
       g.weight = {1 - s, s, -(1 - t), -t};
       g.interior = true;
@@ -144,7 +161,9 @@ PairGeometry edge_edge_geometry(const Vec3& a0, const Vec3& a1, const Vec3& b0, 
     offset = -of_b1.offset;
     g.weight = {1 - of_b1.t, of_b1.t, 0, -1};
   }
-  if (inside) {
+  // -r = s da - t db
+  if (n2 <= k_well_shaped * aa * bb && (aa >= bb ? solve_slim(da, -db, -r, s, t) : solve_slim(-db, da, -r, t, s)) && s > 0 &&
+      s < 1 && t > 0 && t < 1) {
     const Vec3 within = r + s * da - t * db;
     if (within.squaredNorm() < squared) {
       squared = within.squaredNorm();

@@ -1,0 +1,284 @@
+// The pair finder against brute force over all features, on tame and untamed meshes: the same list, element for element.
+#include "collision/contact_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "baker/core/parallel.h"
+#include "tests/collision/pair_scene.h"
+
+namespace ft {
+namespace {
+
+using test::Dice;
+
+constexpr float k_inf = std::numeric_limits<float>::infinity();
+
+bool nowhere(const VertexBox& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(b.lo[i] <= b.hi[i])) return true;
+  return false;
+}
+
+/// True when the unions of the boxes of some vertices overlap; a vertex that is nowhere takes its feature with it.
+template <std::size_t N, std::size_t M>
+bool features_overlap(std::span<const VertexBox> boxes, const std::array<int, N>& a, const std::array<int, M>& b) {
+  const auto box = [&](auto& feature, VertexBox& u) {
+    u = boxes[static_cast<std::size_t>(feature[0])];
+    for (const int v : feature) {
+      const VertexBox& w = boxes[static_cast<std::size_t>(v)];
+      if (nowhere(w)) return false;
+      for (std::size_t i = 0; i < 3; ++i) u.lo[i] = std::min(u.lo[i], w.lo[i]), u.hi[i] = std::max(u.hi[i], w.hi[i]);
+    }
+    return true;
+  };
+  VertexBox ua, ub;
+  if (!box(a, ua) || !box(b, ub)) return false;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (ua.lo[i] > ub.hi[i] || ub.lo[i] > ua.hi[i]) return false;
+  return true;
+}
+
+struct Scene {
+  int cloth_vertices = 0, collider_vertices = 0;
+  std::vector<Triangle> cloth, collider;
+  std::vector<VertexBox> boxes;
+};
+
+ContactPairs brute_force(const Scene& scene, bool self) {
+  ContactPairs out;
+  std::vector<Triangle> faces = scene.cloth;
+  faces.insert(faces.end(), scene.collider.begin(), scene.collider.end());
+  std::vector<Edge> edges = unique_edges(faces);
+  const auto of_cloth = [&](int v) { return v < scene.cloth_vertices; };
+  std::vector<int> vertices;
+  for (const Triangle& t : faces) vertices.insert(vertices.end(), t.begin(), t.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const auto wanted = [&](int a, int b) { return of_cloth(a) != of_cloth(b) || (self && of_cloth(a) && of_cloth(b)); };
+  for (const int v : vertices)
+    for (const Triangle& t : faces)
+      if (wanted(v, t[0]) && v != t[0] && v != t[1] && v != t[2] && features_overlap(scene.boxes, std::array{v}, t))
+        out.vertex_face.push_back({{v, t[0], t[1], t[2]}});
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (std::size_t j = i + 1; j < edges.size(); ++j) {
+      const Edge &a = edges[i], &b = edges[j];
+      if (!wanted(a[0], b[0]) || a[0] == a[1] || b[0] == b[1]) continue;
+      if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
+      if (features_overlap(scene.boxes, a, b)) out.edge_edge.push_back({{a[0], a[1], b[0], b[1]}});
+    }
+  std::sort(out.vertex_face.begin(), out.vertex_face.end());
+  out.vertex_face.erase(std::unique(out.vertex_face.begin(), out.vertex_face.end()), out.vertex_face.end());
+  std::sort(out.edge_edge.begin(), out.edge_edge.end());
+  return out;
+}
+
+/// A wavy n x n grid of quads, two triangles each, numbered from first.
+void add_grid(int n, int first, double height, double wave, Dice& dice, std::vector<Vec3>& x, std::vector<Triangle>& triangles) {
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double u = i / (n - 1.0), v = j / (n - 1.0);
+      x.emplace_back(u, height + wave * std::sin(7 * u + 3 * v) + 0.1 * wave * dice.uniform(), v);
+    }
+  for (int i = 0; i + 1 < n; ++i)
+    for (int j = 0; j + 1 < n; ++j) {
+      const int a = first + i * n + j;
+      triangles.push_back({a, a + 1, a + n});
+      triangles.push_back({a + 1, a + n + 1, a + n});
+    }
+}
+
+Scene two_sheets(int n, double reach, std::uint64_t seed) {
+  Dice dice(seed);
+  Scene scene;
+  std::vector<Vec3> x;
+  add_grid(n, 0, 0.0, 0.05, dice, x, scene.cloth);
+  scene.cloth_vertices = n * n;
+  add_grid(n + 3, n * n, 0.02, -0.03, dice, x, scene.collider);
+  scene.collider_vertices = (n + 3) * (n + 3);
+  for (const Vec3& p : x) scene.boxes.push_back(VertexBox::swept(p, p + dice.cube(0.3 * reach), reach));
+  return scene;
+}
+
+/// Triangles between any vertices: shared by many, repeated, flat, with vertices named twice; boxes of all sizes.
+Scene soup(std::uint64_t seed) {
+  Dice dice(seed);
+  Scene scene;
+  scene.cloth_vertices = 3 + dice.below(20);
+  scene.collider_vertices = 3 + dice.below(20);
+  const auto fill = [&](int first, int count, std::vector<Triangle>& out) {
+    const int triangles = dice.below(40);
+    for (int k = 0; k < triangles; ++k) {
+      Triangle t;
+      for (int& v : t) v = first + dice.below(count);
+      if (t[0] == t[1] && t[1] == t[2]) continue;
+      out.push_back(t);
+      if (dice.below(10) == 0) out.push_back(t);
+    }
+  };
+  fill(0, scene.cloth_vertices, scene.cloth);
+  fill(scene.cloth_vertices, scene.collider_vertices, scene.collider);
+  for (int i = 0; i < scene.cloth_vertices + scene.collider_vertices; ++i) {
+    const Vec3 p = dice.cube(1);
+    VertexBox b = VertexBox::swept(p, p + dice.cube(0.2), std::pow(10, dice.uniform(-3, -0.7)));
+    const int odd = dice.below(12);
+    if (odd == 0) std::swap(b.lo[1], b.hi[1]);
+    if (odd == 1) b = {{k_inf, k_inf, k_inf}, {-k_inf, -k_inf, -k_inf}};
+    scene.boxes.push_back(b);
+  }
+  return scene;
+}
+
+void expect_same(const ContactPairs& a, const ContactPairs& b) {
+  EXPECT_EQ(a.vertex_face.size(), b.vertex_face.size());
+  EXPECT_EQ(a.edge_edge.size(), b.edge_edge.size());
+  EXPECT_TRUE(a.vertex_face == b.vertex_face);
+  EXPECT_TRUE(a.edge_edge == b.edge_edge);
+}
+
+PairFinder finder_of(const Scene& s) { return {s.cloth_vertices, s.cloth, s.collider_vertices, s.collider}; }
+
+TEST(PairFinder, Finds_what_brute_force_finds_between_two_wavy_sheets) {
+  for (const double reach : {0.001, 0.02, 0.08}) {
+    const Scene scene = two_sheets(14, reach, 3);
+    PairFinder finder = finder_of(scene);
+    for (const bool self : {false, true}) {
+      ContactPairs found;
+      finder.find(scene.boxes, self, found);
+      const ContactPairs expected = brute_force(scene, self);
+      expect_same(found, expected);
+      if (reach > 0.01) {
+        EXPECT_GT(expected.edge_edge.size(), 500u);
+      }
+    }
+  }
+}
+
+TEST(PairFinder, Finds_what_brute_force_finds_in_random_soups_of_triangles) {
+  int pairs = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    Scene scene = soup(seed);
+    PairFinder finder = finder_of(scene);
+    ContactPairs found;
+    for (int again = 0; again < 3; ++again) {
+      const bool self = seed % 2 == 0 || again == 1;
+      finder.find(scene.boxes, self, found);
+      expect_same(found, brute_force(scene, self));
+      pairs += static_cast<int>(found.edge_edge.size());
+      if (HasFailure()) FAIL() << "seed " << seed << ", search " << again;
+      scene.boxes = soup(seed * 7 + static_cast<std::uint64_t>(again) + 1000).boxes;  // moved elsewhere: refit, not rebuilt
+      scene.boxes.resize(static_cast<std::size_t>(scene.cloth_vertices + scene.collider_vertices), VertexBox::swept({0, 0, 0}, {0.5, 0, 0}, 0.1));
+    }
+  }
+  EXPECT_GT(pairs, 10000);
+}
+
+TEST(PairFinder, Every_pair_that_can_meet_inside_its_boxes_is_listed) {
+  Dice dice(21);
+  const Scene scene = two_sheets(12, 0.03, 5);
+  ContactPairs found;
+  finder_of(scene).find(scene.boxes, true, found);
+  std::vector<Vec3> x(scene.boxes.size());
+  const auto inside = [&](int v) {
+    const VertexBox& b = scene.boxes[static_cast<std::size_t>(v)];
+    Vec3 p;
+    for (int i = 0; i < 3; ++i) p[i] = dice.uniform(b.lo[static_cast<std::size_t>(i)], b.hi[static_cast<std::size_t>(i)]);
+    return p;
+  };
+  for (int trial = 0; trial < 20; ++trial) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = inside(static_cast<int>(i));
+    for (int v = 0; v < scene.cloth_vertices; ++v) {
+      for (const Triangle& t : scene.collider) {
+        Vec3 lo = x[static_cast<std::size_t>(t[0])], hi = lo;
+        for (const int w : t) lo = lo.cwiseMin(x[static_cast<std::size_t>(w)]), hi = hi.cwiseMax(x[static_cast<std::size_t>(w)]);
+        const Vec3& p = x[static_cast<std::size_t>(v)];
+        if ((p.array() < lo.array()).any() || (p.array() > hi.array()).any()) continue;
+        const Stencil wanted{{v, t[0], t[1], t[2]}};
+        EXPECT_TRUE(std::binary_search(found.vertex_face.begin(), found.vertex_face.end(), wanted));
+      }
+    }
+  }
+}
+
+TEST(PairFinder, Lists_are_sorted_single_and_equal_for_every_number_of_threads) {
+  const Scene scene = two_sheets(60, 0.02, 9);
+  ContactPairs first;
+  finder_of(scene).find(scene.boxes, true, first);
+  EXPECT_GT(first.vertex_face.size(), 50000u);
+  EXPECT_TRUE(std::is_sorted(first.vertex_face.begin(), first.vertex_face.end()));
+  EXPECT_EQ(std::adjacent_find(first.vertex_face.begin(), first.vertex_face.end()), first.vertex_face.end());
+  EXPECT_TRUE(std::is_sorted(first.edge_edge.begin(), first.edge_edge.end()));
+  EXPECT_EQ(std::adjacent_find(first.edge_edge.begin(), first.edge_edge.end()), first.edge_edge.end());
+  for (const int threads : {1, 2, 3, 8}) {
+    const ThreadLimit limit(threads);
+    PairFinder finder = finder_of(scene);
+    for (int again = 0; again < 2; ++again) {
+      ContactPairs found;
+      finder.find(scene.boxes, true, found);
+      expect_same(found, first);
+    }
+  }
+}
+
+TEST(PairFinder, A_search_does_not_depend_on_the_searches_before_it) {
+  const Scene scene = two_sheets(20, 0.02, 4);
+  std::vector<VertexBox> elsewhere;
+  Dice dice(6);
+  for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
+    const Vec3 p = dice.cube(3);
+    elsewhere.push_back(VertexBox::swept(p, p, 0.1));
+  }
+  PairFinder seasoned = finder_of(scene), fresh = finder_of(scene);
+  ContactPairs a, b;
+  seasoned.find(elsewhere, true, a);
+  seasoned.find(scene.boxes, true, a);
+  fresh.find(scene.boxes, true, b);
+  expect_same(a, b);
+}
+
+TEST(PairFinder, Edges_of_a_face_with_a_vertex_that_is_nowhere_still_count) {
+  // Two collider triangles share the edge 3-4; vertex 5 of the first is nowhere.
+  Scene scene{3, 4, {{0, 1, 2}}, {{3, 4, 5}, {4, 3, 6}}, {}};
+  for (int i = 0; i < 7; ++i) scene.boxes.push_back(VertexBox::swept({0, 0, 0}, {1, 1, 1}, 0));
+  scene.boxes[5] = {{1, 1, 1}, {0, 0, 0}};
+  ContactPairs found;
+  finder_of(scene).find(scene.boxes, false, found);
+  expect_same(found, brute_force(scene, false));
+  EXPECT_EQ(found.vertex_face.size(), 6u);  // three cloth vertices on one face; vertices 3, 4, 6 on the cloth's
+  EXPECT_EQ(found.edge_edge.size(), 9u);
+}
+
+TEST(PairFinder, Nothing_meets_nothing) {
+  ContactPairs found;
+  found.vertex_face.resize(3);
+  const std::vector<VertexBox> three(3, VertexBox::swept({0, 0, 0}, {1, 1, 1}, 0));
+  PairFinder(0, {}, 0, {}).find({}, true, found);
+  EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
+  const std::vector<Triangle> one{{0, 1, 2}};
+  PairFinder(3, one, 0, {}).find(three, true, found);
+  EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
+  PairFinder(0, {}, 3, one).find(three, true, found);
+  EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
+}
+
+TEST(VertexBox, Holds_the_swept_ball_however_the_numbers_round) {
+  Dice dice(3);
+  for (int trial = 0; trial < 100000; ++trial) {
+    const double scale = std::pow(10, dice.uniform(-9, 3)), r = trial % 3 == 0 ? 0.0 : std::pow(10, dice.uniform(-9, 0));
+    const Vec3 a = dice.cube(scale), b = trial % 5 == 0 ? a : dice.cube(scale);
+    const VertexBox box = VertexBox::swept(a, b, r);
+    for (int i = 0; i < 3; ++i) {
+      const long double lo = std::min<long double>(a[i], b[i]) - r, hi = std::max<long double>(a[i], b[i]) + r;
+      const auto k = static_cast<std::size_t>(i);
+      ASSERT_LE(box.lo[k], lo);
+      ASSERT_GE(box.hi[k], hi);
+      ASSERT_GE(box.lo[k], lo - 3e-7L * (std::abs(lo) + 1e-30L));  // not much larger than needed
+      ASSERT_LE(box.hi[k], hi + 3e-7L * (std::abs(hi) + 1e-30L));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ft
