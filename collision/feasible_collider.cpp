@@ -19,7 +19,9 @@ constexpr int k_project_rounds = 3;     ///< rounds of projection, so that a ver
 constexpr int k_smooth_sweeps = 2;      ///< Laplacian sweeps of the displacement between rounds
 constexpr int k_sag_rounds = 3;         ///< rounds of lifting edges
 constexpr double k_sag_share = 0.85;    ///< share of the gap that edges' middles must keep [1]
+constexpr double k_touching_zone = 30e-3;  ///< bind distance from which on vertices of touching parts keep the full gap [m]
 constexpr std::size_t k_block = 256;    ///< vertices per parallel block
+constexpr double k_free = -std::numeric_limits<double>::infinity();
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -36,7 +38,7 @@ struct Yielding {
   Adjacency neighbours;              ///< local
   std::vector<Opponent> opponents;
   std::vector<char> allowed;         ///< per part: larger and not jointed
-  /// Per touching opponent part: how far from it each vertex must be [m]; others use the gap.
+  /// Per part that is touched in the bind pose: how far from it each vertex must be [m]; from others the gap.
   std::vector<std::pair<int, std::vector<double>>> touching;
 
   const std::vector<double>* touching_part(int part) const {
@@ -92,8 +94,8 @@ struct FeasibleCollider::Impl {
   void find_touching(std::span<const Vec3> bind);
   std::vector<Opponent> opponents_now(const Yielding& part, Scratch& scratch) const;
   double required(const Yielding& part, int local, int other) const;
-  bool push_out(const Yielding& part, int a, int b, std::span<const Opponent> opponents, double share, const Scratch& scratch,
-                Vec3& point, Contact& contact) const;
+  bool push_out(const Yielding& part, int a, int b, std::span<const Opponent> opponents, const Scratch& scratch,
+                Vec3& point, Contact& contact, std::span<int> hints) const;
   int deepest_opponent(const Yielding& part, const Vec3& point, const Scratch& scratch) const;
   void give_way(int part, Scratch& scratch) const;
   void lift_edges(const Yielding& part, std::span<const Opponent> opponents, std::vector<Contact>& contacts,
@@ -102,8 +104,8 @@ struct FeasibleCollider::Impl {
 
 void FeasibleCollider::Impl::add_refined_parts(const Surface& drawn, std::span<const int> rank) {
   part_of_vertex = drawn.part_of_vertex;
-  for (const auto& [a, b] : mesh.parents) {
-    const int p = part_of_vertex[at(a)], q = part_of_vertex[at(b)];
+  for (const RefinedMesh::Blend& blend : mesh.blends) {
+    const int p = part_of_vertex[at(blend.a)], q = part_of_vertex[at(blend.b)];
     part_of_vertex.push_back(rank[at(p)] <= rank[at(q)] ? p : q);
   }
 }
@@ -157,15 +159,15 @@ void FeasibleCollider::Impl::find_touching(std::span<const Vec3> bind) {
       for (const int other : opponent.parts) {
         if (!overlap(own, trees[at(other)].box(), settings.gap)) continue;
         std::vector<double> keep(part.vertices.size(), settings.gap);
-        const double depth = surface->depth_limit(other);
-        const int parts_of_one[1] = {other};
+        const double reach = std::max({surface->depth_limit(other), settings.gap, k_touching_zone});
+        const int one[1] = {other};
         bool touches = false;
+        int hint = -1;
         for (std::size_t i = 0; i < keep.size(); ++i) {
-          const auto answer = surface->distance(bind[at(part.vertices[i])], parts_of_one, part.allowed,
-                                                std::max(depth, settings.gap), bind, trees);
-          if (!answer || answer->distance >= settings.gap) continue;
-          keep[i] = answer->distance;
-          touches = true;
+          const auto answer = surface->distance(bind[at(part.vertices[i])], one, part.allowed, reach, {bind, trees}, hint);
+          if (!answer || answer->distance >= k_touching_zone) continue;
+          keep[i] = answer->distance <= 0 ? k_free : settings.gap - 2 * (k_touching_zone - answer->distance);
+          touches = touches || answer->distance < settings.gap;
         }
         if (touches) part.touching.emplace_back(other, std::move(keep));
       }
@@ -201,23 +203,28 @@ double FeasibleCollider::Impl::required(const Yielding& part, int local, int oth
 
 /// Moves point (vertex a of the part, or the middle of a and b) out of every opponent; true when it moved. contact tells about
 /// the nearest opponent.
-bool FeasibleCollider::Impl::push_out(const Yielding& part, int a, int b, std::span<const Opponent> opponents, double share,
-                                      const Scratch& scratch, Vec3& point, Contact& contact) const {
+bool FeasibleCollider::Impl::push_out(const Yielding& part, int a, int b, std::span<const Opponent> opponents,
+                                      const Scratch& scratch, Vec3& point, Contact& contact, std::span<int> hints) const {
   bool moved = false;
   contact.near = false;
-  for (const Opponent& opponent : opponents) {
+  for (std::size_t k = 0; k < opponents.size(); ++k) {
+    const Opponent& opponent = opponents[k];
     double reach = 2 * settings.gap;
     bool inside_box = false;
     for (const int other : opponent.parts) {
+      if (required(part, a, other) == k_free) continue;
       const double d2 = scratch.trees[at(other)].box().squared_distance(point);
       if (d2 <= settings.gap * settings.gap) inside_box = true;
       if (d2 == 0) reach = std::max(reach, surface->depth_limit(other));
     }
     if (!inside_box) continue;
-    const auto answer = surface->distance(point, opponent.parts, part.allowed, reach, scratch.x, scratch.trees);
+    const auto answer = surface->distance(point, opponent.parts, part.allowed, reach, {scratch.x, scratch.trees}, hints[k]);
     if (!answer) continue;
-    const double keep =
-        share * std::min(required(part, a, answer->part), b < 0 ? settings.gap : required(part, b, answer->part));
+    double keep = required(part, a, answer->part);
+    if (b >= 0) {
+      if (keep < settings.gap || required(part, b, answer->part) < settings.gap) continue;
+      keep = k_sag_share * settings.gap;
+    }
     if (answer->distance < 2 * settings.gap && (!contact.near || answer->distance < contact.distance))
       contact = {answer->normal, answer->distance, true};
     if (answer->distance >= keep) continue;
@@ -231,7 +238,8 @@ bool FeasibleCollider::Impl::push_out(const Yielding& part, int a, int b, std::s
 void FeasibleCollider::Impl::lift_edges(const Yielding& part, std::span<const Opponent> opponents,
                                         std::vector<Contact>& contacts, Scratch& scratch) const {
   std::vector<Vec3> lift(part.vertices.size());
-  std::vector<Contact> unused(1);
+  std::vector<int> hints(opponents.size(), -1);
+  Contact unused;
   for (int round = 0; round < k_sag_rounds; ++round) {
     std::fill(lift.begin(), lift.end(), Vec3::Zero());
     bool any = false;
@@ -244,7 +252,7 @@ void FeasibleCollider::Impl::lift_edges(const Yielding& part, std::span<const Op
       if (a.near && b.near && length * (a.normal - b.normal).norm() < 0.8 * settings.gap) continue;
       Vec3 middle = 0.5 * (p + q);
       const Vec3 before = middle;
-      if (!push_out(part, e[0], e[1], opponents, k_sag_share, scratch, middle, unused[0])) continue;
+      if (!push_out(part, e[0], e[1], opponents, scratch, middle, unused, hints)) continue;
       any = true;
       for (const int end : e) {
         Vec3& l = lift[at(end)];
@@ -265,7 +273,8 @@ int FeasibleCollider::Impl::deepest_opponent(const Yielding& part, const Vec3& p
       const int one[1] = {other};
       if (scratch.trees[at(other)].empty()) continue;
       const double reach = std::max(surface->depth_limit(other), settings.gap);
-      const auto answer = surface->distance(point, one, part.allowed, reach, scratch.x, scratch.trees);
+      int hint = -1;
+      const auto answer = surface->distance(point, one, part.allowed, reach, {scratch.x, scratch.trees}, hint);
       if (answer && answer->distance < distance) distance = answer->distance, deepest = other;
     }
   return deepest;
@@ -282,8 +291,9 @@ void FeasibleCollider::Impl::give_way(int p, Scratch& scratch) const {
   for (std::size_t i = 0; i < count; ++i) drawn[i] = scratch.x[at(part.vertices[i])];
   const auto project = [&] {
     parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
+      std::vector<int> hints(opponents.size(), -1);
       for (std::size_t i = begin; i < end; ++i)
-        if (push_out(part, static_cast<int>(i), -1, opponents, 1.0, scratch, scratch.x[at(part.vertices[i])], contacts[i]))
+        if (push_out(part, static_cast<int>(i), -1, opponents, scratch, scratch.x[at(part.vertices[i])], contacts[i], hints))
           moved[i] = 1;
     });
   };

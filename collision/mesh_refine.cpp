@@ -1,8 +1,10 @@
 // See mesh_refine.h. One round splits every long edge once: a triangle with one long edge becomes two, with two three, with
-// three four.
+// three four. An edge that needs n pieces is split at n/2 (rounded down) of them, so that an edge of 17 lengths becomes 17 pieces, not 32.
 #include "collision/mesh_refine.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "baker/core/check.h"
 
@@ -10,6 +12,8 @@ namespace ft {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double k_rounding = 1e-9;  ///< edges longer by no more than this share are not long
+
 Edge sorted(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 struct Round {
@@ -46,13 +50,22 @@ void split_triangle(const Triangle& t, const std::array<int, 3>& m, std::span<co
   }
 }
 
+/// Ends are told apart by position, so that both copies of a seam's edge are split at the same point.
+RefinedMesh::Blend split_of(int a, int b, std::span<const Vec3> x, double max_edge) {
+  const Vec3 &p = x[at(a)], &q = x[at(b)];
+  if (std::lexicographical_compare(q.data(), q.data() + 3, p.data(), p.data() + 3)) std::swap(a, b);
+  const double pieces = std::ceil((p - q).norm() / max_edge - k_rounding);
+  return {a, b, pieces < 1e6 ? std::floor(pieces / 2) / pieces : 0.5};
+}
+
 }  // namespace
 
 void RefinedMesh::positions(std::span<const Vec3> drawn, std::span<Vec3> refined) const {
   CHECK(static_cast<int>(drawn.size()) == drawn_vertex_count && static_cast<int>(refined.size()) == vertex_count());
   std::copy(drawn.begin(), drawn.end(), refined.begin());
   std::size_t v = drawn.size();
-  for (const auto& [a, b] : parents) refined[v++] = 0.5 * (refined[at(a)] + refined[at(b)]);
+  for (const Blend& blend : blends)
+    refined[v++] = (1 - blend.share) * refined[at(blend.a)] + blend.share * refined[at(blend.b)];
 }
 
 RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> triangles, double max_edge,
@@ -71,7 +84,7 @@ RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> tr
     for (const Triangle& t : mesh.triangles)
       for (std::size_t k = 0; k < 3; ++k) {
         const int a = t[k], b = t[(k + 1) % 3];
-        if (a == b || !((x[at(a)] - x[at(b)]).squaredNorm() > max_edge * max_edge)) continue;
+        if (a == b || !((x[at(a)] - x[at(b)]).norm() > max_edge * (1 + k_rounding))) continue;
         round.split.push_back(sorted(a, b));
         ++pieces;
       }
@@ -79,8 +92,9 @@ RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> tr
     std::sort(round.split.begin(), round.split.end());
     round.split.erase(std::unique(round.split.begin(), round.split.end()), round.split.end());
     for (const Edge& e : round.split) {
-      mesh.parents.push_back({e[0], e[1]});
-      x.push_back(0.5 * (x[at(e[0])] + x[at(e[1])]));
+      mesh.blends.push_back(split_of(e[0], e[1], x, max_edge));
+      const RefinedMesh::Blend& blend = mesh.blends.back();
+      x.push_back((1 - blend.share) * x[at(blend.a)] + blend.share * x[at(blend.b)]);
     }
     std::vector<Triangle> next;
     std::vector<int> source;

@@ -150,12 +150,18 @@ double PartSurface::half_thickness(int part, std::span<const Vec3> bind, const T
 }
 
 std::optional<PartSurface::Answer> PartSurface::distance(const Vec3& p, std::span<const int> parts,
-                                                         std::span<const char> allowed, double reach,
-                                                         std::span<const Vec3> x,
-                                                         std::span<const TriangleTree> trees) const {
+                                                         std::span<const char> allowed, double reach, const Pose& pose,
+                                                         int& hint) const {
+  const auto x = pose.positions;
   TriangleTree::Hit hit;
   hit.closest.squared_distance = reach * reach;
-  for (const int part : parts) trees[at(part)].closest(p, x, triangles_, hit);
+  if (hint >= 0) {
+    const Triangle& t = triangles_[at(hint)];
+    const ClosestOnTriangle guess = closest_on_triangle(p, x[at(t[0])], x[at(t[1])], x[at(t[2])]);
+    if (guess.squared_distance < hit.closest.squared_distance) hit = {guess, hint};
+  }
+  for (const int part : parts) pose.trees[at(part)].closest(p, x, triangles_, hit);
+  hint = hit.triangle;
   if (hit.triangle < 0) return std::nullopt;
   const int feature = hit.closest.feature;
   Vec3 normal = Vec3::Zero();

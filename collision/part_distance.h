@@ -36,10 +36,15 @@ class PartSurface {
     double distance = 0;         ///< signed [m], negative inside
     int part = -1;
   };
+  /// Positions now, and this surface's trees refitted to them (those of the parts asked for).
+  struct Pose {
+    std::span<const Vec3> positions;
+    std::span<const TriangleTree> trees;
+  };
   /// Distance to the union of parts (of one shell), looked for no farther than reach [m]. allowed[part] tells which parts count
-  /// as neighbours at a rim. trees are this surface's, refitted to positions.
+  /// as neighbours at a rim. hint, a triangle of one of the parts or -1, only makes it faster; it becomes the triangle found.
   std::optional<Answer> distance(const Vec3& p, std::span<const int> parts, std::span<const char> allowed, double reach,
-                                 std::span<const Vec3> positions, std::span<const TriangleTree> trees) const;
+                                 const Pose& pose, int& hint) const;
 
  private:
   Vec3 face_normal(int triangle, std::span<const Vec3> positions) const;
