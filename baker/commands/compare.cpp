@@ -1,0 +1,203 @@
+// Comparison of caches: see compare.h.
+#include "baker/commands/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "baker/commands/compare_report.h"
+#include "baker/core/file.h"
+
+namespace ft {
+namespace {
+
+struct Difference {
+  double max = 0, square_sum = 0;
+  int vertex = -1;
+};
+
+Difference difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b, std::vector<float>* distances) {
+  Difference d;
+  if (distances != nullptr) distances->clear();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double square = (a[i].cast<double>() - b[i].cast<double>()).squaredNorm(), distance = std::sqrt(square);
+    d.square_sum += square;
+    if (distance > d.max) {
+      d.max = distance;
+      d.vertex = static_cast<int>(i);
+    }
+    if (distances != nullptr) distances->push_back(static_cast<float>(distance));
+  }
+  return d;
+}
+
+/// Why the two cannot be compared; empty when they can.
+std::string mismatch(const CacheInfo& a, const CacheInfo& b) {
+  if (a.vertex_count != b.vertex_count)
+    return fmt::format("another topology: {} vertices against {}", a.vertex_count, b.vertex_count);
+  if (a.has_topology && b.has_topology) {
+    if (a.mesh.face_count() != b.mesh.face_count())
+      return fmt::format("another topology: {} faces against {}", a.mesh.face_count(), b.mesh.face_count());
+    if (a.mesh.face_sizes != b.mesh.face_sizes || a.mesh.face_vertices != b.mesh.face_vertices)
+      return "another topology: the faces connect other vertices";
+  }
+  const auto range = [](const CacheInfo& i) {
+    return i.frame_count == 0 ? std::string("no frames") : fmt::format("frames {}-{}", i.first_frame, i.first_frame + i.frame_count - 1);
+  };
+  if (a.first_frame != b.first_frame || a.frame_count != b.frame_count)
+    return fmt::format("another frame range: {} against {}", range(a), range(b));
+  if (a.has_fps && b.has_fps && std::abs(a.fps - b.fps) > 1e-9 * a.fps)
+    return fmt::format("another frame rate: {} fps against {}", a.fps, b.fps);
+  return {};
+}
+
+CompareReport incomparable(std::string system, const std::filesystem::path& a, const std::filesystem::path& b, std::string reason) {
+  CompareReport r;
+  r.system = std::move(system);
+  r.a = a.string();
+  r.b = b.string();
+  r.verdict = CompareVerdict::k_incomparable;
+  r.reason = std::move(reason);
+  return r;
+}
+
+CompareReport compare_files(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance) {
+  auto reader_a = open_cache(a);
+  if (!reader_a) return incomparable(a.stem().string(), a, b, reader_a.error().text());
+  auto reader_b = open_cache(b);
+  if (!reader_b) return incomparable(a.stem().string(), a, b, reader_b.error().text());
+  CompareReport r = compare_caches(**reader_a, **reader_b, tolerance);
+  r.system = a.stem().string();
+  r.a = a.string();
+  r.b = b.string();
+  return r;
+}
+
+/// Caches in a folder: system -> files, both sorted.
+std::map<std::string, std::vector<std::filesystem::path>> caches_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::vector<std::filesystem::path>> out;
+  std::error_code error;
+  for (std::filesystem::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+    const auto extension = i->path().extension().string();
+    for (const CacheFormat& f : cache_formats())
+      if (extension == f.extension) out[i->path().stem().string()].push_back(i->path());
+  }
+  for (auto& [system, files] : out) std::sort(files.begin(), files.end());
+  return out;
+}
+
+std::vector<CompareReport> compare_folders(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance) {
+  std::vector<CompareReport> reports;
+  const auto in_a = caches_in(a), in_b = caches_in(b);
+  for (const auto& [system, files] : in_a) {
+    const auto twin = in_b.find(system);
+    if (twin == in_b.end()) {
+      reports.push_back(incomparable(system, files.front(), b, "no cache of this name in " + b.string()));
+      continue;
+    }
+    for (const auto& file : files) {
+      // The same format where there is one, else whatever the other folder has of this system.
+      const auto same = std::find(twin->second.begin(), twin->second.end(), b / file.filename());
+      reports.push_back(compare_files(file, same != twin->second.end() ? *same : twin->second.front(), tolerance));
+    }
+  }
+  for (const auto& [system, files] : in_b)
+    if (!in_a.contains(system)) reports.push_back(incomparable(system, a, files.front(), "no cache of this name in " + a.string()));
+  if (reports.empty()) reports.push_back(incomparable(a.filename().string(), a, b, "no caches in either folder"));
+  std::stable_sort(reports.begin(), reports.end(), [](const auto& x, const auto& y) { return x.system < y.system; });
+  return reports;
+}
+
+}  // namespace
+
+int CompareReport::diverging_count() const {
+  return static_cast<int>(std::count_if(frames.begin(), frames.end(), [&](const FrameDifference& f) { return diverges(f); }));
+}
+
+CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
+  const CacheInfo &info_a = a.info(), &info_b = b.info();
+  CompareReport r;
+  r.system = info_a.system;
+  r.tolerance = tolerance;
+  r.vertex_count = info_a.vertex_count;
+  r.first_frame = info_a.first_frame;
+  r.velocities = info_a.has_velocity && info_b.has_velocity;
+  r.speed_tolerance = tolerance * (info_a.has_fps ? info_a.fps : info_b.fps);
+  const auto give_up = [&](std::string reason) {
+    r.verdict = CompareVerdict::k_incomparable;
+    r.reason = std::move(reason);
+    return r;
+  };
+  if (std::string reason = mismatch(info_a, info_b); !reason.empty()) return give_up(std::move(reason));
+
+  double square_sum = 0, worst = 0;
+  std::vector<Vec3f> x_a, x_b;
+  std::vector<float> distances;
+  for (int i = 0; i < info_a.frame_count; ++i) {
+    if (const Status s = a.read_frame(i, x_a); !s) return give_up(s.error().text());
+    if (const Status s = b.read_frame(i, x_b); !s) return give_up(s.error().text());
+    const Difference d = difference(x_a, x_b, &distances);
+    FrameDifference f{r.first_frame + i, d.max, x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size())), d.vertex, 0, -1};
+    square_sum += d.square_sum;
+    if (d.max > worst) r.worst = i;
+    if (d.max > worst || (r.worst < 0 && i + 1 == info_a.frame_count)) {
+      r.picture_positions = x_b;
+      r.picture_distances = distances;
+    }
+    worst = std::max(worst, d.max);
+    if (r.velocities) {
+      if (const Status s = a.read_velocities(i, x_a); !s) return give_up(s.error().text());
+      if (const Status s = b.read_velocities(i, x_b); !s) return give_up(s.error().text());
+      const Difference v = difference(x_a, x_b, nullptr);
+      f.max_speed = v.max;
+      f.speed_vertex = v.vertex;
+    }
+    if (r.first_diverging < 0 && r.diverges(f)) r.first_diverging = i;
+    r.frames.push_back(f);
+  }
+  const double count = static_cast<double>(r.frames.size()) * r.vertex_count;
+  r.rms = count > 0 ? std::sqrt(square_sum / count) : 0;
+  r.verdict = r.first_diverging < 0 ? CompareVerdict::k_equal : CompareVerdict::k_different;
+  return r;
+}
+
+std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance) {
+  std::error_code ignored;
+  const bool folder_a = std::filesystem::is_directory(a, ignored), folder_b = std::filesystem::is_directory(b, ignored);
+  if (folder_a && folder_b) return compare_folders(a, b, tolerance);
+  if (folder_a != folder_b && std::filesystem::exists(folder_a ? b : a, ignored))
+    return {incomparable(a.stem().string(), a, b, "one is a folder, the other is a file")};
+  return {compare_files(a, b, tolerance)};
+}
+
+CompareVerdict overall_verdict(const std::vector<CompareReport>& reports) {
+  CompareVerdict worst = CompareVerdict::k_equal;
+  for (const CompareReport& r : reports) worst = std::max(worst, r.verdict);
+  return worst;
+}
+
+int exit_code(CompareVerdict verdict) {
+  return verdict == CompareVerdict::k_equal ? 0 : verdict == CompareVerdict::k_different ? 1 : exit_code(ErrorKind::k_input);
+}
+
+int run_compare(const CompareOptions& options) {
+  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance)) {
+    fmt::print(stderr, "--tolerance must be a distance in metres, 0 or more\n");
+    return exit_code(ErrorKind::k_usage);
+  }
+  const auto reports = compare_paths(options.a, options.b, options.tolerance);
+  fmt::print("{}", compare_text(reports));
+  Status status;
+  if (!options.json.empty()) status = write_text_durably(options.json, compare_json(reports));
+  if (status && !options.html.empty()) status = write_text_durably(options.html, compare_html(reports));
+  if (status && !options.junit.empty()) status = write_text_durably(options.junit, compare_junit(reports));
+  if (!status) {
+    fmt::print(stderr, "{}\n", status.error().text());
+    return exit_code(status.error().kind);
+  }
+  return exit_code(overall_verdict(reports));
+}
+
+}  // namespace ft

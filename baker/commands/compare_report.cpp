@@ -1,0 +1,126 @@
+// Text, JSON and JUnit of compare: see compare_report.h.
+#include "baker/commands/compare_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+namespace ft {
+namespace {
+
+constexpr int k_most_lines = 20;  // frames listed as text; JSON has all
+
+const FrameDifference& at(const CompareReport& r, int index) { return r.frames[static_cast<std::size_t>(index)]; }
+
+nlohmann::ordered_json to_json(const FrameDifference& f) {
+  nlohmann::ordered_json j = {{"frame", f.frame}, {"max", f.max}, {"rms", f.rms}};
+  if (f.vertex >= 0) j["vertex"] = f.vertex;
+  if (f.speed_vertex >= 0) j["max_speed"] = f.max_speed, j["speed_vertex"] = f.speed_vertex;
+  return j;
+}
+
+}  // namespace
+
+std::string_view verdict_name(CompareVerdict verdict) {
+  return verdict == CompareVerdict::k_equal ? "equal" : verdict == CompareVerdict::k_different ? "different" : "incomparable";
+}
+
+std::string length_text(double metres) {
+  if (metres == 0) return "0";
+  return metres < 1 ? fmt::format("{:.4g} mm", 1000 * metres) : fmt::format("{:.4g} m", metres);
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') out += "&amp;";
+    else if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else if (c == '"') out += "&quot;";
+    else if (c == '\'') out += "&#39;";
+    else if (static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\t') out += '?';
+    else out += c;
+  }
+  return out;
+}
+
+std::string summary(const CompareReport& r) {
+  if (r.verdict == CompareVerdict::k_incomparable) return r.reason;
+  if (r.verdict == CompareVerdict::k_equal) {
+    const bool speeds_equal = std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) { return f.max_speed == 0; });
+    if (r.worst < 0 && speeds_equal) return "no difference at all";
+    if (r.worst < 0) return "positions do not differ, velocities within the tolerance";
+    const FrameDifference& w = at(r, r.worst);
+    return fmt::format("largest difference {} in frame {}, vertex {}; RMS {}; tolerance {}", length_text(w.max), w.frame, w.vertex,
+                       length_text(r.rms), length_text(r.tolerance));
+  }
+  const FrameDifference& f = at(r, r.first_diverging);
+  std::string text = f.max > r.tolerance
+                         ? fmt::format("first beyond the tolerance of {} in frame {}, vertex {} ({})", length_text(r.tolerance), f.frame,
+                                       f.vertex, length_text(f.max))
+                         : fmt::format("velocities first beyond the tolerance of {:.4g} m/s in frame {}, vertex {} ({:.4g} m/s)",
+                                       r.speed_tolerance, f.frame, f.speed_vertex, f.max_speed);
+  if (r.worst >= 0)
+    text += fmt::format("; largest {} in frame {}, vertex {}; RMS {}", length_text(at(r, r.worst).max), at(r, r.worst).frame,
+                        at(r, r.worst).vertex, length_text(r.rms));
+  return text + fmt::format("; {} of {} frames differ", r.diverging_count(), r.frames.size());
+}
+
+std::string compare_text(const std::vector<CompareReport>& reports) {
+  std::string out;
+  for (const CompareReport& r : reports) {
+    out += fmt::format("{}: {}: {}\n  a: {}\n  b: {}\n", r.system, verdict_name(r.verdict), summary(r), r.a, r.b);
+    if (r.verdict != CompareVerdict::k_different) continue;
+    out += fmt::format("  {:>8} {:>12} {:>12} {:>8} {:>12}\n", "frame", "max [mm]", "rms [mm]", "vertex", "max [m/s]");
+    int lines = 0;
+    for (const FrameDifference& f : r.frames)
+      if (r.diverges(f) && ++lines <= k_most_lines)
+        out += fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>8} {:>12.4g}\n", f.frame, 1000 * f.max, 1000 * f.rms, f.vertex, f.max_speed);
+    if (lines > k_most_lines) out += fmt::format("  and {} more frames\n", lines - k_most_lines);
+  }
+  return out;
+}
+
+std::string compare_json(const std::vector<CompareReport>& reports) {
+  using Json = nlohmann::ordered_json;
+  const CompareVerdict verdict = overall_verdict(reports);
+  Json all = {{"verdict", verdict_name(verdict)}, {"exit_code", exit_code(verdict)}, {"units", "m, m/s"}, {"caches", Json::array()}};
+  for (const CompareReport& r : reports) {
+    Json j = {{"system", r.system}, {"a", r.a}, {"b", r.b}, {"verdict", verdict_name(r.verdict)}, {"summary", summary(r)}};
+    if (r.verdict != CompareVerdict::k_incomparable) {
+      j["tolerance"] = r.tolerance;
+      j["vertex_count"] = r.vertex_count;
+      j["velocities_compared"] = r.velocities;
+      j["rms"] = r.rms;
+      j["diverging_frames"] = r.diverging_count();
+      if (r.first_diverging >= 0) j["first_diverging"] = to_json(at(r, r.first_diverging));
+      if (r.worst >= 0) j["worst"] = to_json(at(r, r.worst));
+      j["frames"] = Json::array();
+      for (const FrameDifference& f : r.frames) j["frames"].push_back(to_json(f));
+    }
+    all["caches"].push_back(std::move(j));
+  }
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string compare_junit(const std::vector<CompareReport>& reports) {
+  int failures = 0, errors = 0;
+  std::string cases;
+  for (const CompareReport& r : reports) {
+    cases += fmt::format("  <testcase classname=\"followthrough.compare\" name=\"{}\">", escaped(std::filesystem::path(r.a).filename().string()));
+    const bool different = r.verdict == CompareVerdict::k_different;
+    if (r.verdict != CompareVerdict::k_equal) {
+      ++(different ? failures : errors);
+      cases += fmt::format("\n    <{0} message=\"{1}\">{2} against {3}</{0}>\n  ", different ? "failure" : "error", escaped(summary(r)),
+                           escaped(r.a), escaped(r.b));
+    }
+    cases += "</testcase>\n";
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"followthrough compare\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n{}</testsuite>\n",
+      reports.size(), failures, errors, cases);
+}
+
+}  // namespace ft
