@@ -1,8 +1,10 @@
-// The shot file: what to bake, as plain structs with good defaults. shot_file.cpp reads it from TOML and reports every fault at
-// once, with line and column, the allowed range and what was probably meant.
+// The shot file: what to bake, as plain structs with good defaults. shot_read.cpp reads it from TOML and reports every fault at
+// once, with line and column, the allowed range and what was probably meant. The keys, their ranges and units stand once, in
+// shot_keys.cpp; reading, messages, --set, the settings list and the reference all come from that table.
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,6 +52,7 @@ struct ClothSpec {
   std::string on;                  ///< name of the primary
   std::vector<PinSpec> pins;
   std::vector<std::pair<std::string, double>> fabric_overrides;  ///< "mass_per_area" = 0.2 ...: keys of solvers' Fabric
+  double weld = 0;                 ///< garment vertices nearer than this are joined for the simulation [m]; 0: none, see weld.h
   double unit_scale = 1;           ///< m per mesh unit
   std::string up = "y";
   Vec3 offset = Vec3::Zero();      ///< m, added after scale and axis
@@ -89,20 +92,52 @@ struct Shot {
   bool gate_crossings = false;     ///< exit code 4 when any frame has crossings
 };
 
-/// Names that the program knows and the shot file may use; the conductor fills it from the registries above this floor.
+/// A fabric's key that a cloth may override. Made from a bare name it has no range.
+struct FabricKeyWord {
+  FabricKeyWord(std::string_view name) : key(name) {}
+  FabricKeyWord(const std::string& name) : key(name) {}
+  FabricKeyWord(const char* name) : key(name) {}
+  FabricKeyWord(std::string_view name, double low, double high, std::string_view key_unit)
+      : key(name), lowest(low), highest(high), unit(key_unit) {}
+  std::string key;
+  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
+  std::string unit;
+};
+
+/// Names that the program knows and the shot file may use; the conductor fills it from the registries above this floor. An empty
+/// list of fabrics or formats is not checked.
 struct ShotVocabulary {
   std::vector<std::string> fabrics;
-  std::vector<std::string> fabric_keys;
+  std::vector<FabricKeyWord> fabric_keys;
   std::vector<std::string> cache_formats;
 };
 
-/// All faults of one shot file; the first is also what Result carries.
+/// All faults of one shot file in the order of the file; the first is also what Result carries.
 struct ShotFaults {
   std::vector<std::string> messages;  ///< "shot.toml:14:7: cloth "cape": ..."
 };
 
-/// overrides: "cloth.dress.fabric=denim" as given by --set.
+/// overrides: "cloth.dress.fabric=denim" as given by --set; values are TOML or bare words, paths are the shot file's.
+/// Error kind: k_input when nothing but missing files is wrong, k_usage otherwise.
 Result<Shot> read_shot(const std::filesystem::path& file, const ShotVocabulary& vocabulary,
                        const std::vector<std::string>& overrides, ShotFaults& faults);
+
+/// The same from text; paths are resolved against the folder of `file`, which need not exist.
+Result<Shot> parse_shot(std::string_view text, const std::filesystem::path& file, const ShotVocabulary& vocabulary,
+                        const std::vector<std::string>& overrides, ShotFaults& faults);
+
+/// Every setting as (key path, value text), in the order of the file's sections: ("cloth.skirt.fabric", "\"denim\""). Paths are
+/// relative to the shot file's folder, so that a moved project is the same shot.
+std::vector<std::pair<std::string, std::string>> settings(const Shot& shot);
+
+/// settings() as lines "key = value": changes exactly when a value changes. For hashing.
+std::string canonical(const Shot& shot);
+
+/// What differs between two lists of settings, for "stale because ...": "cloth.skirt.fabric changed from \"cotton\" to \"denim\"".
+std::vector<std::string> changed_settings(const std::vector<std::pair<std::string, std::string>>& before,
+                                          const std::vector<std::pair<std::string, std::string>>& now);
+
+/// The keys of the shot file as Markdown tables, from the table that the reader uses.
+std::string shot_file_reference(const ShotVocabulary& vocabulary = {});
 
 }  // namespace ft

@@ -1,0 +1,13 @@
+// --set section.key=value: put into the tree before it is read, so that it is judged by the same table as the file.
+#pragma once
+
+#include <string>
+
+#include "io/shot/shot_values.h"
+
+namespace ft {
+
+/// "cloth.dress.fabric=denim". Cloths and primaries need to exist; other sections are made when they are missing.
+void apply_override(Value& root, const std::string& text, FaultList& faults);
+
+}  // namespace ft

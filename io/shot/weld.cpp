@@ -1,0 +1,85 @@
+#include "io/shot/weld.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "baker/core/check.h"
+
+namespace ft {
+namespace {
+
+using Cell = std::array<long long, 3>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Cell cell_of(const Vec3& p, double size) {
+  Cell cell;
+  // Far beyond any garment; keeps the cast defined for any finite input.
+  for (int k = 0; k < 3; ++k) cell[at(k)] = static_cast<long long>(std::clamp(std::floor(p[k] / size), -4e18, 4e18));
+  return cell;
+}
+
+}  // namespace
+
+WeldedMesh weld(const Mesh& mesh, double distance) {
+  CHECK(distance > 0);
+  WeldedMesh out;
+  out.mesh.name = mesh.name;
+  std::map<Cell, std::vector<int>> kept_in;  // cells one distance wide: whatever is near is in this cell or a neighbour
+  for (const Vec3& p : mesh.positions) {
+    const Cell home = cell_of(p, distance);
+    int joined = -1;
+    for (long long dx = -1; dx <= 1; ++dx)
+      for (long long dy = -1; dy <= 1; ++dy)
+        for (long long dz = -1; dz <= 1; ++dz) {
+          const auto found = kept_in.find({home[0] + dx, home[1] + dy, home[2] + dz});
+          if (found == kept_in.end()) continue;
+          for (const int k : found->second)
+            if ((out.mesh.positions[at(k)] - p).squaredNorm() < distance * distance && (joined < 0 || k < joined)) joined = k;
+        }
+    if (joined < 0) {
+      joined = out.mesh.vertex_count();
+      out.mesh.positions.push_back(p);
+      kept_in[home].push_back(joined);
+    }
+    out.joined_of.push_back(joined);
+  }
+
+  out.mesh.uvs = mesh.uvs;
+  std::size_t begin = 0;
+  for (const int size : mesh.face_sizes) {
+    std::vector<int> corners, corner_uvs;
+    for (int k = 0; k < size; ++k) {
+      const int v = out.joined_of[at(mesh.face_vertices[begin + at(k)])];
+      if (std::find(corners.begin(), corners.end(), v) != corners.end()) continue;
+      corners.push_back(v);
+      if (!mesh.face_uvs.empty()) corner_uvs.push_back(mesh.face_uvs[begin + at(k)]);
+    }
+    begin += at(size);
+    if (corners.size() < 3) continue;
+    out.mesh.face_sizes.push_back(static_cast<int>(corners.size()));
+    out.mesh.face_vertices.insert(out.mesh.face_vertices.end(), corners.begin(), corners.end());
+    out.mesh.face_uvs.insert(out.mesh.face_uvs.end(), corner_uvs.begin(), corner_uvs.end());
+  }
+
+  for (const VertexGroup& group : mesh.groups) {
+    std::map<int, double> weights;  // of joined vertices the heavier weight counts
+    for (std::size_t i = 0; i < group.vertices.size(); ++i) {
+      double& weight = weights[out.joined_of[at(group.vertices[i])]];
+      weight = std::max(weight, group.weights[i]);
+    }
+    VertexGroup joined_group{group.name, {}, {}};
+    for (const auto& [vertex, weight] : weights) joined_group.vertices.push_back(vertex), joined_group.weights.push_back(weight);
+    out.mesh.groups.push_back(std::move(joined_group));
+  }
+  return out;
+}
+
+void spread_welded(std::span<const int> joined_of, std::span<const Vec3> joined, std::span<Vec3> file_order) {
+  CHECK(joined_of.size() == file_order.size());
+  for (std::size_t i = 0; i < joined_of.size(); ++i) file_order[i] = joined[at(joined_of[i])];
+}
+
+}  // namespace ft

@@ -1,0 +1,86 @@
+#include "io/shot/words.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace ft {
+namespace {
+
+std::string folded(std::string_view word) {
+  std::string out(word);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (c == '-' || c == ' ') c = '_';
+  }
+  return out;
+}
+
+}  // namespace
+
+int edit_distance(std::string_view a_text, std::string_view b_text) {
+  const std::string a = folded(a_text.substr(0, 64)), b = folded(b_text.substr(0, 64));
+  // Three rows of the usual table: two back, one back, now.
+  std::vector<int> two_back(b.size() + 1), back(b.size() + 1), now(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) back[j] = static_cast<int>(j);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    now[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int same = a[i - 1] == b[j - 1] ? 0 : 1;
+      now[j] = std::min({back[j] + 1, now[j - 1] + 1, back[j - 1] + same});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = std::min(now[j], two_back[j - 2] + 1);
+    }
+    two_back.swap(back);
+    back.swap(now);
+  }
+  return back[b.size()];
+}
+
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+  const std::string* best = nullptr;
+  int best_distance = 1 + std::max(1, static_cast<int>(word.size()) / 3);
+  for (const std::string& candidate : candidates) {
+    const int distance = edit_distance(word, candidate);
+    if (distance < best_distance && distance < static_cast<int>(std::max(word.size(), candidate.size())))
+      best = &candidate, best_distance = distance;
+  }
+  if (best != nullptr) return *best;
+  const std::string wanted = folded(word);
+  if (wanted.size() >= 3)
+    for (const std::string& candidate : candidates) {
+      const std::string c = folded(candidate);
+      if (c.size() >= 3 && (c.find(wanted) != std::string::npos || wanted.find(c) != std::string::npos)) return candidate;
+    }
+  return {};
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
+  if (candidates.empty()) return {};
+  const std::string near = nearest_word(word, candidates);
+  if (!near.empty()) return "did you mean \"" + near + "\"?";
+  const std::size_t shown = std::min<std::size_t>(candidates.size(), 24);
+  return "known: " + joined(candidates.first(shown)) + (candidates.size() > shown ? ", ..." : "");
+}
+
+std::string joined(std::span<const std::string> words, std::string_view separator) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out.append(separator);
+    out.append(words[i]);
+  }
+  return out;
+}
+
+std::string printable(std::string_view text, std::size_t longest) {
+  std::string out;
+  for (const char c : text.substr(0, longest)) out.push_back(static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c);
+  if (text.size() > longest) out.append("...");
+  return out;
+}
+
+std::string number_text(double value) {
+  char digits[40];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  return {digits, end};
+}
+
+}  // namespace ft
