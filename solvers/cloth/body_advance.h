@@ -44,6 +44,9 @@ class BodyAdvance {
 
  private:
   struct Scratch;
+  double plan(const ClothMotion& cloth, double h, double extra_slack, double* beta);
+  void solve(const SubstepInput& input, double h, double end, bool shortened, ClothMotion& cloth, AdvanceReport& report);
+
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;
 };

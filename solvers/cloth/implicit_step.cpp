@@ -85,6 +85,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   context.beta_h = bh;
   context.x_t0 = in.x_t0;
   context.v_t0 = in.v_t0;
+  context.x_tm1 = in.x_tm1;
+  context.a = w.a;
+  context.b = w.b;
   context.time = in.time;
   for (const auto& energy : model_.energies) energy->begin_step(context);
 

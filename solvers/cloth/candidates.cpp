@@ -1,0 +1,180 @@
+#include "solvers/cloth/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "baker/core/parallel.h"
+#include "collision/ccd_li2021.h"
+#include "solvers/cloth/carry_field.h"
+
+namespace ft {
+namespace {
+
+constexpr std::size_t k_block = 2048;
+constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Collider triangles in the common numbering.
+std::vector<Triangle> shifted_triangles(const ClothModel& model) {
+  std::vector<Triangle> out;
+  if (!model.collider) return out;
+  out.assign(model.collider->triangles().begin(), model.collider->triangles().end());
+  for (Triangle& t : out)
+    for (int& v : t) v += model.vertex_count();
+  return out;
+}
+
+std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
+  return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
+}
+
+}  // namespace
+
+Candidates::Candidates(const ClothModel& model)
+    : model_(model),
+      finder_(model.vertex_count(), model.triangles, model.collider ? model.collider->vertex_count() : 0,
+              shifted_triangles(model)) {
+  for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
+  any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
+}
+
+/// The collider's part of a pair, -1 for cloth against cloth.
+int Candidates::part_of(const Stencil& stencil) const {
+  for (const int v : stencil.v)
+    if (v >= model_.vertex_count()) return model_.collider->part_of_vertex()[at(v - model_.vertex_count())];
+  return -1;
+}
+
+/// A pair counts unless it is a cloth vertex against a part that it may pass, or cloth that does not collide with itself.
+bool Candidates::counts(const ClothMotion& cloth, const Stencil& stencil) const {
+  const int part = part_of(stencil);
+  for (const int v : stencil.v) {
+    if (v >= model_.vertex_count()) continue;
+    if (part >= 0 && cloth.released[at(v)] == part) return false;
+    if (part < 0 && !model_.self_collides[at(v)]) return false;
+  }
+  return true;
+}
+
+double Candidates::carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece) {
+  const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
+  inertia_.resize(nc);
+  for (std::size_t i = 0; i < nc; ++i) inertia_[i] = beta * h * cloth.v[i];
+  piece.carry = inertia_;
+  if (nb == 0) return 0;
+
+  Vec3 mean = Vec3::Zero();
+  Box box = bounds(cloth.x);
+  for (std::size_t i = 0; i < nc; ++i) {
+    mean += cloth.v[i] * (h / static_cast<double>(nc));
+    box.include((cloth.x[i] + h * cloth.v[i]).eval());
+  }
+  box.inflate(2 * radius_);
+  double fastest = 0;
+  for (std::size_t i = 0; i < nb; ++i) {
+    Box swept;
+    swept.include(piece.start[nc + i]);
+    swept.include((piece.start[nc + i] + piece.body_motion[i]).eval());
+    if (swept.overlaps(box)) fastest = std::max(fastest, (piece.body_motion[i] - mean).norm());
+  }
+  const double range = 2 * radius_ + std::min(fastest, k_farthest_range);
+  boxes_.resize(nc + nb);
+  for (std::size_t i = 0; i < nc + nb; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], 0.5 * range);
+  finder_.find(boxes_, false, found_);
+  near_body_.vertex_face.clear();
+  for (const Stencil& stencil : found_.vertex_face)
+    if (counts(cloth, stencil)) near_body_.vertex_face.push_back(stencil);
+  if (near_body_.vertex_face.empty()) return fastest;
+  CarryInput input;
+  input.cloth_vertex_count = static_cast<int>(nc);
+  input.x = piece.start;
+  input.body_motion = piece.body_motion;
+  input.inertia = inertia_;
+  input.edges = model_.edges;
+  input.pairs = &near_body_;
+  input.range = range;
+  carry_field(input, piece.carry);
+  return fastest;
+}
+
+double Candidates::collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece) {
+  const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
+  const double gravity = model_.setup.gravity.norm();
+  Vec3 frame = Vec3::Zero();
+  for (std::size_t i = 0; i < nc; ++i) frame += piece.carry[i] / static_cast<double>(nc);
+  piece.slack.resize(nc);
+  boxes_.resize(nc + nb);
+  for (std::size_t i = 0; i < nc; ++i) {
+    piece.slack[i] = 1.2 * (h * cloth.v[i] - piece.carry[i]).norm() + 0.6 * h * h * gravity + 1e-3 +
+                     0.1 * std::min(fastest, k_farthest_range) + extra_slack;
+    boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, piece.slack[i] + 0.5 * radius_);
+  }
+  for (std::size_t i = 0; i < nb; ++i) {
+    const Vec3& start = piece.start[nc + i];
+    boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame, 0.5 * radius_);
+  }
+  finder_.find(boxes_, any_self_, found_);
+  piece.all = piece.carry;
+  piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
+  const double t = filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face);
+  return std::min(t, filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge));
+}
+
+/// Keeps what can come nearer than the contact radius, and finds the first time of contact among it.
+double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
+                          std::vector<Stencil>& kept) {
+  const std::size_t blocks = block_count(found.size(), k_block);
+  const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
+  if (kept_.size() < blocks) kept_.resize(blocks);
+  earliest_.assign(blocks, 1.0);
+  parallel_for(found.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    auto& mine = kept_[begin / k_block];
+    mine.clear();
+    double first = 1;
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::array<Vec3, 4> x = gather(piece.start, found[p]), d = gather(piece.all, found[p]);
+      double relative = 0, slack_a = 0, slack_b = 0;
+      for (std::size_t a = 0; a < split; ++a)
+        for (std::size_t b = split; b < 4; ++b) relative = std::max(relative, (d[a] - d[b]).squaredNorm());
+      relative = std::sqrt(relative);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const int v = found[p].v[k];
+        double& side = k < split ? slack_a : slack_b;
+        if (v < model_.vertex_count()) side = std::max(side, piece.slack[at(v)]);
+      }
+      const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
+                                                             : edge_edge_geometry(x[0], x[1], x[2], x[3]);
+      if (g.distance >= relative + slack_a + slack_b + radius_ || !counts(cloth, found[p])) continue;
+      mine.push_back(found[p]);
+      if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
+      first = std::min(first, ccd_time(kind, x, d));
+    }
+    earliest_[begin / k_block] = first;
+  });
+  kept.clear();
+  double t = 1;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    kept.insert(kept.end(), kept_[b].begin(), kept_[b].end());
+    t = std::min(t, earliest_[b]);
+  }
+  return t;
+}
+
+int Candidates::release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth, int* let_through) {
+  int freed = 0;
+  for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge}) {
+    auto& list = kind == PairKind::k_vertex_face ? pairs_.vertex_face : pairs_.edge_edge;
+    std::erase_if(list, [&](const Stencil& stencil) {
+      if (ccd_time(kind, gather(piece.start, stencil), gather(piece.all, stencil)) >= share) return false;
+      const int part = part_of(stencil);
+      if (part < 0) ++*let_through;
+      for (const int v : stencil.v)
+        if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part) cloth.released[at(v)] = part, ++freed;
+      return true;
+    });
+  }
+  return freed;
+}
+
+}  // namespace ft

@@ -1,0 +1,56 @@
+// What can meet in one piece of a substep: the pairs between carried cloth, body and cloth, and how far the body can advance
+// before the first of them touches (conservative CCD over the carried motion). Pairs are collected in a frame that moves with the
+// cloth's mean carry, so that a fast character does not sweep its boxes through everything.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solvers/cloth/body_advance.h"
+#include "collision/contact_pairs.h"
+#include "collision/pair_geometry.h"
+
+namespace ft {
+
+/// Positions and motions of a piece: cloth first, then the body.
+struct PieceMotion {
+  std::vector<Vec3> start;        ///< m
+  std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
+  std::vector<Vec3> carry;        ///< per cloth vertex [m]
+  std::vector<Vec3> all;          ///< carry, then body_motion [m]
+  std::vector<double> slack;      ///< per cloth vertex: how far the solve may go from the carried place [m]
+};
+
+class Candidates {
+ public:
+  explicit Candidates(const ClothModel& model);
+
+  /// Fills piece.carry: near the body its motion, else beta times the cloth's own. Returns the largest body motion near the cloth,
+  /// relative to the cloth's mean [m].
+  double carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece);
+  /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
+  double collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece);
+  /// Takes out the pairs that touch within `share` of the motion: cloth vertices are let through the collider's part (noted in
+  /// cloth.released; returns how many), pairs of cloth with cloth are only dropped (counted in let_through).
+  int release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth, int* let_through);
+
+  const ContactPairs& pairs() const { return pairs_; }
+
+ private:
+  bool counts(const ClothMotion& cloth, const Stencil& stencil) const;
+  int part_of(const Stencil& stencil) const;
+  double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
+                std::vector<Stencil>& kept);
+
+  const ClothModel& model_;
+  PairFinder finder_;
+  double radius_ = 1e-3;
+  bool any_self_ = false;
+  std::vector<VertexBox> boxes_;
+  ContactPairs found_, near_body_, pairs_;
+  std::vector<Vec3> inertia_;
+  std::vector<double> earliest_;
+  std::vector<std::vector<Stencil>> kept_;
+};
+
+}  // namespace ft
