@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Runs a benchmark scene, and Blender beside it, in one run on one machine; both results go to the same judge.
+#   tests/bench/run.sh SCENE [--frames N] [--preset NAME] [--threads N] [--keep FOLDER] [--peer FOLDER] [-- BAKE ARGUMENTS]
+# SCENE     S1 (a square on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
+# --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
+#           running it: good for looking, not for claims of speed.
+# Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
+
+usage() { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+scene=${1:-}
+case $scene in
+  -h | --help) usage; exit 0 ;;
+  S1 | S2) shift ;;
+  *) usage >&2; exit 2 ;;
+esac
+frames=100 preset=default keep="" peer="" bake_arguments=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --frames | --preset | --threads | --keep | --peer) [ $# -gt 1 ] || fail "$1 needs a value" ;;&
+    --frames) frames=$2; shift ;;
+    --preset) preset=$2; shift ;;
+    --threads) bake_arguments+=(--threads "$2"); shift ;;
+    --keep) keep=$2; shift ;;
+    --peer) peer=$(cd "$2" && pwd); shift ;;
+    --) shift; bake_arguments+=("$@"); break ;;
+    *) fail "what is \"$1\"?" ;;
+  esac
+  shift
+done
+
+bench=${FOLLOWTHROUGH_BENCH:-$root/../shared/bench}
+[ -f "$bench/judge.cpp" ] || fail "the scenes and the judge are not at $bench; set FOLLOWTHROUGH_BENCH"
+# shellcheck disable=SC2086
+install_packages $packages_build $packages_tests $packages_bench
+build release followthrough case_tool
+bin=$root/build/release/bin
+if [ ! -x "$bin/judge" ] || [ "$bench/judge.cpp" -nt "$bin/judge" ]; then
+  g++ -O2 -o "$bin/judge" "$bench/judge.cpp"
+fi
+if [ -n "$keep" ]; then
+  mkdir -p "$keep"
+  work=$(cd "$keep" && pwd)
+else
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+fi
+
+case $scene in
+  S1) n=10000 pins=() skip=0; script=(S1_sphere.py -- --n 100) ;;
+  S2) n=4000 pins=(--pins 0-199) skip=200; script=(S2_skirt.py -- --rings 40 --segs 100) ;;
+esac
+if [ -z "$peer" ]; then
+  peer=$work/peer
+  say "The peer: Blender, $scene, preset $preset, $frames frames"
+  blender -b --factory-startup -P "$bench/${script[0]}" "${script[@]:1}" --frames "$frames" --preset "$preset" --out "$peer" \
+    >"$work/peer.log" 2>&1 || { tail -20 "$work/peer.log" >&2; fail "Blender failed (see above)"; }
+  grep RESULT "$work/peer.log" || { tail -20 "$work/peer.log" >&2; fail "Blender gave no result (see above)"; }
+fi
+
+say "Ours: the same character, garment and frames"
+rm -rf "$work/shot" "$work/bake"
+"$bin/case_tool" to-shot "$peer" "$work/shot" "${pins[@]}"
+TIMEFORMAT='%U %S'
+{ time "$bin/followthrough" bake "$work/shot/shot.toml" --out "$work/bake" --progress plain "${bake_arguments[@]}" >"$work/bake.log" 2>&1; } \
+  2>"$work/cpu.txt" || { tail -20 "$work/bake.log" >&2; fail "the bake failed (see above)"; }
+our_cpu=$(awk '{ print $1 + $2 }' "$work/cpu.txt")
+
+say "The judge"
+"$bin/case_tool" from-bake "$peer" "$work/bake" "$work/drawn" drawn
+"$bin/case_tool" from-bake "$peer" "$work/bake" "$work/feasible" feasible
+for who in peer drawn feasible; do
+  folder=$work/$who
+  [ "$who" != peer ] || folder=$peer
+  SKIP=$skip "$bin/judge" "$folder" >"$work/judge_$who.txt"
+  echo "$who: $(grep SUMMARY "$work/judge_$who.txt" | sed 's/^SUMMARY [^ ]* //')"
+done
+"$bin/case_tool" result "$scene" "$n" "$work/bake/report.json" "$our_cpu" "$peer/timing.txt" "$work"/judge_{peer,drawn,feasible}.txt
