@@ -1,9 +1,11 @@
 // Measured fabrics in SI units. The list with sources is in fabrics.cpp.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ft {
 
@@ -17,7 +19,7 @@ struct Fabric {
   double shear = 100;
   /// Poisson's ratio of the membrane [1], 0..0.45.
   double poisson = 0.3;
-  /// Bending rigidity [N m]. 1e-6 silk, 1e-4 denim. 0 folds freely.
+  /// Bending rigidity of the warp and of the weft yarns: fold across them [N m]. 1e-6 silk, 1e-4 denim. 0 folds freely.
   double bend_warp = 1e-5, bend_weft = 1e-5;
   /// Strain-rate damping time of the membrane and of bending [s]: stress = C (strain + time * strain rate). 0 none, 0.01 dull.
   double damping = 2e-3;
@@ -28,8 +30,10 @@ struct Fabric {
 
 std::span<const Fabric> fabrics();
 const Fabric* find_fabric(std::string_view name);
-/// Sets a member by its name ("mass_per_area"); false when there is no such key. range_* tell what is allowed.
+/// Sets a member by its name ("mass_per_area"); false when there is no such key. fabric_keys() tells what is allowed.
 bool set_fabric_value(Fabric& fabric, std::string_view key, double value);
+/// A member by its name; none when there is no such key.
+std::optional<double> fabric_value(const Fabric& fabric, std::string_view key);
 struct FabricKey {
   std::string_view key;
   double lowest, highest;
