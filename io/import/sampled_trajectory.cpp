@@ -1,0 +1,92 @@
+#include "io/import/sampled_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "baker/core/parallel.h"
+
+namespace ft {
+namespace {
+
+Vec3 tangent(const GeometryCache& cache, std::size_t i, std::size_t vertex) {
+  const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < cache.times.size() ? i + 1 : i;
+  return (cache.sample(after)[vertex] - cache.sample(before)[vertex]).cast<double>() / (cache.times[after] - cache.times[before]);
+}
+
+}  // namespace
+
+std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> triangles, int& piece_count) {
+  std::vector<int> root(static_cast<std::size_t>(vertex_count));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int v) {
+    while (root[static_cast<std::size_t>(v)] != v) v = root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
+    return v;
+  };
+  std::vector<char> used(root.size(), 0);
+  for (const Triangle& t : triangles)
+    for (int k = 0; k < 3; ++k) {
+      used[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] = 1;
+      const int a = find(t[0]), b = find(t[static_cast<std::size_t>(k)]);
+      root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  std::vector<int> number(root.size(), -1), out(root.size(), 0);
+  piece_count = 0;
+  for (int v = 0; v < vertex_count; ++v) {
+    if (!used[static_cast<std::size_t>(v)]) continue;
+    int& n = number[static_cast<std::size_t>(find(v))];
+    if (n < 0) n = piece_count++;
+    out[static_cast<std::size_t>(v)] = n;
+  }
+  piece_count = std::max(piece_count, 1);
+  return out;
+}
+
+SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback)
+    : cache_(std::move(cache)), linear_(unit_scale * axes), playback_(playback) {
+  std::vector<Vec3> positions(static_cast<std::size_t>(cache_.vertex_count));
+  at(playback_.start, positions);
+  for (const Triangle& t : triangulate(cache_.mesh))
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) surface_.triangles.push_back(t);
+  int pieces = 0;
+  surface_.part_of_vertex = connected_pieces(cache_.vertex_count, surface_.triangles, pieces);
+  for (int p = 0; p < pieces; ++p) surface_.parts.push_back({"piece " + std::to_string(p + 1), -1, 0});
+  for (const Triangle& t : surface_.triangles) {
+    const auto piece = static_cast<std::size_t>(surface_.part_of_vertex[static_cast<std::size_t>(t[0])]);
+    const auto p = [&](int k) -> const Vec3& { return positions[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+    surface_.parts[piece].size += (p(0) - positions[0]).dot((p(1) - positions[0]).cross(p(2) - positions[0])) / 6;
+  }
+  int largest = 0;
+  for (int p = 0; p < pieces; ++p) {
+    SurfacePart& part = surface_.parts[static_cast<std::size_t>(p)];
+    part.size = std::abs(part.size);
+    if (part.size > surface_.parts[static_cast<std::size_t>(largest)].size) largest = p;
+  }
+  for (int p = 0; p < pieces; ++p)
+    if (p != largest) surface_.parts[static_cast<std::size_t>(p)].parent = largest;
+}
+
+void SampledTrajectory::sample(double time, std::span<Vec3> positions) const {
+  at(playback_.start + std::max(time, 0.0) * playback_.speed, positions);
+}
+
+void SampledTrajectory::at(double time, std::span<Vec3> positions) const {
+  const auto& times = cache_.times;
+  const auto next = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  if (next == 0 || next == times.size()) {
+    const auto held = cache_.sample(next == 0 ? 0 : next - 1);
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = linear_ * held[v].cast<double>();
+    return;
+  }
+  const std::size_t last = next - 1;
+  const double span = times[next] - times[last], u = (time - times[last]) / span, u2 = u * u, u3 = u2 * u;
+  const double h00 = 2 * u3 - 3 * u2 + 1, h10 = (u3 - 2 * u2 + u) * span, h01 = 3 * u2 - 2 * u3, h11 = (u3 - u2) * span;
+  const auto a = cache_.sample(last), b = cache_.sample(next);
+  parallel_for(positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      positions[v] = linear_ * (h00 * a[v].cast<double>() + h10 * tangent(cache_, last, v) + h01 * b[v].cast<double>() +
+                                h11 * tangent(cache_, next, v));
+  });
+}
+
+}  // namespace ft
