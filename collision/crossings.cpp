@@ -73,14 +73,17 @@ std::vector<unsigned char> owned_edges(std::span<const Triangle> triangles) {
   return owned;
 }
 
-/// Calls found(edge) for the owned edges of t that cross the triangle.
-template <class Found>
-void edges_through(const Triangle& t, unsigned char owned, std::span<const Vec3> x, const Vec3& a, const Vec3& b,
-                   const Vec3& c, Found&& found) {
+/// Adds the owned edges of s (in x) that cross t (in y). In one surface, edges that share a vertex with t are left out.
+template <bool one_surface>
+void edges_through(const Triangle& s, unsigned char owned, std::span<const Vec3> x, const Triangle& t,
+                   std::span<const Vec3> y, bool edge_of_first, std::vector<Crossing>& out) {
+  const auto in_t = [&](int v) { return v == t[0] || v == t[1] || v == t[2]; };
   for (int k = 0; k < 3; ++k) {
     if ((owned >> k & 1) == 0) continue;
-    const int i = t[at(k)], j = t[at((k + 1) % 3)];
-    if (edge_crosses_triangle(x[at(i)], x[at(j)], a, b, c)) found(Edge{std::min(i, j), std::max(i, j)});
+    const int i = s[at(k)], j = s[at((k + 1) % 3)];
+    if (one_surface && (in_t(i) || in_t(j))) continue;
+    if (edge_crosses_triangle(x[at(i)], x[at(j)], y[at(t[0])], y[at(t[1])], y[at(t[2])]))
+      out.push_back({{std::min(i, j), std::max(i, j)}, t, edge_of_first});
   }
 }
 
@@ -119,10 +122,8 @@ std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::
   tree_a.for_each_pair(tree_b, [&](int i, int j) {
     const Triangle &s = triangles_a[at(i)], &t = triangles_b[at(j)];
     if (!box_of(s, positions_a).overlaps(box_of(t, positions_b))) return;
-    edges_through(s, owned_a[at(i)], positions_a, positions_b[at(t[0])], positions_b[at(t[1])], positions_b[at(t[2])],
-                  [&](const Edge& e) { out.push_back({e, t, true}); });
-    edges_through(t, owned_b[at(j)], positions_b, positions_a[at(s[0])], positions_a[at(s[1])], positions_a[at(s[2])],
-                  [&](const Edge& e) { out.push_back({e, s, false}); });
+    edges_through<false>(s, owned_a[at(i)], positions_a, t, positions_b, true, out);
+    edges_through<false>(t, owned_b[at(j)], positions_b, s, positions_a, false, out);
   });
   sort_unique(out);
   return out;
@@ -133,17 +134,11 @@ std::vector<Crossing> crossings_within(std::span<const Vec3> positions, std::spa
   if (triangles.empty()) return out;
   const TriangleTree tree(positions, triangles);
   const auto owned = owned_edges(triangles);
-  const auto test = [&](int i, int j) {
-    const Triangle &s = triangles[at(i)], &t = triangles[at(j)];
-    edges_through(s, owned[at(i)], positions, positions[at(t[0])], positions[at(t[1])], positions[at(t[2])], [&](const Edge& e) {
-      if (std::find(t.begin(), t.end(), e[0]) == t.end() && std::find(t.begin(), t.end(), e[1]) == t.end())
-        out.push_back({e, t, true});
-    });
-  };
   tree.for_each_own_pair([&](int i, int j) {
-    if (!box_of(triangles[at(i)], positions).overlaps(box_of(triangles[at(j)], positions))) return;
-    test(i, j);
-    test(j, i);
+    const Triangle &s = triangles[at(i)], &t = triangles[at(j)];
+    if (!box_of(s, positions).overlaps(box_of(t, positions))) return;
+    edges_through<true>(s, owned[at(i)], positions, t, positions, true, out);
+    edges_through<true>(t, owned[at(j)], positions, s, positions, true, out);
   });
   sort_unique(out);
   return out;

@@ -1,69 +1,30 @@
 // See feasible_collider.h. The parts are walked from the largest to the smallest, each against all larger ones, which are final
-// by then. One part: project its vertices, smooth the displacements so that no triangle tears, project again, then lift edges
-// that sag into a curved larger part. Nothing is remembered between calls.
+// by then. One part: find its vertices near or inside larger parts, push them out, smooth the displacement so that no triangle
+// tears, push out again, then lift edges that sag into a curved larger part. Nothing is remembered between calls.
 #include "collision/feasible_collider.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
+#include "collision/carve_plan.h"
 #include "collision/mesh_refine.h"
 #include "collision/part_distance.h"
 
 namespace ft {
 namespace {
 
-constexpr int k_project_rounds = 3;     ///< rounds of projection, so that a vertex between two parts settles
+constexpr int k_push_rounds = 3;        ///< rounds of pushing out, so that a vertex between two parts settles
 constexpr int k_smooth_sweeps = 2;      ///< Laplacian sweeps of the displacement between rounds
 constexpr int k_sag_rounds = 3;         ///< rounds of lifting edges
 constexpr double k_sag_share = 0.85;    ///< share of the gap that edges' middles must keep [1]
-constexpr double k_touching_zone = 30e-3;  ///< bind distance from which on vertices of touching parts keep the full gap [m]
 constexpr std::size_t k_block = 256;    ///< vertices per parallel block
-constexpr double k_free = -std::numeric_limits<double>::infinity();
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// A larger shell that a part may have to leave: its parts, largest first.
-struct Opponent {
-  int shell = -1;
-  std::vector<int> parts;
-};
-
-/// What never changes about one part as the one that gives way. Vertices are local, in the part's own numbering.
-struct Yielding {
-  std::vector<int> vertices;         ///< refined vertices (representatives), ascending
-  std::vector<Edge> edges;           ///< local
-  Adjacency neighbours;              ///< local
-  std::vector<Opponent> opponents;
-  std::vector<char> allowed;         ///< per part: larger and not jointed
-  /// Per part that is touched in the bind pose: how far from it each vertex must be [m]; from others the gap.
-  std::vector<std::pair<int, std::vector<double>>> touching;
-
-  const std::vector<double>* touching_part(int part) const {
-    for (const auto& [other, required] : touching)
-      if (other == part) return &required;
-    return nullptr;
-  }
-};
-
-Adjacency neighbours_of(int vertex_count, std::span<const Edge> edges) {
-  std::vector<std::array<int, 2>> both;
-  for (const Edge& e : edges) both.insert(both.end(), {{e[0], e[1]}, {e[1], e[0]}});
-  std::sort(both.begin(), both.end());
-  Adjacency out;
-  out.start.assign(at(vertex_count) + 1, 0);
-  for (const auto& b : both) ++out.start[at(b[0]) + 1], out.items.push_back(b[1]);
-  std::partial_sum(out.start.begin(), out.start.end(), out.start.begin());
-  return out;
-}
-
-bool overlap(const TreeBox& a, const TreeBox& b, double gap) {
-  for (int k = 0; k < 3; ++k)
-    if (a.lo[k] > b.hi[k] + gap || b.lo[k] > a.hi[k] + gap) return false;
-  return true;
-}
+/// Where a vertex is with respect to one opponent.
+enum class Side : char { k_away, k_near, k_unknown, k_inside };
 
 }  // namespace
 
@@ -71,162 +32,164 @@ struct FeasibleCollider::Impl {
   FeasibleSettings settings;
   RefinedMesh mesh;
   std::vector<int> part_of_vertex;
-  std::vector<SurfacePart> parts;
-  std::vector<int> by_size;  ///< parts, largest first
   std::unique_ptr<PartSurface> surface;
-  std::vector<Yielding> yielding;  ///< per part
-  std::vector<int> copies;         ///< vertices that follow their representative
+  CarvePlan plan;
+  double near = 0;  ///< distances up to this are always found [m]: the gap and half an edge, so that no edge's middle is missed
 
-  /// Positions and trees of one evaluation.
+  /// Positions, boxes and trees of one evaluation.
   struct Scratch {
     std::span<Vec3> x;
+    std::vector<TreeBox> boxes;
     std::vector<TriangleTree> trees;
   };
   struct Contact {
     Vec3 normal;
-    double distance = 0;  ///< before the vertex was moved [m]
-    bool near = false;
+    double distance = std::numeric_limits<double>::infinity();  ///< to the nearest opponent [m]
+  };
+  /// One part's work in one evaluation.
+  struct Carving {
+    const Yielding& part;
+    std::vector<Opponent> opponents;  ///< those near enough now
+    std::vector<Contact> contacts;    ///< per local vertex
+    std::vector<char> inside;         ///< per local vertex: deep inside an opponent
+    std::vector<int> active;          ///< local vertices that may have to move, ascending
+    std::vector<char> moved;
   };
 
-  bool jointed(int a, int b) const { return parts[at(a)].parent == b || parts[at(b)].parent == a; }
-  void add_refined_parts(const Surface& drawn, std::span<const int> rank);
-  void find_opponents(std::span<const int> rank);
-  void find_touching(std::span<const Vec3> bind);
-  std::vector<Opponent> opponents_now(const Yielding& part, Scratch& scratch) const;
-  double required(const Yielding& part, int local, int other) const;
-  bool push_out(const Yielding& part, int a, int b, std::span<const Opponent> opponents, const Scratch& scratch,
-                Vec3& point, Contact& contact, std::span<int> hints) const;
-  int deepest_opponent(const Yielding& part, const Vec3& point, const Scratch& scratch) const;
+  TreeBox box_of(int part, std::span<const Vec3> x) const;
+  std::vector<Opponent> opponents_now(const Yielding& part, const TreeBox& own, Scratch& scratch) const;
+  void find_active(Carving& carving, const Scratch& scratch) const;
+  void resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch, std::vector<Side>& side) const;
+  bool push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point, Contact& contact,
+                std::span<int> hints) const;
+  bool lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle, std::span<int> hints) const;
+  void push_out_all(Carving& carving, Scratch& scratch) const;
+  void smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch& scratch) const;
+  void lift_edges(const Carving& carving, Scratch& scratch) const;
   void give_way(int part, Scratch& scratch) const;
-  void lift_edges(const Yielding& part, std::span<const Opponent> opponents, std::vector<Contact>& contacts,
-                  Scratch& scratch) const;
+  int deepest_opponent(const Yielding& part, const Vec3& point, const Scratch& scratch) const;
 };
 
-void FeasibleCollider::Impl::add_refined_parts(const Surface& drawn, std::span<const int> rank) {
-  part_of_vertex = drawn.part_of_vertex;
-  for (const RefinedMesh::Blend& blend : mesh.blends) {
-    const int p = part_of_vertex[at(blend.a)], q = part_of_vertex[at(blend.b)];
-    part_of_vertex.push_back(rank[at(p)] <= rank[at(q)] ? p : q);
-  }
-}
-
-void FeasibleCollider::Impl::find_opponents(std::span<const int> rank) {
-  const auto representative = surface->representative();
-  std::vector<int> local(representative.size(), -1);
-  yielding.resize(parts.size());
-  for (int v = 0; v < static_cast<int>(representative.size()); ++v) {
-    if (representative[at(v)] != v) {
-      copies.push_back(v);
-      continue;
-    }
-    auto& vertices = yielding[at(part_of_vertex[at(v)])].vertices;
-    local[at(v)] = static_cast<int>(vertices.size());
-    vertices.push_back(v);
-  }
-  for (const Edge& e : unique_edges(surface->triangles())) {
-    const int part = part_of_vertex[at(e[0])];
-    if (e[0] != e[1] && part == part_of_vertex[at(e[1])])
-      yielding[at(part)].edges.push_back({local[at(e[0])], local[at(e[1])]});
-  }
-  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-    Yielding& part = yielding[at(p)];
-    part.neighbours = neighbours_of(static_cast<int>(part.vertices.size()), part.edges);
-    part.allowed.assign(parts.size(), 0);
-    for (const int other : by_size) {
-      if (rank[at(other)] >= rank[at(p)]) break;
-      if (jointed(p, other) || surface->tree(other).empty()) continue;
-      part.allowed[at(other)] = 1;
-      const auto found = std::find_if(part.opponents.begin(), part.opponents.end(),
-                                      [&](const Opponent& o) { return o.shell == surface->shell(other); });
-      if (found != part.opponents.end())
-        found->parts.push_back(other);
-      else
-        part.opponents.push_back({surface->shell(other), {other}});
-    }
-  }
-}
-
-void FeasibleCollider::Impl::find_touching(std::span<const Vec3> bind) {
-  std::vector<TriangleTree> trees;
-  for (int p = 0; p < static_cast<int>(parts.size()); ++p) trees.push_back(surface->tree(p));
-  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-    Yielding& part = yielding[at(p)];
-    if (part.vertices.empty()) continue;
-    Box box;
-    for (const int v : part.vertices) box.include(bind[at(v)]);
-    const TreeBox own = TreeBox::around(box.lo, box.hi);
-    for (const Opponent& opponent : part.opponents)
-      for (const int other : opponent.parts) {
-        if (!overlap(own, trees[at(other)].box(), settings.gap)) continue;
-        std::vector<double> keep(part.vertices.size(), settings.gap);
-        const double reach = std::max({surface->depth_limit(other), settings.gap, k_touching_zone});
-        const int one[1] = {other};
-        bool touches = false;
-        int hint = -1;
-        for (std::size_t i = 0; i < keep.size(); ++i) {
-          const auto answer = surface->distance(bind[at(part.vertices[i])], one, part.allowed, reach, {bind, trees}, hint);
-          if (!answer || answer->distance >= k_touching_zone) continue;
-          keep[i] = answer->distance <= 0 ? k_free : settings.gap - 2 * (k_touching_zone - answer->distance);
-          touches = touches || answer->distance < settings.gap;
-        }
-        if (touches) part.touching.emplace_back(other, std::move(keep));
-      }
-  }
+TreeBox FeasibleCollider::Impl::box_of(int part, std::span<const Vec3> x) const {
+  Box box;
+  for (const int v : plan.yielding[at(part)].vertices) box.include(x[at(v)]);
+  return TreeBox::around(box.lo, box.hi);
 }
 
 /// Opponents whose boxes, grown by the gap, meet the part's now; their trees are brought up to date.
-std::vector<Opponent> FeasibleCollider::Impl::opponents_now(const Yielding& part, Scratch& scratch) const {
+std::vector<Opponent> FeasibleCollider::Impl::opponents_now(const Yielding& part, const TreeBox& own,
+                                                            Scratch& scratch) const {
   std::vector<Opponent> out;
-  if (part.vertices.empty()) return out;
-  Box box;
-  for (const int v : part.vertices) box.include(scratch.x[at(v)]);
-  const TreeBox own = TreeBox::around(box.lo, box.hi);
   for (const Opponent& opponent : part.opponents) {
     Opponent now{opponent.shell, {}};
     for (const int other : opponent.parts) {
+      if (!own.overlaps(scratch.boxes[at(other)], 2 * settings.max_edge + settings.gap)) continue;
       TriangleTree& tree = scratch.trees[at(other)];
       if (tree.empty()) {
         tree = surface->tree(other);
         tree.refit(scratch.x, surface->triangles());
       }
-      if (overlap(own, tree.box(), settings.gap)) now.parts.push_back(other);
+      if (own.overlaps(tree.box(), settings.gap)) now.parts.push_back(other);
     }
     if (!now.parts.empty()) out.push_back(std::move(now));
   }
   return out;
 }
 
-double FeasibleCollider::Impl::required(const Yielding& part, int local, int other) const {
-  const std::vector<double>* keep = part.touching_part(other);
-  return keep == nullptr ? settings.gap : (*keep)[at(local)];
+/// Far vertices of unknown side: those connected to one that is away are away too, for an edge cannot pass the opponent's surface
+/// without an end near it. Of the others a closed opponent is asked once per connected piece, an open one for every vertex.
+void FeasibleCollider::Impl::resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch,
+                                             std::vector<Side>& side) const {
+  const Yielding& part = carving.part;
+  std::vector<int> queue, piece;
+  const auto grow = [&](Side as) {
+    while (!queue.empty()) {
+      const int v = queue.back();
+      queue.pop_back();
+      piece.push_back(v);
+      for (const int w : part.neighbours.row(v))
+        if (side[at(w)] == Side::k_unknown) side[at(w)] = as, queue.push_back(w);
+    }
+  };
+  for (int v = 0; v < static_cast<int>(side.size()); ++v)
+    if (side[at(v)] == Side::k_away) queue.push_back(v);
+  grow(Side::k_away);
+  const bool closed = opponent.parts.size() == 1 && surface->closed(opponent.parts[0]);
+  double reach = 0;
+  for (const int other : opponent.parts) reach = std::max(reach, surface->depth_limit(other));
+  for (int v = 0; v < static_cast<int>(side.size()); ++v) {
+    if (side[at(v)] != Side::k_unknown) continue;
+    int hint = -1;
+    const auto answer = surface->distance(scratch.x[at(part.vertices[at(v)])], opponent.parts, part.allowed, reach,
+                                          {scratch.x, scratch.trees}, hint);
+    side[at(v)] = answer && answer->distance < 0 ? Side::k_inside : Side::k_away;
+    if (!closed) continue;
+    const Side as = side[at(v)];
+    queue.assign(1, v);
+    grow(as);
+  }
 }
 
-/// Moves point (vertex a of the part, or the middle of a and b) out of every opponent; true when it moved. contact tells about
-/// the nearest opponent.
-bool FeasibleCollider::Impl::push_out(const Yielding& part, int a, int b, std::span<const Opponent> opponents,
-                                      const Scratch& scratch, Vec3& point, Contact& contact, std::span<int> hints) const {
+void FeasibleCollider::Impl::find_active(Carving& carving, const Scratch& scratch) const {
+  const Yielding& part = carving.part;
+  const std::size_t count = part.vertices.size();
+  std::vector<Side> side(count);
+  std::vector<char> active(count, 0);
+  for (const Opponent& opponent : carving.opponents) {
+    bool far_any = false;
+    parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
+      int hint = -1;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vec3& p = scratch.x[at(part.vertices[i])];
+        bool in_box = false, held = false;
+        for (const int other : opponent.parts) {
+          const double d2 = scratch.trees[at(other)].box().squared_distance(p);
+          in_box = in_box || d2 <= near * near;
+          held = held || (d2 <= near * near && plan.keep(part, static_cast<int>(i), other) != k_free);
+        }
+        // Free vertices stand where the surfaces overlap for good: sides must not spread over them.
+        side[i] = !in_box ? Side::k_away : held ? Side::k_unknown : Side::k_near;
+        if (!held) continue;
+        const auto answer = surface->distance(p, opponent.parts, part.allowed, near, {scratch.x, scratch.trees}, hint);
+        if (hint < 0) continue;
+        side[i] = Side::k_near;
+        if (!answer) continue;
+        if (answer->distance < carving.contacts[i].distance) carving.contacts[i] = {answer->normal, answer->distance};
+        if (answer->distance < plan.keep(part, static_cast<int>(i), answer->part)) active[i] = 1;
+      }
+    });
+    for (const Side s : side) far_any = far_any || s == Side::k_unknown;
+    if (!far_any) continue;
+    resolve_unknown(carving, opponent, scratch, side);
+    for (std::size_t i = 0; i < count; ++i)
+      if (side[i] == Side::k_inside) carving.inside[i] = active[i] = 1;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    if (active[i] != 0) carving.active.push_back(static_cast<int>(i));
+}
+
+/// Moves the vertex out of every opponent; true when it moved.
+bool FeasibleCollider::Impl::push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point,
+                                      Contact& contact, std::span<int> hints) const {
+  const Yielding& part = carving.part;
   bool moved = false;
-  contact.near = false;
-  for (std::size_t k = 0; k < opponents.size(); ++k) {
-    const Opponent& opponent = opponents[k];
-    double reach = 2 * settings.gap;
-    bool inside_box = false;
+  contact.distance = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < carving.opponents.size(); ++k) {
+    const Opponent& opponent = carving.opponents[k];
+    double reach = 0;
     for (const int other : opponent.parts) {
-      if (required(part, a, other) == k_free) continue;
       const double d2 = scratch.trees[at(other)].box().squared_distance(point);
-      if (d2 <= settings.gap * settings.gap) inside_box = true;
-      if (d2 == 0) reach = std::max(reach, surface->depth_limit(other));
+      if (d2 > near * near || plan.keep(part, local, other) == k_free) continue;
+      reach = std::max(reach, d2 == 0 && (carving.inside[at(local)] != 0 || carving.moved[at(local)] != 0)
+                                  ? std::max(near, surface->depth_limit(other))
+                                  : near);
     }
-    if (!inside_box) continue;
-    const auto answer = surface->distance(point, opponent.parts, part.allowed, reach, {scratch.x, scratch.trees}, hints[k]);
+    if (reach == 0) continue;
+    const auto answer =
+        surface->distance(point, opponent.parts, part.allowed, reach, {scratch.x, scratch.trees}, hints[k]);
     if (!answer) continue;
-    double keep = required(part, a, answer->part);
-    if (b >= 0) {
-      if (keep < settings.gap || required(part, b, answer->part) < settings.gap) continue;
-      keep = k_sag_share * settings.gap;
-    }
-    if (answer->distance < 2 * settings.gap && (!contact.near || answer->distance < contact.distance))
-      contact = {answer->normal, answer->distance, true};
+    const double keep = plan.keep(part, local, answer->part);
+    if (answer->distance < contact.distance) contact = {answer->normal, std::max(answer->distance, keep)};
     if (answer->distance >= keep) continue;
     point += (keep - answer->distance) * answer->normal;
     moved = true;
@@ -234,30 +197,82 @@ bool FeasibleCollider::Impl::push_out(const Yielding& part, int a, int b, std::s
   return moved;
 }
 
+void FeasibleCollider::Impl::push_out_all(Carving& carving, Scratch& scratch) const {
+  parallel_for(carving.active.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> hints(carving.opponents.size(), -1);
+    for (std::size_t i = begin; i < end; ++i) {
+      const int v = carving.active[i];
+      if (push_out(carving, v, scratch, scratch.x[at(carving.part.vertices[at(v)])], carving.contacts[at(v)], hints))
+        carving.moved[at(v)] = 1;
+    }
+  });
+}
+
+void FeasibleCollider::Impl::smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch& scratch) const {
+  const Yielding& part = carving.part;
+  std::vector<Vec3> next(carving.active.size());
+  for (int sweep = 0; sweep < k_smooth_sweeps; ++sweep) {
+    const auto displacement = [&](int v) { return (scratch.x[at(part.vertices[at(v)])] - drawn[at(v)]).eval(); };
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const int v = carving.active[i];
+      const auto row = part.neighbours.row(v);
+      Vec3 mean = Vec3::Zero();
+      for (const int w : row) mean += displacement(w);
+      next[i] = row.empty() || carving.moved[at(v)] == 0
+                    ? displacement(v)
+                    : (0.5 * displacement(v) + (0.5 / static_cast<double>(row.size())) * mean).eval();
+    }
+    for (std::size_t i = 0; i < next.size(); ++i)
+      scratch.x[at(part.vertices[at(carving.active[i])])] = drawn[at(carving.active[i])] + next[i];
+  }
+}
+
+/// The middle of an edge, moved to where it keeps its share of the gap; only where both ends have to keep the whole gap.
+bool FeasibleCollider::Impl::lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle,
+                                         std::span<int> hints) const {
+  bool moved = false;
+  for (std::size_t k = 0; k < carving.opponents.size(); ++k) {
+    const Opponent& opponent = carving.opponents[k];
+    bool close = false;
+    for (const int other : opponent.parts)
+      close = close || scratch.trees[at(other)].box().squared_distance(middle) <= settings.gap * settings.gap;
+    if (!close) continue;
+    const auto answer =
+        surface->distance(middle, opponent.parts, carving.part.allowed, near, {scratch.x, scratch.trees}, hints[k]);
+    if (!answer || answer->distance >= k_sag_share * settings.gap) continue;
+    if (plan.keep(carving.part, edge[0], answer->part) < settings.gap ||
+        plan.keep(carving.part, edge[1], answer->part) < settings.gap)
+      continue;
+    middle += (k_sag_share * settings.gap - answer->distance) * answer->normal;
+    moved = true;
+  }
+  return moved;
+}
+
 /// Edges whose ends keep the gap may still cut a larger part's curve: their middles are lifted, and both ends with them.
-void FeasibleCollider::Impl::lift_edges(const Yielding& part, std::span<const Opponent> opponents,
-                                        std::vector<Contact>& contacts, Scratch& scratch) const {
+void FeasibleCollider::Impl::lift_edges(const Carving& carving, Scratch& scratch) const {
+  const Yielding& part = carving.part;
   std::vector<Vec3> lift(part.vertices.size());
-  std::vector<int> hints(opponents.size(), -1);
-  Contact unused;
+  std::vector<int> hints(carving.opponents.size(), -1);
   for (int round = 0; round < k_sag_rounds; ++round) {
     std::fill(lift.begin(), lift.end(), Vec3::Zero());
     bool any = false;
     for (const Edge& e : part.edges) {
-      const Contact &a = contacts[at(e[0])], &b = contacts[at(e[1])];
-      if (!a.near && !b.near) continue;
+      const Contact &a = carving.contacts[at(e[0])], &b = carving.contacts[at(e[1])];
+      if (std::min(a.distance, b.distance) > near) continue;
       const Vec3 p = scratch.x[at(part.vertices[at(e[0])])], q = scratch.x[at(part.vertices[at(e[1])])];
       const double length = (p - q).norm();
+      const double farther = std::max(a.distance, b.distance);
+      if (farther - 0.5 * length > settings.gap) continue;
       // A chord of a circle whose normals turn by t sags by length * t / 8.
-      if (a.near && b.near && length * (a.normal - b.normal).norm() < 0.8 * settings.gap) continue;
+      if (farther <= near && length * (a.normal - b.normal).norm() < 8 * (1 - k_sag_share) * settings.gap) continue;
       Vec3 middle = 0.5 * (p + q);
       const Vec3 before = middle;
-      if (!push_out(part, e[0], e[1], opponents, scratch, middle, unused, hints)) continue;
+      if (!lift_middle(carving, e, scratch, middle, hints)) continue;
       any = true;
       for (const int end : e) {
         Vec3& l = lift[at(end)];
-        const Vec3 wanted = middle - before;
-        if (wanted.squaredNorm() > l.squaredNorm()) l = wanted;
+        if ((middle - before).squaredNorm() > l.squaredNorm()) l = middle - before;
       }
     }
     if (!any) return;
@@ -265,13 +280,35 @@ void FeasibleCollider::Impl::lift_edges(const Yielding& part, std::span<const Op
   }
 }
 
+void FeasibleCollider::Impl::give_way(int p, Scratch& scratch) const {
+  const Yielding& part = plan.yielding[at(p)];
+  const std::size_t count = part.vertices.size();
+  Carving carving{part, opponents_now(part, scratch.boxes[at(p)], scratch), {}, {}, {}, {}};
+  if (count == 0 || carving.opponents.empty()) return;
+  carving.contacts.resize(count);
+  carving.inside.assign(count, 0);
+  carving.moved.assign(count, 0);
+  find_active(carving, scratch);
+  if (!carving.active.empty()) {
+    std::vector<Vec3> drawn(count);
+    for (std::size_t i = 0; i < count; ++i) drawn[i] = scratch.x[at(part.vertices[i])];
+    push_out_all(carving, scratch);
+    for (int round = 1; round < k_push_rounds; ++round) {
+      smooth(carving, drawn, scratch);
+      push_out_all(carving, scratch);
+    }
+  }
+  lift_edges(carving, scratch);
+  scratch.boxes[at(p)] = box_of(p, scratch.x);
+}
+
 int FeasibleCollider::Impl::deepest_opponent(const Yielding& part, const Vec3& point, const Scratch& scratch) const {
   int deepest = -1;
   double distance = std::numeric_limits<double>::infinity();
   for (const Opponent& opponent : part.opponents)
     for (const int other : opponent.parts) {
-      const int one[1] = {other};
       if (scratch.trees[at(other)].empty()) continue;
+      const int one[1] = {other};
       const double reach = std::max(surface->depth_limit(other), settings.gap);
       int hint = -1;
       const auto answer = surface->distance(point, one, part.allowed, reach, {scratch.x, scratch.trees}, hint);
@@ -280,62 +317,26 @@ int FeasibleCollider::Impl::deepest_opponent(const Yielding& part, const Vec3& p
   return deepest;
 }
 
-void FeasibleCollider::Impl::give_way(int p, Scratch& scratch) const {
-  const Yielding& part = yielding[at(p)];
-  const std::vector<Opponent> opponents = opponents_now(part, scratch);
-  if (opponents.empty()) return;
-  const std::size_t count = part.vertices.size();
-  std::vector<Vec3> drawn(count), displacement(count);
-  std::vector<Contact> contacts(count);
-  std::vector<char> moved(count, 0);
-  for (std::size_t i = 0; i < count; ++i) drawn[i] = scratch.x[at(part.vertices[i])];
-  const auto project = [&] {
-    parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
-      std::vector<int> hints(opponents.size(), -1);
-      for (std::size_t i = begin; i < end; ++i)
-        if (push_out(part, static_cast<int>(i), -1, opponents, scratch, scratch.x[at(part.vertices[i])], contacts[i], hints))
-          moved[i] = 1;
-    });
-  };
-  project();
-  if (std::find(moved.begin(), moved.end(), 1) != moved.end()) {
-    for (int round = 1; round < k_project_rounds; ++round) {
-      for (int sweep = 0; sweep < k_smooth_sweeps; ++sweep) {
-        for (std::size_t i = 0; i < count; ++i) displacement[i] = scratch.x[at(part.vertices[i])] - drawn[i];
-        for (std::size_t i = 0; i < count; ++i) {
-          const auto row = part.neighbours.row(static_cast<int>(i));
-          if (moved[i] == 0 || row.empty()) continue;
-          Vec3 mean = Vec3::Zero();
-          for (const int j : row) mean += displacement[at(j)];
-          scratch.x[at(part.vertices[i])] =
-              drawn[i] + 0.5 * displacement[i] + (0.5 / static_cast<double>(row.size())) * mean;
-        }
-      }
-      project();
-    }
-  }
-  lift_edges(part, opponents, contacts, scratch);
-}
-
 FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> bind_pose, const FeasibleSettings& settings)
     : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   CHECK(static_cast<int>(bind_pose.size()) == drawn.vertex_count() && !drawn.parts.empty());
   m.settings = settings;
-  m.parts = drawn.parts;
-  m.by_size.resize(m.parts.size());
-  std::iota(m.by_size.begin(), m.by_size.end(), 0);
-  std::stable_sort(m.by_size.begin(), m.by_size.end(),
-                   [&](int a, int b) { return m.parts[at(a)].size > m.parts[at(b)].size; });
-  std::vector<int> rank(m.parts.size());
-  for (std::size_t i = 0; i < m.by_size.size(); ++i) rank[at(m.by_size[i])] = static_cast<int>(i);
+  m.near = std::max(2 * settings.gap, settings.gap + 0.55 * settings.max_edge);
   m.mesh = refine_mesh(bind_pose, drawn.triangles, settings.max_edge);
-  m.add_refined_parts(drawn, rank);
+  std::vector<int> rank(drawn.parts.size());
+  const std::vector<int> by_size = parts_by_size(drawn.parts);
+  for (std::size_t i = 0; i < by_size.size(); ++i) rank[at(by_size[i])] = static_cast<int>(i);
+  m.part_of_vertex = drawn.part_of_vertex;
+  for (const RefinedMesh::Blend& blend : m.mesh.blends) {
+    const int p = m.part_of_vertex[at(blend.a)], q = m.part_of_vertex[at(blend.b)];
+    m.part_of_vertex.push_back(rank[at(p)] <= rank[at(q)] ? p : q);
+  }
+  if (!settings.carve || drawn.parts.size() < 2) return;
   std::vector<Vec3> bind(at(m.mesh.vertex_count()));
   m.mesh.positions(bind_pose, bind);
-  m.surface = std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(m.parts.size()));
-  m.find_opponents(rank);
-  m.find_touching(bind);
+  m.surface = std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(drawn.parts.size()));
+  m.plan = make_carve_plan(*m.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
 }
 
 FeasibleCollider::~FeasibleCollider() = default;
@@ -345,9 +346,9 @@ std::span<const Triangle> FeasibleCollider::triangles() const { return impl_->me
 std::span<const int> FeasibleCollider::part_of_vertex() const { return impl_->part_of_vertex; }
 
 bool FeasibleCollider::kept_apart(int part_a, int part_b) const {
-  if (part_a == part_b || impl_->jointed(part_a, part_b)) return false;
-  return impl_->yielding[at(part_a)].touching_part(part_b) == nullptr &&
-         impl_->yielding[at(part_b)].touching_part(part_a) == nullptr;
+  if (impl_->surface == nullptr || part_a == part_b || impl_->plan.jointed(part_a, part_b)) return false;
+  const auto& yielding = impl_->plan.yielding;
+  return yielding[at(part_a)].touching_part(part_b) == nullptr && yielding[at(part_b)].touching_part(part_a) == nullptr;
 }
 
 void FeasibleCollider::refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const {
@@ -357,12 +358,14 @@ void FeasibleCollider::refine(std::span<const Vec3> drawn, std::span<Vec3> refin
 CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions) const {
   refine(drawn, positions);
   CarveReport report;
-  if (!impl_->settings.carve || impl_->parts.size() < 2) return report;
-  std::vector<Vec3> before(positions.begin(), positions.end());
-  Impl::Scratch scratch{positions, std::vector<TriangleTree>(impl_->parts.size())};
-  for (const int part : impl_->by_size) impl_->give_way(part, scratch);
+  if (impl_->surface == nullptr) return report;
+  const std::vector<Vec3> before(positions.begin(), positions.end());
+  const int part_count = impl_->surface->part_count();
+  Impl::Scratch scratch{positions, std::vector<TreeBox>(at(part_count)), std::vector<TriangleTree>(at(part_count))};
+  for (int part = 0; part < part_count; ++part) scratch.boxes[at(part)] = impl_->box_of(part, positions);
+  for (const int part : impl_->plan.by_size) impl_->give_way(part, scratch);
   const auto representative = impl_->surface->representative();
-  for (const int v : impl_->copies) {
+  for (const int v : impl_->plan.copies) {
     const std::size_t r = at(representative[at(v)]);
     positions[at(v)] += positions[r] - before[r];
   }
@@ -374,7 +377,7 @@ CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Ve
   }
   if (report.moved_vertices > 0) {
     report.part_a = impl_->part_of_vertex[farthest];
-    report.part_b = impl_->deepest_opponent(impl_->yielding[at(report.part_a)], before[farthest], scratch);
+    report.part_b = impl_->deepest_opponent(impl_->plan.yielding[at(report.part_a)], before[farthest], scratch);
   }
   return report;
 }

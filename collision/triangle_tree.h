@@ -18,6 +18,12 @@ struct TreeBox {
   bool overlaps(const TreeBox& b) const {
     return lo[0] <= b.hi[0] && b.lo[0] <= hi[0] && lo[1] <= b.hi[1] && b.lo[1] <= hi[1] && lo[2] <= b.hi[2] && b.lo[2] <= hi[2];
   }
+  /// The same with this box grown by r on every side.
+  bool overlaps(const TreeBox& b, double r) const {
+    for (int k = 0; k < 3; ++k)
+      if (lo[k] > b.hi[k] + r || b.lo[k] > hi[k] + r) return false;
+    return true;
+  }
   /// Squared distance from p to the box, 0 inside [m2].
   double squared_distance(const Vec3& p) const {
     double sum = 0;
