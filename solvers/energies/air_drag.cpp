@@ -58,7 +58,7 @@ void AirDrag::begin_step(const StepContext& context) {
   const std::size_t n = context.x_t0.size();
   vertices_.resize(n);
   reference_.resize(n);
-  const bool history = context.has_history();
+  const bool history = context.has_history() && context.b != 0;
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Panel sum;

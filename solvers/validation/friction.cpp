@@ -1,0 +1,68 @@
+// A patch of cloth on an inclined slab, at the settings of a bake.
+#include <cmath>
+#include <numbers>
+
+#include "solvers/validation/scene_parts.h"
+#include "solvers/validation/scenes.h"
+
+namespace ft {
+namespace {
+
+constexpr double k_degree = std::numbers::pi / 180;
+constexpr double k_friction = 0.3;
+
+/// Slope coordinate of the patch's middle after each frame [m], downhill positive.
+std::vector<double> slide(double angle_deg, int frames) {
+  const Mat3 turn = Eigen::AngleAxisd(-angle_deg * k_degree, Vec3::UnitZ()).toRotationMatrix();  // downhill is +x
+  const double thickness = ClothGarment().thickness;
+  const Mesh mesh = rectangle_mesh(6, 6, [&](double s, double t) {
+    return Vec3(turn * Vec3(0.1 * (s - 0.5), thickness, 0.1 * (t - 0.5)));
+  });
+  const ClothSetup standard;
+  ClothSetup setup = accurate_setup(mesh, Fabric(), standard.fps, standard.min_substeps);
+  setup.newton_iterations = standard.newton_iterations;
+  setup.linear_tolerance = standard.linear_tolerance;
+  setup.garments[0].friction = k_friction;
+  setup.feasible.max_edge = 1;
+  setup.primary = make_boxes({{Vec3(-0.3, -0.1, -0.3), Vec3(1.5, 0, 0.3)}},
+                             [turn](std::size_t, double, const Vec3& p) { return Vec3(turn * p); });
+  ClothRun run(std::move(setup));
+  std::vector<double> out;
+  for (int f = 0; f < frames; ++f) {
+    run.advance();
+    Vec3 middle = Vec3::Zero();
+    const auto x = run.positions();
+    for (const Vec3& p : x) middle += p / static_cast<double>(x.size());
+    out.push_back(turn.col(0).dot(middle));
+  }
+  return out;
+}
+
+/// From two instants of a slide that starts at rest, 12 and 18 frames after.
+double acceleration(const std::vector<double>& way) {
+  const double t1 = 12 / 24.0, t2 = 18 / 24.0;
+  return 2 * (way[17] - way[11]) / (t2 * t2 - t1 * t1);
+}
+
+}  // namespace
+
+std::vector<ValidationCase> validate_incline() {
+  const double limit = std::atan(k_friction) / k_degree;
+  const std::string source = "Coulomb: slides where tan(angle) > mu, a = g (sin - mu cos)";
+  std::vector<ValidationCase> out;
+  // The law is smoothed below 20 um/s: 0.2 mm in ten seconds is the most that rest may creep.
+  out.push_back(validation_case("incline", "creep in 10 s, 0.5 degrees below the angle of friction", 1e3 * slide(limit - 0.5, 240).back(),
+                                0, 0.2, "mm", source));
+  const double steep = (limit + 0.5) * k_degree;
+  const double a = acceleration(slide(limit + 0.5, 18));
+  const double angle = std::atan(std::tan(steep) - a / (k_gravity * std::cos(steep))) / k_degree;
+  out.push_back(validation_case("incline", "angle of friction, from sliding 0.5 degrees above it", angle, limit, 0.25, "degrees", source));
+  for (const double angle_deg : {22.0, 30.0}) {
+    const double reference = k_gravity * (std::sin(angle_deg * k_degree) - k_friction * std::cos(angle_deg * k_degree));
+    out.push_back(validation_case("incline", "acceleration at " + std::to_string(static_cast<int>(angle_deg)) + " degrees",
+                                  acceleration(slide(angle_deg, 18)), reference, 0.02 * reference, "m/s2", source));
+  }
+  return out;
+}
+
+}  // namespace ft
