@@ -25,17 +25,37 @@ Adjacency neighbours_of(std::size_t vertex_count, std::span<const Edge> edges) {
   return out;
 }
 
-void share_out_vertices(CarvePlan& plan, const PartSurface& surface, std::span<const int> part_of_vertex) {
+/// Orders points by median splits down to clusters.
+void sort_in_space(std::span<int> vertices, std::span<const Vec3> x) {
+  if (vertices.size() <= k_cluster) return;
+  Box box;
+  for (const int v : vertices) box.include(x[at(v)]);
+  int axis = 0;
+  (box.hi - box.lo).maxCoeff(&axis);
+  const std::size_t half = (vertices.size() / k_cluster + 1) / 2 * k_cluster;
+  const auto middle = vertices.begin() + static_cast<std::ptrdiff_t>(half);
+  std::nth_element(vertices.begin(), middle, vertices.end(), [&](int a, int b) {
+    return x[at(a)][axis] < x[at(b)][axis] || (x[at(a)][axis] == x[at(b)][axis] && a < b);
+  });
+  std::sort(vertices.begin(), middle);
+  std::sort(middle, vertices.end());
+  sort_in_space(vertices.first(half), x);
+  sort_in_space(vertices.subspan(half), x);
+}
+
+void share_out_vertices(CarvePlan& plan, const PartSurface& surface, std::span<const int> part_of_vertex,
+                        std::span<const Vec3> bind) {
   const auto representative = surface.representative();
   std::vector<int> local(representative.size(), -1);
   for (int v = 0; v < static_cast<int>(representative.size()); ++v) {
-    if (representative[at(v)] != v) {
+    if (representative[at(v)] != v)
       plan.copies.push_back(v);
-      continue;
-    }
-    auto& vertices = plan.yielding[at(part_of_vertex[at(v)])].vertices;
-    local[at(v)] = static_cast<int>(vertices.size());
-    vertices.push_back(v);
+    else
+      plan.yielding[at(part_of_vertex[at(v)])].vertices.push_back(v);
+  }
+  for (Yielding& part : plan.yielding) {
+    sort_in_space(part.vertices, bind);
+    for (std::size_t i = 0; i < part.vertices.size(); ++i) local[at(part.vertices[i])] = static_cast<int>(i);
   }
   for (const Edge& e : unique_edges(surface.triangles())) {
     const int part = part_of_vertex[at(e[0])];
@@ -106,7 +126,7 @@ CarvePlan make_carve_plan(const PartSurface& surface, std::span<const SurfacePar
   plan.parts.assign(parts.begin(), parts.end());
   plan.by_size = parts_by_size(parts);
   plan.yielding.resize(parts.size());
-  share_out_vertices(plan, surface, part_of_vertex);
+  share_out_vertices(plan, surface, part_of_vertex, bind);
   find_opponents(plan, surface);
   std::vector<TriangleTree> trees;
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) trees.push_back(surface.tree(p));

@@ -12,6 +12,7 @@
 
 namespace ft {
 
+inline constexpr std::size_t k_cluster = 16;  ///< consecutive local vertices that are looked at together
 inline constexpr double k_free = -std::numeric_limits<double>::infinity();  ///< a vertex that keeps no distance at all
 
 /// A larger shell that a part may have to leave: its parts, largest first.
@@ -22,7 +23,7 @@ struct Opponent {
 
 /// One part as the one that gives way. Its vertices have their own, local numbering.
 struct Yielding {
-  std::vector<int> vertices;   ///< refined vertices (representatives), ascending
+  std::vector<int> vertices;   ///< refined vertices (representatives), neighbours in space near each other in the list
   std::vector<Edge> edges;     ///< local
   Adjacency neighbours;        ///< local
   std::vector<Opponent> opponents;

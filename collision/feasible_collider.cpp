@@ -19,7 +19,7 @@ constexpr int k_push_rounds = 3;        ///< rounds of pushing out, so that a ve
 constexpr int k_smooth_sweeps = 2;      ///< Laplacian sweeps of the displacement between rounds
 constexpr int k_sag_rounds = 3;         ///< rounds of lifting edges
 constexpr double k_sag_share = 0.85;    ///< share of the gap that edges' middles must keep [1]
-constexpr std::size_t k_block = 256;    ///< vertices per parallel block
+constexpr std::size_t k_block = 16 * k_cluster;  ///< vertices per parallel block
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -34,7 +34,7 @@ struct FeasibleCollider::Impl {
   std::vector<int> part_of_vertex;
   std::unique_ptr<PartSurface> surface;
   CarvePlan plan;
-  double near = 0;  ///< distances up to this are always found [m]: the gap and half an edge, so that no edge's middle is missed
+  double near = 0;  ///< distances up to this are always found [m]; above half an edge, so that no edge passes a surface unseen
 
   /// Positions, boxes and trees of one evaluation.
   struct Scratch {
@@ -52,6 +52,7 @@ struct FeasibleCollider::Impl {
     std::vector<Opponent> opponents;  ///< those near enough now
     std::vector<Contact> contacts;    ///< per local vertex
     std::vector<char> inside;         ///< per local vertex: deep inside an opponent
+    std::vector<char> is_active;      ///< per local vertex
     std::vector<int> active;          ///< local vertices that may have to move, ascending
     std::vector<char> moved;
   };
@@ -59,6 +60,8 @@ struct FeasibleCollider::Impl {
   TreeBox box_of(int part, std::span<const Vec3> x) const;
   std::vector<Opponent> opponents_now(const Yielding& part, const TreeBox& own, Scratch& scratch) const;
   void find_active(Carving& carving, const Scratch& scratch) const;
+  void look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin, std::size_t end,
+                   std::vector<Side>& side) const;
   void resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch, std::vector<Side>& side) const;
   bool push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point, Contact& contact,
                 std::span<int> hints) const;
@@ -130,42 +133,66 @@ void FeasibleCollider::Impl::resolve_unknown(const Carving& carving, const Oppon
   }
 }
 
-void FeasibleCollider::Impl::find_active(Carving& carving, const Scratch& scratch) const {
+/// Sides and contacts of one cluster of vertices [begin, end) with respect to one opponent.
+void FeasibleCollider::Impl::look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin,
+                                         std::size_t end, std::vector<Side>& side) const {
   const Yielding& part = carving.part;
-  const std::size_t count = part.vertices.size();
+  Box box;
+  for (std::size_t i = begin; i < end; ++i) box.include(scratch.x[at(part.vertices[i])]);
+  box.inflate(near);
+  const TreeBox cluster = TreeBox::around(box.lo, box.hi);
+  std::vector<std::pair<int, const TriangleTree::Node*>> leaves;
+  bool in_box = false;
+  for (const int other : opponent.parts) {
+    const TriangleTree& tree = scratch.trees[at(other)];
+    if (!tree.box().overlaps(cluster)) continue;
+    in_box = true;
+    tree.for_each_leaf_near(cluster, [&](const TriangleTree::Node& leaf) { leaves.emplace_back(other, &leaf); });
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    side[i] = Side::k_away;
+    if (!in_box) continue;
+    const Vec3& p = scratch.x[at(part.vertices[i])];
+    bool held = false;
+    for (const int other : opponent.parts) {
+      if (scratch.trees[at(other)].box().squared_distance(p) > near * near) continue;
+      // Free vertices stand where the surfaces overlap for good: sides must not spread over them.
+      if (side[i] == Side::k_away) side[i] = Side::k_near;
+      held = held || plan.keep(part, static_cast<int>(i), other) != k_free;
+    }
+    if (!held) continue;
+    side[i] = Side::k_unknown;
+    TriangleTree::Hit hit;
+    hit.closest.squared_distance = near * near;
+    for (const auto& [other, leaf] : leaves)
+      if (leaf->box.squared_distance(p) <= hit.closest.squared_distance)
+        scratch.trees[at(other)].closest_in_leaf(*leaf, p, scratch.x, surface->triangles(), hit);
+    if (hit.triangle < 0) continue;
+    side[i] = Side::k_near;
+    const auto answer = surface->judge(p, hit, part.allowed, scratch.x);
+    if (!answer) continue;
+    const double keep = plan.keep(part, static_cast<int>(i), answer->part);
+    if (keep == settings.gap && answer->distance < carving.contacts[i].distance)
+      carving.contacts[i] = {answer->normal, answer->distance};
+    if (answer->distance < keep) carving.is_active[i] = 1;
+  }
+}
+
+void FeasibleCollider::Impl::find_active(Carving& carving, const Scratch& scratch) const {
+  const std::size_t count = carving.part.vertices.size();
   std::vector<Side> side(count);
-  std::vector<char> active(count, 0);
   for (const Opponent& opponent : carving.opponents) {
-    bool far_any = false;
     parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
-      int hint = -1;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Vec3& p = scratch.x[at(part.vertices[i])];
-        bool in_box = false, held = false;
-        for (const int other : opponent.parts) {
-          const double d2 = scratch.trees[at(other)].box().squared_distance(p);
-          in_box = in_box || d2 <= near * near;
-          held = held || (d2 <= near * near && plan.keep(part, static_cast<int>(i), other) != k_free);
-        }
-        // Free vertices stand where the surfaces overlap for good: sides must not spread over them.
-        side[i] = !in_box ? Side::k_away : held ? Side::k_unknown : Side::k_near;
-        if (!held) continue;
-        const auto answer = surface->distance(p, opponent.parts, part.allowed, near, {scratch.x, scratch.trees}, hint);
-        if (hint < 0) continue;
-        side[i] = Side::k_near;
-        if (!answer) continue;
-        if (answer->distance < carving.contacts[i].distance) carving.contacts[i] = {answer->normal, answer->distance};
-        if (answer->distance < plan.keep(part, static_cast<int>(i), answer->part)) active[i] = 1;
-      }
+      for (std::size_t i = begin; i < end; i += k_cluster)
+        look_around(carving, opponent, scratch, i, std::min(end, i + k_cluster), side);
     });
-    for (const Side s : side) far_any = far_any || s == Side::k_unknown;
-    if (!far_any) continue;
+    if (std::find(side.begin(), side.end(), Side::k_unknown) == side.end()) continue;
     resolve_unknown(carving, opponent, scratch, side);
     for (std::size_t i = 0; i < count; ++i)
-      if (side[i] == Side::k_inside) carving.inside[i] = active[i] = 1;
+      if (side[i] == Side::k_inside) carving.inside[i] = carving.is_active[i] = 1;
   }
   for (std::size_t i = 0; i < count; ++i)
-    if (active[i] != 0) carving.active.push_back(static_cast<int>(i));
+    if (carving.is_active[i] != 0) carving.active.push_back(static_cast<int>(i));
 }
 
 /// Moves the vertex out of every opponent; true when it moved.
@@ -189,7 +216,7 @@ bool FeasibleCollider::Impl::push_out(const Carving& carving, int local, const S
         surface->distance(point, opponent.parts, part.allowed, reach, {scratch.x, scratch.trees}, hints[k]);
     if (!answer) continue;
     const double keep = plan.keep(part, local, answer->part);
-    if (answer->distance < contact.distance) contact = {answer->normal, std::max(answer->distance, keep)};
+    if (keep == settings.gap && answer->distance < contact.distance) contact = {answer->normal, std::max(answer->distance, keep)};
     if (answer->distance >= keep) continue;
     point += (keep - answer->distance) * answer->normal;
     moved = true;
@@ -283,10 +310,11 @@ void FeasibleCollider::Impl::lift_edges(const Carving& carving, Scratch& scratch
 void FeasibleCollider::Impl::give_way(int p, Scratch& scratch) const {
   const Yielding& part = plan.yielding[at(p)];
   const std::size_t count = part.vertices.size();
-  Carving carving{part, opponents_now(part, scratch.boxes[at(p)], scratch), {}, {}, {}, {}};
+  Carving carving{part, opponents_now(part, scratch.boxes[at(p)], scratch), {}, {}, {}, {}, {}};
   if (count == 0 || carving.opponents.empty()) return;
   carving.contacts.resize(count);
   carving.inside.assign(count, 0);
+  carving.is_active.assign(count, 0);
   carving.moved.assign(count, 0);
   find_active(carving, scratch);
   if (!carving.active.empty()) {
@@ -322,7 +350,7 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
   Impl& m = *impl_;
   CHECK(static_cast<int>(bind_pose.size()) == drawn.vertex_count() && !drawn.parts.empty());
   m.settings = settings;
-  m.near = std::max(2 * settings.gap, settings.gap + 0.55 * settings.max_edge);
+  m.near = std::max(1.5 * settings.gap, 0.55 * settings.max_edge);
   m.mesh = refine_mesh(bind_pose, drawn.triangles, settings.max_edge);
   std::vector<int> rank(drawn.parts.size());
   const std::vector<int> by_size = parts_by_size(drawn.parts);

@@ -162,6 +162,11 @@ std::optional<PartSurface::Answer> PartSurface::distance(const Vec3& p, std::spa
   }
   for (const int part : parts) pose.trees[at(part)].closest(p, x, triangles_, hit);
   hint = hit.triangle;
+  return judge(p, hit, allowed, x);
+}
+
+std::optional<PartSurface::Answer> PartSurface::judge(const Vec3& p, const TriangleTree::Hit& hit,
+                                                      std::span<const char> allowed, std::span<const Vec3> x) const {
   if (hit.triangle < 0) return std::nullopt;
   const int feature = hit.closest.feature;
   Vec3 normal = Vec3::Zero();

@@ -45,6 +45,9 @@ class PartSurface {
   /// as neighbours at a rim. hint, a triangle of one of the parts or -1, only makes it faster; it becomes the triangle found.
   std::optional<Answer> distance(const Vec3& p, std::span<const int> parts, std::span<const char> allowed, double reach,
                                  const Pose& pose, int& hint) const;
+  /// The answer for a closest point that is known already; nothing when it lies on a rim or too deep.
+  std::optional<Answer> judge(const Vec3& p, const TriangleTree::Hit& hit, std::span<const char> allowed,
+                              std::span<const Vec3> positions) const;
 
  private:
   Vec3 face_normal(int triangle, std::span<const Vec3> positions) const;

@@ -186,16 +186,7 @@ void TriangleTree::closest(const Vec3& p, std::span<const Vec3> positions, std::
     if (entry.distance2 > hit.closest.squared_distance) continue;
     const Node& node = nodes_[static_cast<std::size_t>(entry.node)];
     if (node.count > 0) {
-      for (int k = 0; k < node.count; ++k) {
-        const int index = order_[static_cast<std::size_t>(node.first + k)];
-        const Triangle& t = triangles[static_cast<std::size_t>(index)];
-        const ClosestOnTriangle found =
-            closest_on_triangle(p, positions[static_cast<std::size_t>(t[0])], positions[static_cast<std::size_t>(t[1])],
-                                positions[static_cast<std::size_t>(t[2])]);
-        if (found.squared_distance < hit.closest.squared_distance ||
-            (found.squared_distance == hit.closest.squared_distance && (hit.triangle < 0 || index < hit.triangle)))
-          hit = {found, index};
-      }
+      closest_in_leaf(node, p, positions, triangles, hit);
       continue;
     }
     Entry left{entry.node + 1, nodes_[static_cast<std::size_t>(entry.node) + 1].box.squared_distance(p)};

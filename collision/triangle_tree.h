@@ -78,6 +78,19 @@ class TriangleTree {
       }
     }
   }
+  /// Calls visit(leaf) for every leaf that the box overlaps.
+  template <class Visit>
+  void for_each_leaf_near(const TreeBox& box, Visit&& visit) const {
+    for (int i = 0; i < static_cast<int>(nodes_.size());) {
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!node.box.overlaps(box)) {
+        i = next_[static_cast<std::size_t>(i)];
+        continue;
+      }
+      if (node.count > 0) visit(node);
+      ++i;
+    }
+  }
   /// Calls visit(i, j) for triangles of overlapping leaves of two trees.
   template <class Visit>
   void for_each_pair(const TriangleTree& other, Visit&& visit) const {
@@ -95,6 +108,20 @@ class TriangleTree {
   };
   /// Improves hit by this tree's triangles; start with hit.closest.squared_distance = the square of how far to look.
   void closest(const Vec3& p, std::span<const Vec3> positions, std::span<const Triangle> triangles, Hit& hit) const;
+  /// The same for one leaf, whose box is known to be near enough.
+  void closest_in_leaf(const Node& leaf, const Vec3& p, std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                       Hit& hit) const {
+    for (int k = 0; k < leaf.count; ++k) {
+      const int index = order_[static_cast<std::size_t>(leaf.first + k)];
+      const Triangle& t = triangles[static_cast<std::size_t>(index)];
+      const ClosestOnTriangle found =
+          closest_on_triangle(p, positions[static_cast<std::size_t>(t[0])], positions[static_cast<std::size_t>(t[1])],
+                              positions[static_cast<std::size_t>(t[2])]);
+      if (found.squared_distance < hit.closest.squared_distance ||
+          (found.squared_distance == hit.closest.squared_distance && (hit.triangle < 0 || index < hit.triangle)))
+        hit = {found, index};
+    }
+  }
   /// Distance along the unit direction to the first triangle other than skip, or length when there is none before it [m].
   double ray(const Vec3& origin, const Vec3& direction, double length, int skip, std::span<const Vec3> positions,
              std::span<const Triangle> triangles) const;
