@@ -8,8 +8,9 @@
 namespace ft {
 namespace {
 
-/// Share of the way to the first touch that a shortened piece takes.
+/// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
+constexpr double k_shortest_cut = 0.25;
 /// Newton iterations of a shortened piece: a gap that an unconverged solve leaves closed blocks the next advance.
 constexpr int k_shortened_newton = 4;
 
@@ -87,39 +88,40 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   const std::size_t nc = cloth.x.size(), nb = in.body_t0.size();
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
-  double done = 0, beta = 1;
+  double done = 0, beta = 1, share = 1;  // share: of what is left, that this piece takes
   while (done < 1) {
     auto clock = std::chrono::steady_clock::now();
-    const double h = (1 - done) * in.h;
+    const double h = share * (1 - done) * in.h;
+    const double end = share >= 1 ? 1.0 : done + share * (1 - done);
     piece.start.resize(nc + nb);
     std::copy(cloth.x.begin(), cloth.x.end(), piece.start.begin());
     piece.body_motion.resize(nb);
-    for (std::size_t i = 0; i < nb; ++i) {
-      piece.start[nc + i] = in.body_t0[i] + done * (in.body_t1[i] - in.body_t0[i]);
-      piece.body_motion[i] = in.body_t1[i] - piece.start[nc + i];
-    }
-    double t = plan(cloth, h, in.extra_slack, &beta);
-    report.seconds_candidates += seconds_since(clock);
-    bool shortened = t < 1;
-    if (shortened) {
-      t = std::clamp(k_approach * t, 0.0, k_approach);
-      if (t * h < in.shortest) {
-        // No room: whatever blocks is let through until the part is clear of all cloth again.
-        const int freed = s.candidates.release_blocked(in.shortest / (k_approach * h), piece, cloth, &report.let_through);
-        report.released += freed;
-        if (freed > 0) continue;  // search again without them
-        t = 1;                    // cloth on cloth: these pairs pass this once; the certificate will say so
-        shortened = false;
-      }
-    }
     s.end.resize(nc + nb);
-    for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + t * piece.carry[i];
-    for (std::size_t i = 0; i < nb; ++i)
-      s.end[nc + i] = t >= 1 ? in.body_t1[i] : (piece.start[nc + i] + t * piece.body_motion[i]).eval();
-    const double end = t >= 1 ? 1.0 : done + t * (1 - done);
+    for (std::size_t i = 0; i < nb; ++i) {
+      const Vec3 motion = in.body_t1[i] - in.body_t0[i];
+      piece.start[nc + i] = in.body_t0[i] + done * motion;
+      s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
+      piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
+    }
+    const double free = plan(cloth, h, in.extra_slack, &beta);
+    report.seconds_candidates += seconds_since(clock);
+    if (free < 1) {
+      const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
+      if (shorter * (1 - done) * in.h >= in.shortest) {
+        share = shorter;
+        continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
+      }
+      // No room: whatever blocks is let through until the part is clear of all cloth again.
+      const int freed = s.candidates.release_blocked(1.0, piece, cloth, &report.let_through);
+      report.released += freed;
+      if (freed > 0) continue;  // search again without them
+      // Only cloth on cloth is left: these pairs pass this once, the certificate will say so.
+    }
+    for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
     report.seconds_advance += seconds_since(clock);
-    solve(in, t * h, end, shortened, cloth, report);
+    solve(in, h, end, share < 1, cloth, report);
     done = end;
+    share = 1;
   }
   return report;
 }
