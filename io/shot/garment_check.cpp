@@ -102,7 +102,7 @@ void judge_faces(const Mesh& mesh, GarmentFindings& out) {
     }
   }
   if (repeated.count > 0) out.faults.push_back(places(repeated.count, "face uses", "faces use", repeated.first) + " a vertex twice");
-  if (flat.count > 0) out.faults.push_back(places(flat.count, "face has", "faces have", flat.first) + " no area");
+  if (flat.count > 0) out.faults.push_back(places(flat.count, "face has", "faces have", flat.first) + " no area, or a corner in line with its neighbours");
 }
 
 void judge_edges(const Mesh& mesh, GarmentFindings& out) {

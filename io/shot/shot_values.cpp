@@ -227,9 +227,9 @@ std::optional<std::filesystem::path> ValueReader::file(const Value& value, const
   // Patterns of file sequences ("body.####.obj") are judged by who reads them.
   const bool pattern = name->find_first_of("#%*") != std::string::npos;
   if (!pattern && !std::filesystem::exists(path, ignored)) {
-    std::string hint = similar_file(path);
-    if (hint.empty() && name->find('\\') != std::string::npos) hint = "folders are separated by /";
-    if (hint.empty() && name->starts_with("~")) hint = "~ is not expanded; write the whole path";
+    std::string hint = name->find('\\') != std::string::npos ? "folders are separated by /"
+                       : name->starts_with("~")               ? "~ is not expanded; write the whole path"
+                                                              : similar_file(path);
     fault(value, with_hint(std::string("= \"").append(printable(*name, 200)).append("\" does not exist"), hint), true);
   }
   return path;
