@@ -16,7 +16,7 @@
 namespace ft {
 namespace {
 
-constexpr double k_spacing = 0.0085;      ///< grid, share of the height: 14 mm on an adult
+constexpr double k_spacing = 0.0100;      ///< grid, share of the height: 16 mm on an adult
 constexpr double k_blend = 0.007;         ///< width of the smooth union, share of the height
 constexpr int k_relaxations = 12;
 constexpr int k_diffusions = 18;          ///< spreads weights over about 4 cm to each side of a joint
@@ -251,10 +251,11 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
   if (!frame) return frame.error();
   CharacterMesh mesh;
   mesh.name = "body";
-  mesh.node = 0;
+  mesh.node = static_cast<int>(character.nodes.size());
   if (Status s = style == "capsules" ? add_capsules(character, *frame, mesh) : add_blended(character, *frame, mesh); !s) return s;
   const Mat3 back = axes.transpose() / frame->scale;
   for (Vec3& p : mesh.positions) p = back * p;
+  character.nodes.push_back({mesh.name, -1, Mat4::Identity(), {}});
   character.meshes.push_back(std::move(mesh));
   return {};
 }

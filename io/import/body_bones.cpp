@@ -74,115 +74,173 @@ Radii radii(Limb limb) {
     case Limb::k_foot: return {0.024, 0.021};
     case Limb::k_toe: return {0.020, 0.015};
     case Limb::k_collar: return {0.040, 0.034};
-    case Limb::k_upper_arm: return {0.031, 0.025};
-    case Limb::k_forearm: return {0.025, 0.018};
-    case Limb::k_hand: return {0.018, 0.016};
-    case Limb::k_finger: return {0.014, 0.012};
+    case Limb::k_upper_arm: return {0.033, 0.025};
+    case Limb::k_forearm: return {0.026, 0.0175};
+    case Limb::k_hand: return {0.019, 0.018};
+    case Limb::k_finger: return {0.016, 0.013};
     case Limb::k_other: return {0.025, 0.020};
   }
   return {0.025, 0.020};
 }
 
-bool is_torso(Limb limb) { return limb == Limb::k_hips || limb == Limb::k_torso; }
-
-/// Half depth and half breadth of the torso from the hips (0) to the base of the neck (1).
+/// Half depth and half breadth of the torso, from the hip joints (0) to the shoulder joints (1).
 struct Section {
   double at, depth, breadth;
 };
-constexpr Section k_torso[] = {{0.0, 0.060, 0.092}, {0.4, 0.054, 0.077}, {0.72, 0.063, 0.090}, {0.9, 0.058, 0.092}, {1.0, 0.044, 0.070}};
+constexpr Section k_torso[] = {{0.0, 0.060, 0.096},  {0.22, 0.058, 0.086}, {0.42, 0.053, 0.075},
+                               {0.70, 0.064, 0.087}, {0.87, 0.057, 0.085}, {1.0, 0.040, 0.066}};
 
-Section torso_section(double at) {
-  const Section* s = k_torso;
-  while (s + 2 < std::end(k_torso) && at > s[1].at) ++s;
-  const double u = std::clamp((at - s[0].at) / (s[1].at - s[0].at), 0.0, 1.0);
-  return {at, s[0].depth + u * (s[1].depth - s[0].depth), s[0].breadth + u * (s[1].breadth - s[0].breadth)};
+/// Where the two sides of a body meet: hip joints, shoulder joints, and the directions they give.
+struct Landmarks {
+  int hips = 0, neck = -1, chest = 0;
+  std::vector<int> thighs, arms;
+  std::vector<int> spine;  ///< joints from the hips up to the chest
+  Vec3 side = Vec3::UnitX(), forward = Vec3::UnitZ();
+  bool complete = false;   ///< two thighs and two arms
+};
+
+bool is_end(const Character& character, std::size_t joint) { return character.nodes[joint].name.starts_with("EndSite"); }
+
+Landmarks find_landmarks(const Character& character, const BodyFrame& frame, const std::vector<Limb>& limb) {
+  Landmarks out;
+  int hips = -1;
+  Vec3 toes = Vec3::Zero();
+  const auto at = [&](int joint) -> const Vec3& { return frame.joints[static_cast<std::size_t>(joint)]; };
+  for (std::size_t i = 0; i < limb.size(); ++i) {
+    const int joint = static_cast<int>(i), parent = character.nodes[i].parent;
+    if (is_end(character, i)) continue;
+    const bool first_of_kind = parent < 0 || limb[static_cast<std::size_t>(parent)] != limb[i];
+    if (hips < 0 && limb[i] == Limb::k_hips) hips = joint;
+    if (out.neck < 0 && (limb[i] == Limb::k_neck || limb[i] == Limb::k_head)) out.neck = joint;
+    if (limb[i] == Limb::k_thigh && first_of_kind) out.thighs.push_back(joint);
+    if (limb[i] == Limb::k_upper_arm && first_of_kind) out.arms.push_back(joint);
+    if (limb[i] == Limb::k_foot)
+      for (const int child : frame.children[i]) toes += at(child) - at(joint);
+  }
+  out.hips = std::max(hips, 0);
+  out.complete = out.thighs.size() == 2 && out.arms.size() == 2 && at(out.arms[0]).y() > at(out.thighs[0]).y() + 0.1;
+  if (!out.complete) return out;
+  out.side = at(out.thighs[0]) - at(out.thighs[1]);
+  out.side.y() = 0;
+  out.side = out.side.norm() > 1e-6 ? out.side.normalized() : Vec3::UnitX().eval();
+  toes.y() = 0;
+  toes -= toes.dot(out.side) * out.side;
+  out.forward = toes.norm() > 1e-6 ? toes.normalized() : out.side.cross(Vec3::UnitY()).eval();
+  // The chest is the lowest joint above both arms.
+  int a = out.arms[0], b = out.arms[1];
+  while (a != b) (a > b ? a : b) = character.nodes[static_cast<std::size_t>(std::max(a, b))].parent;
+  out.chest = a;
+  for (int joint = a; joint >= 0; joint = character.nodes[static_cast<std::size_t>(joint)].parent) {
+    out.spine.insert(out.spine.begin(), joint);
+    if (joint == out.hips) break;
+  }
+  return out;
 }
 
 class FleshBuilder {
  public:
-  FleshBuilder(const Character& character, const BodyFrame& frame) : frame_(frame), limb_(limbs(character, frame)) {
-    for (std::size_t i = 0; i < limb_.size(); ++i) {
-      if (hips_ < 0 && limb_[i] == Limb::k_hips) hips_ = static_cast<int>(i);
-      if (neck_ < 0 && limb_[i] == Limb::k_neck) neck_ = static_cast<int>(i);
-      if (limb_[i] == Limb::k_thigh && !character.nodes[i].name.starts_with("EndSite")) thighs_.push_back(static_cast<int>(i));
-    }
-    if (hips_ < 0) hips_ = 0;
-    if (neck_ < 0)
-      for (std::size_t i = 0; i < limb_.size() && neck_ < 0; ++i)
-        if (limb_[i] == Limb::k_head) neck_ = static_cast<int>(i);
-    if (thighs_.size() >= 2) side_ = at(thighs_[0]) - at(thighs_[1]);
-    side_.y() = 0;
-    side_ = side_.norm() > 1e-6 ? side_.normalized() : Vec3::UnitX().eval();
-  }
+  FleshBuilder(const Character& character, const BodyFrame& frame)
+      : character_(character), frame_(frame), limb_(limbs(character, frame)), marks_(find_landmarks(character, frame, limb_)) {}
 
   std::vector<BodyBone> build() {
     for (std::size_t i = 0; i < limb_.size(); ++i)
       for (const int child : frame_.children[i]) add_bone(static_cast<int>(i), child);
-    if (thighs_.size() >= 2) {
-      const double half = 0.5 * (at(thighs_[0]) - at(thighs_[1])).norm();
-      const double r = 0.056;  // hip joints lie 0.036 inside the hip's outline
-      out_.push_back({hips_, at(thighs_[0]) + side_ * std::max(0.0, 0.040 - half), at(thighs_[1]) - side_ * std::max(0.0, 0.040 - half), r, r});
-    }
+    if (marks_.complete) add_torso();
     return std::move(out_);
   }
 
  private:
   const Vec3& at(int joint) const { return frame_.joints[static_cast<std::size_t>(joint)]; }
+  Limb limb(int joint) const { return limb_[static_cast<std::size_t>(joint)]; }
+  Vec3 middle(const std::vector<int>& pair) const { return 0.5 * (at(pair[0]) + at(pair[1])); }
 
   void add_bone(int joint, int child) {
-    const Limb limb = limb_[static_cast<std::size_t>(joint)], below = limb_[static_cast<std::size_t>(child)];
     const Vec3 &a = at(joint), &b = at(child);
-    const double length = (b - a).norm();
-    if (limb == Limb::k_head) return add_head(joint, a, b);
-    if (length < 1e-4) return;
-    if (is_torso(limb)) {
-      if (below == Limb::k_thigh || below == Limb::k_hip_joint) return add(joint, a, b, 0.058, 0.052);
-      if (below == Limb::k_collar || below == Limb::k_upper_arm) return add(joint, a, b, 0.045, below == Limb::k_upper_arm ? 0.032 : 0.040);
-      if (is_torso(below) || below == Limb::k_neck || below == Limb::k_head) return add_torso(joint, a, b);
-    }
-    Radii r = radii(limb);
-    if (limb == Limb::k_thigh && thighs_.size() >= 2) {  // narrow hips: the legs stay apart below the crotch
-      const double half_top = 0.5 * (at(thighs_[0]) - at(thighs_[1])).norm();
-      r.at_joint = std::min(r.at_joint, 1.15 * half_top);
-      r.at_end = std::min(r.at_end, 0.8 * std::abs((b - 0.5 * (at(thighs_[0]) + at(thighs_[1]))).dot(side_)));
-    }
-    if (limb == Limb::k_shin) {  // calf
-      const Vec3 calf = a + 0.28 * (b - a);
-      add(joint, a, calf, r.at_joint, 0.035);
-      return add(joint, calf, b, 0.035, r.at_end);
-    }
-    if (limb == Limb::k_foot) {  // heel
-      Vec3 forward = b - a;
-      forward.y() = 0;
-      if (forward.norm() > 1e-6) add(joint, a, a - 0.016 * forward.normalized() - Vec3(0, 0.004, 0), 0.025, 0.023);
+    if (limb(joint) == Limb::k_head) return add_head(joint, a, b);
+    if ((b - a).norm() < 1e-4) return;
+    Radii r = radii(limb(joint));
+    switch (limb(joint)) {
+      case Limb::k_hips:
+      case Limb::k_torso:
+      case Limb::k_hip_joint:
+        if (!marks_.complete) add(joint, a, b, r.at_joint, r.at_end);
+        return;  // else the torso is built as one
+      case Limb::k_collar:
+        return add_collar(joint, a, b);
+      case Limb::k_thigh:
+        if (marks_.complete) {  // narrow hips: the legs stay apart below the crotch
+          const Vec3 centre = middle(marks_.thighs);
+          r.at_joint = std::min(r.at_joint, 1.15 * std::abs((a - centre).dot(marks_.side)));
+          r.at_end = std::min(r.at_end, 0.8 * std::abs((b - centre).dot(marks_.side)));
+        }
+        break;
+      case Limb::k_shin: {
+        const Vec3 calf = a + 0.28 * (b - a) - 0.004 * marks_.forward;
+        add(joint, a, calf, r.at_joint, 0.035);
+        return add(joint, calf, b, 0.035, r.at_end);
+      }
+      case Limb::k_foot:  // heel
+        add(joint, a, a - 0.018 * marks_.forward - Vec3(0, 0.008, 0), 0.024, 0.022);
+        break;
+      default:
+        break;
     }
     add(joint, a, b, r.at_joint, r.at_end);
   }
 
-  /// Two lobes beside the spine; the distance between them grows with the breadth.
-  void add_torso(int joint, const Vec3& a, const Vec3& b) {
-    const Vec3 base = at(hips_), top = neck_ >= 0 ? at(neck_) : b;
-    const Vec3 axis = top - base;
-    const double squared = std::max(axis.squaredNorm(), 1e-12);
-    // Joints of the neck branch low in some skeletons; a bone's own ends bound its share.
-    const Section low = torso_section((a - base).dot(axis) / squared), high = torso_section((b - base).dot(axis) / squared);
-    for (const double sign : {1.0, -1.0})
-      out_.push_back({joint, a + sign * (low.breadth - low.depth) * side_, b + sign * (high.breadth - high.depth) * side_, low.depth, high.depth});
+  void add_collar(int joint, const Vec3& a, const Vec3& b) {
+    if (!marks_.complete) return add(joint, a, b, 0.040, 0.034);
+    const Vec3 shoulders = middle(marks_.arms);
+    add(joint, shoulders + 0.25 * (b - shoulders) + Vec3(0, 0.010, 0), b, 0.034, 0.034);
+  }
+
+  /// Two lobes side by side from the hip joints to the shoulders, with the bones of the spine each moving its own height; the hips
+  /// between and behind the hip joints.
+  void add_torso() {
+    const Vec3 low = middle(marks_.thighs) - 0.010 * marks_.forward, high = middle(marks_.arms) + 0.012 * marks_.forward;
+    const double shoulder = 0.5 * std::abs((at(marks_.arms[0]) - at(marks_.arms[1])).dot(marks_.side));
+    double most = 1;
+    for (const int arm : marks_.arms)  // an arm that hangs beside the torso in the rest pose needs room
+      for (const int elbow : frame_.children[static_cast<std::size_t>(arm)]) {
+        const Vec3 along = (at(elbow) - at(arm)).normalized();
+        if (along.y() < -0.7) most = shoulder - 0.056;
+      }
+    const auto lobe = [&](const Section& s, double sign) -> Vec3 {
+      const double breadth = std::min(s.breadth, std::max(most, s.depth));
+      return low + s.at * (high - low) + sign * std::max(breadth - s.depth, 0.0) * marks_.side;
+    };
+    for (std::size_t k = 0; k + 1 < std::size(k_torso); ++k) {
+      const Section &s = k_torso[k], &t = k_torso[k + 1];
+      const double height = low.y() + 0.5 * (s.at + t.at) * (high.y() - low.y());
+      int owner = marks_.hips;
+      for (const int joint : marks_.spine)
+        if (at(joint).y() <= height) owner = joint;
+      for (const double sign : {1.0, -1.0}) add(owner, lobe(s, sign), lobe(t, sign), s.depth, t.depth);
+    }
+    for (const int thigh : marks_.thighs) {
+      const Vec3 out = (at(thigh) - middle(marks_.thighs)).dot(marks_.side) * marks_.side;
+      const Vec3 inner = middle(marks_.thighs) + out * std::min(1.0, 0.042 / std::max(out.norm(), 1e-6));
+      add(marks_.hips, middle(marks_.thighs), inner, 0.052, 0.052);
+      const Vec3 seat = inner - 0.026 * marks_.forward;
+      add(marks_.hips, seat + Vec3(0, 0.020, 0), seat - Vec3(0, 0.012, 0), 0.048, 0.048);
+    }
   }
 
   void add_head(int joint, const Vec3& a, const Vec3& b) {
     const Vec3 up = (b - a).norm() > 0.01 ? (b - a).normalized() : Vec3::UnitY().eval();
-    const Vec3 crown = a + up * std::max((b - a).norm(), 0.075);
-    add(joint, a + 0.012 * up, crown - 0.020 * up, 0.040, 0.050);
+    const Vec3 front = (marks_.forward - marks_.forward.dot(up) * up).normalized();
+    const Vec3 skull = a + 0.046 * up;
+    add(joint, skull + 0.006 * front, skull - 0.012 * front, 0.049, 0.049);
+    add(joint, a + 0.006 * up + 0.022 * front, skull + 0.018 * front, 0.030, 0.042);
+    add(joint, a - 0.01 * up, a + 0.02 * up, 0.033, 0.036);
   }
 
   void add(int node, const Vec3& a, const Vec3& b, double radius_a, double radius_b) { out_.push_back({node, a, b, radius_a, radius_b}); }
 
+  const Character& character_;
   const BodyFrame& frame_;
   std::vector<Limb> limb_;
-  int hips_ = -1, neck_ = -1;
-  std::vector<int> thighs_;
-  Vec3 side_ = Vec3::UnitX();
+  Landmarks marks_;
   std::vector<BodyBone> out_;
 };
 

@@ -144,6 +144,7 @@ Result<ImportedPrimary> import_character(const ImportRequest& request) {
   if (!placement) return placement.error();
   if (character.meshes.empty() && character.format == "BVH") {
     if (Status s = add_body(character, request.body, placement->axes); !s) return Error{s.error().kind, s.error().what, name, s.error().hint};
+    bind = find_bind_pose(character);
     notes.push_back("has no body; one was built from the skeleton (" + request.body + ")");
   }
   auto meshes = choose_meshes(character, request.meshes, name);

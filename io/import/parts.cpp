@@ -10,7 +10,7 @@ namespace ft {
 namespace {
 
 /// A part below this share of the body is no segment of its own. A hand is 0.6 %, a finger 0.07 % (Dempster 1955).
-constexpr double k_least_share = 0.004;
+constexpr double k_least_share = 0.002;
 
 bool is_twist(const std::string& name) {
   std::string lower;

@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(References, Skinning,
                                            Case{"quaternius_Dance_Loop", "quaternius_base_human"}, Case{"quaternius_Jog_Fwd_Loop", "quaternius_base_human"},
                                            Case{"quaternius_Roll", "quaternius_base_human"}, Case{"robot_Dance", "robot_expressive"},
                                            Case{"robot_WalkJump", "robot_expressive"}),
-                         [](const auto& info) { return info.param.reference; });
+                         [](const auto& one) { return one.param.reference; });
 
 }  // namespace
 }  // namespace ft
