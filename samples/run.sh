@@ -33,8 +33,8 @@ run_sample() {
   local name=$1 folder=$root/samples/$1 out=$root/out/$1
   shift
   if [ -f "$folder/needs.txt" ]; then
-    while read -r file; do
-      [ -z "$file" ] || [ -e "$folder/$file" ] || { say "Skipped sample $name: $folder/$file is not there"; return 10; }
+    while IFS= read -r file; do
+      [ -z "$file" ] || (cd "$folder" && [ -e "$file" ]) || { say "Skipped sample $name: it reads $file, which is not on this machine"; return 10; }
     done <"$folder/needs.txt"
   fi
   if [ -f "$folder/garments.sh" ]; then
