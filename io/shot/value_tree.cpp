@@ -49,29 +49,53 @@ Value converted(const toml::node& node) {
   return out;
 }
 
-/// toml++ speaks of its parser; the artist wants to know what to write.
-std::string syntax_hint(std::string_view text, int line_number) {
-  std::string_view line = text;
-  for (int i = 1; i < line_number && !line.empty(); ++i) {
-    const std::size_t end = line.find('\n');
-    line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
+bool holds(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+std::string_view trimmed(std::string_view s) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!s.empty() && blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && blank(s.back())) s.remove_suffix(1);
+  return s;
+}
+
+std::string_view line_of(std::string_view text, int number) {
+  for (int i = 1; i < number && !text.empty(); ++i) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
-  line = line.substr(0, line.find('\n'));
+  return text.substr(0, text.find('\n'));
+}
+
+/// What an artist should write instead of a line that TOML does not understand; empty when there is no idea.
+std::string line_hint(std::string_view line) {
   const std::size_t equals = line.find('=');
-  if (equals == std::string_view::npos) {
-    const std::size_t colon = line.find(':');
-    return colon != std::string_view::npos ? " (a key is written name = value, not name: value)" : "";
+  if (equals == std::string_view::npos) return holds(line, ":") ? "a key is written name = value, not name: value" : "";
+  const std::string_view key = trimmed(line.substr(0, equals)), value = trimmed(line.substr(equals + 1));
+  if (value.empty()) return "the value is missing";
+  if (value.find_first_of("\"'[{#") != std::string_view::npos) return "";
+  if (holds(value, ",")) return "decimal numbers are written with a point, lists in [ ]";
+  for (const std::string_view word : {"True", "False", "TRUE", "FALSE", "yes", "no", "on", "off"})
+    if (value == word) return "write true or false";
+  const std::size_t number_end = value.find_first_not_of("0123456789.+-eE");
+  const bool number_and_unit = value.front() >= '0' && value.front() <= '9' && number_end != std::string_view::npos && number_end > 0;
+  if (number_and_unit) return "numbers are written without a unit, as SI";
+  return std::string("text needs quotes: ").append(printable(key, 40)).append(" = \"").append(printable(value, 40)).append("\"");
+}
+
+/// toml++ speaks of its parser; the artist wants to know what is wrong with his file.
+std::string syntax_message(std::string_view said, std::string_view line) {
+  const std::size_t twice = said.find("cannot redefine existing ");
+  if (twice != std::string_view::npos) {
+    const std::size_t quote = said.find('\'', twice);
+    return printable(said.substr(std::min(quote, said.size())), 80).append(" is there twice");
   }
-  std::string_view value = line.substr(equals + 1);
-  while (!value.empty() && (value.front() == ' ' || value.front() == '\t')) value.remove_prefix(1);
-  while (!value.empty() && (value.back() == ' ' || value.back() == '\t' || value.back() == '\r')) value.remove_suffix(1);
-  const bool quoted = value.find_first_of("\"'[{#") != std::string_view::npos;
-  if (value.empty() || quoted) return "";
-  if (value.find(',') != std::string_view::npos) return " (decimal numbers are written with a point, lists in [ ])";
-  if (value == "True" || value == "False" || value == "yes" || value == "no" || value == "on" || value == "off")
-    return " (write true or false)";
-  std::string out = " (text needs quotes: ";
-  return out.append(printable(line.substr(0, equals), 40)).append("= \"").append(printable(value, 40)).append("\")");
+  if (holds(said, "table header") && holds(said, "expected ']'"))
+    return "a section needs a closing ]; names with blanks or dots are written [cloth.\"my dress\"]";
+  if (holds(said, "parsing string") && holds(said, "control characters")) return "a text has no closing quote";
+  if (holds(said, "utf-8")) return "is not a text file in UTF-8";
+  std::string out = printable(said, 200);
+  const std::string hint = line_hint(line);
+  return hint.empty() ? out : out.append(" (").append(hint).append(")");
 }
 
 }  // namespace
@@ -104,7 +128,7 @@ bool parse_tree(std::string_view text, Value& root, ParseFault& fault) {
     return true;
   }
   fault.place = place_of(result.error().source());
-  fault.message = printable(result.error().description(), 200).append(syntax_hint(text, fault.place.line));
+  fault.message = syntax_message(result.error().description(), line_of(text, fault.place.line));
   return false;
 }
 

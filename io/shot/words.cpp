@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace ft {
 namespace {
@@ -78,9 +79,20 @@ std::string printable(std::string_view text, std::size_t longest) {
 }
 
 std::string number_text(double value) {
-  char digits[40];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-  return {digits, end};
+  char digits[48];
+  const double size = std::abs(value);
+  if (value == 0 || (size >= 1e-4 && size < 1e7)) {
+    const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr;
+    return {digits, end};
+  }
+  std::string out(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  // 1e+06 is written 1e6, 1e-06 is written 1e-6.
+  const std::size_t e = out.find('e');
+  if (e == std::string::npos) return out;
+  if (out[e + 1] == '+') out.erase(e + 1, 1);
+  const std::size_t first = out[e + 1] == '-' ? e + 2 : e + 1;
+  while (first + 1 < out.size() && out[first] == '0') out.erase(first, 1);
+  return out;
 }
 
 }  // namespace ft
