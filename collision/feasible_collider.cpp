@@ -10,6 +10,7 @@
 #include "baker/core/parallel.h"
 #include "collision/carve_plan.h"
 #include "collision/mesh_refine.h"
+#include "collision/nearby_leaves.h"
 #include "collision/part_distance.h"
 
 namespace ft {
@@ -141,13 +142,13 @@ void FeasibleCollider::Impl::look_around(Carving& carving, const Opponent& oppon
   for (std::size_t i = begin; i < end; ++i) box.include(scratch.x[at(part.vertices[i])]);
   box.inflate(near);
   const TreeBox cluster = TreeBox::around(box.lo, box.hi);
-  std::vector<std::pair<int, const TriangleTree::Node*>> leaves;
+  NearbyLeaves leaves(0.5 * (box.lo + box.hi));
   bool in_box = false;
   for (const int other : opponent.parts) {
     const TriangleTree& tree = scratch.trees[at(other)];
     if (!tree.box().overlaps(cluster)) continue;
     in_box = true;
-    tree.for_each_leaf_near(cluster, [&](const TriangleTree::Node& leaf) { leaves.emplace_back(other, &leaf); });
+    tree.for_each_leaf_near(cluster, [&](const TriangleTree::Node& leaf) { leaves.add(tree, leaf); });
   }
   for (std::size_t i = begin; i < end; ++i) {
     side[i] = Side::k_away;
@@ -162,11 +163,7 @@ void FeasibleCollider::Impl::look_around(Carving& carving, const Opponent& oppon
     }
     if (!held) continue;
     side[i] = Side::k_unknown;
-    TriangleTree::Hit hit;
-    hit.closest.squared_distance = near * near;
-    for (const auto& [other, leaf] : leaves)
-      if (leaf->box.squared_distance(p) <= hit.closest.squared_distance)
-        scratch.trees[at(other)].closest_in_leaf(*leaf, p, scratch.x, surface->triangles(), hit);
+    const TriangleTree::Hit hit = leaves.closest(p, near, scratch.x, surface->triangles());
     if (hit.triangle < 0) continue;
     side[i] = Side::k_near;
     const auto answer = surface->judge(p, hit, part.allowed, scratch.x);
