@@ -1,0 +1,192 @@
+#include "baker/bake.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fmt/format.h>
+
+#include "baker/bake_folder.h"
+#include "baker/cache_set.h"
+#include "baker/core/file.h"
+#include "baker/lock_file.h"
+#include "baker/plan_text.h"
+#include "baker/signals.h"
+#include "baker/standing.h"
+#include "baker/walk.h"
+
+namespace ft {
+namespace {
+
+/// An error, or after a signal the interruption that is behind it (Ctrl-C reaches the import's child, too).
+BakeResult failed(const Error& error, const ShotFaults& faults = {}) {
+  BakeResult out;
+  const int signal = signal_received();
+  if (signal != 0 && error.kind != ErrorKind::k_interrupted) {
+    out.exit_code = 128 + signal;
+    out.faults.push_back("interrupted before the first frame");
+    return out;
+  }
+  out.exit_code = error.kind == ErrorKind::k_interrupted && signal != 0 ? 128 + signal : exit_code(error.kind);
+  out.faults = faults.messages.empty() ? std::vector<std::string>{error.text()} : faults.messages;
+  return out;
+}
+
+/// Looks without making anything: the nearest folder that exists must be one that can be written.
+Status check_writable(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path nearest = std::filesystem::absolute(folder, error);
+  while (!nearest.empty() && !std::filesystem::exists(nearest, error) && nearest != nearest.parent_path()) nearest = nearest.parent_path();
+  if (!std::filesystem::is_directory(nearest, error))
+    return output_error("the output folder cannot be made: " + nearest.string() + " is not a folder", folder.string(), "choose another with --out");
+  if (::access(nearest.c_str(), W_OK | X_OK) != 0)
+    return output_error("the output folder cannot be written", folder.string(), "choose another with --out");
+  return {};
+}
+
+void warn_of_space(const BakeFolder& folder, std::uint64_t expected, Progress& progress) {
+  std::error_code error;
+  const auto space = std::filesystem::space(folder.path, error);
+  if (!error && space.available < expected)
+    progress.note(fmt::format("the caches need about {}, and {} has only {} free", size_text(expected), folder.path.string(),
+                              size_text(space.available)));
+}
+
+/// Files of an earlier bake that this one does not write: a cache that stays behind would be taken for a new one.
+Status remove_left_behind(const BakeFolder& folder, const Manifest& before, const std::vector<ManifestSystem>& now) {
+  std::vector<std::string> keep;
+  for (const ManifestSystem& s : now) {
+    keep.push_back(s.topology);
+    for (const ManifestCache& c : s.caches) keep.push_back(c.file);
+  }
+  std::vector<std::string> old;
+  for (const ManifestSystem& s : before.systems) {
+    old.push_back(s.topology);
+    for (const ManifestCache& c : s.caches) old.push_back(c.file);
+  }
+  for (const std::string& file : old) {
+    // Names come from a file on disk: only plain names inside the folder are ours to remove.
+    if (file.empty() || file.find('/') != std::string::npos || file == "." || file == "..") continue;
+    if (std::find(keep.begin(), keep.end(), file) != keep.end()) continue;
+    std::error_code error;
+    std::filesystem::remove(folder.path / file, error);
+    if (error) return output_error("cannot remove a cache of the earlier bake: " + error.message(), (folder.path / file).string());
+  }
+  return {};
+}
+
+/// The checkpoint to go on from, if the user wants that and it can be.
+Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, const BakeFolder& folder, const BakeInputs& inputs,
+                                                  const Standing& standing, Progress& progress) {
+  std::error_code error;
+  if (!options.resume || !std::filesystem::exists(folder.checkpoint(), error)) return std::optional<Checkpoint>();
+  auto bytes = read_file(folder.checkpoint());
+  if (!bytes) return bytes.error();
+  auto checkpoint = load_checkpoint(*bytes);
+  if (!checkpoint) {
+    progress.note(checkpoint.error().what + "; starting anew");
+    return std::optional<Checkpoint>();
+  }
+  if (checkpoint->fingerprint != inputs.fingerprint) {
+    std::string reasons;
+    for (const std::string& reason : standing.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
+    return usage_error("the interrupted bake cannot be resumed: " + (reasons.empty() ? "its inputs changed" : reasons),
+                       folder.path.string(), "run without --resume to start anew");
+  }
+  return std::optional<Checkpoint>(std::move(*checkpoint));
+}
+
+Result<Solvers> make_solvers(const BakePlan& plan, const SolverFactory& factory) {
+  Solvers out;
+  for (const GroupPlan& group : plan.groups) {
+    auto solver = factory(group.setup);
+    if (!solver) return solver.error();
+    out.push_back(std::move(*solver));
+  }
+  return out;
+}
+
+std::string closing(const Manifest& manifest, const BakeFolder& folder) {
+  int troubled = 0, incidents = 0;
+  for (const FrameReport& frame : manifest.frames) {
+    if (frame.frame < manifest.first_written) continue;
+    troubled += health(frame) != "ok";
+    incidents += static_cast<int>(frame.incidents.size());
+  }
+  std::string text = fmt::format("done: {} frames in {}", manifest.written_count(), folder.path.string());
+  if (troubled > 0) text += fmt::format("; {} frames to look at, {} places in manifest.json", troubled, incidents);
+  return text;
+}
+
+BakeResult run(const BakeOptions& options, const BakeServices& services, const BakeFolder& folder, BakeInputs inputs, Standing standing,
+               Progress& progress) {
+  if (const Status made = make_folders(folder.state()); !made) return failed(made.error());
+  auto lock = LockFile::acquire(folder.lock());
+  if (!lock) return failed(lock.error());
+  auto checkpoint = find_checkpoint(options, folder, inputs, standing, progress);
+  if (!checkpoint) return failed(checkpoint.error());
+  Manifest manifest = manifest_of(inputs);
+  auto plan = make_plan(std::move(inputs), services.importer, folder.import_cache());
+  if (!plan) return failed(plan.error());
+  for (const std::string& note : plan->notes) progress.note(note);
+  manifest.notes = plan->notes;
+  auto solvers = make_solvers(*plan, services.make_solver);
+  if (!solvers) return failed(solvers.error());
+  if (const int signal = signal_received(); signal != 0) return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
+
+  CacheSet caches(*plan, *solvers, folder.path);
+  warn_of_space(folder, caches.expected_bytes(), progress);
+  if (!*checkpoint)
+    if (const Status removed = remove_left_behind(folder, standing.before, caches.systems()); !removed) return failed(removed.error());
+  WalkResult result = walk(*plan, *solvers, caches, folder, manifest, std::move(*checkpoint), progress);
+  if (!result.status && result.status.error().kind == ErrorKind::k_input) {
+    // Caches that do not fit the checkpoint any more: nothing of them can be used.
+    progress.note(result.status.error().text() + "; starting anew");
+    CacheSet anew(*plan, *solvers, folder.path);
+    result = walk(*plan, *solvers, anew, folder, manifest, std::nullopt, progress);
+  }
+  Status status = result.status;
+  if (status || status.error().kind == ErrorKind::k_interrupted)
+    if (const Status written = write_report(folder, *plan, result); !written) status = written;
+  if (status) status = judge(result.manifest, {plan->shot().gate_p99_strain, plan->shot().gate_crossings});
+  BakeResult out;
+  if (!status) out = failed(status.error());
+  progress.end({out.exit_code, status ? closing(result.manifest, folder) : status.error().text(), result.seconds});
+  return out;
+}
+
+}  // namespace
+
+BakeResult bake(const BakeOptions& options, const BakeServices& services, Progress& progress) {
+  const SignalGuard guard;
+  ShotFaults faults;
+  auto inputs = read_inputs(options.shot_file, options.overrides, options.frames, faults);
+  if (!inputs) return failed(inputs.error(), faults);
+  const BakeFolder folder = options.folder.empty() ? BakeFolder::beside(options.shot_file) : BakeFolder{options.folder};
+  const Manifest now = manifest_of(*inputs);
+  Standing standing = find_standing(folder, now);
+  if (options.explain) return {0, {describe(standing, folder)}, {}};
+
+  if (const Status writable = check_writable(folder.path); !writable) return failed(writable.error());
+  if (options.dry_run) {
+    std::error_code error;
+    const bool cached = std::filesystem::is_directory(folder.import_cache(), error);
+    auto plan = make_plan(std::move(*inputs), services.importer, cached ? folder.import_cache() : std::filesystem::path());
+    if (!plan) return failed(plan.error());
+    BakeResult out{0, plan_lines(*plan, folder.path), {}};
+    out.lines.push_back(describe(standing, folder));
+    return out;
+  }
+  if (standing.kind == Standing::Kind::k_up_to_date && !options.force) {
+    BakeResult out;
+    if (const Status judged = judge(standing.before, {inputs->shot.gate_p99_strain, inputs->shot.gate_crossings}); !judged) out = failed(judged.error());
+    out.lines.push_back(describe(standing, folder));
+    return out;
+  }
+  if (standing.kind == Standing::Kind::k_stale) progress.note(describe(standing, folder));
+  if (standing.kind == Standing::Kind::k_unfinished && !options.resume)
+    progress.note("an earlier bake was not finished; starting anew (--resume goes on with it)");
+  return run(options, services, folder, std::move(*inputs), std::move(standing), progress);
+}
+
+}  // namespace ft

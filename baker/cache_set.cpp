@@ -1,0 +1,143 @@
+#include "baker/cache_set.h"
+
+#include <algorithm>
+
+#include "baker/core/file.h"
+#include "baker/version.h"
+#include "io/shot/mesh_file.h"
+#include "io/shot/weld.h"
+
+namespace ft {
+
+CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder)
+    : plan_(plan), solvers_(solvers), folder_(std::move(folder)) {
+  CHECK(plan.groups.size() == solvers.size());
+  for (std::size_t g = 0; g < solvers.size(); ++g) {
+    const Solver& solver = *solvers[g];
+    const PrimaryPlan& primary = plan.primaries[plan.groups[g].primary];
+    const auto& outputs = plan.groups[g].outputs;
+    CHECK(outputs.size() == static_cast<std::size_t>(solver.system_count()));
+    for (int s = 0; s < solver.system_count(); ++s) {
+      const Mesh& mesh = outputs[static_cast<std::size_t>(s)].mesh;
+      add({g, s, false, mesh}, mesh.name, "cloth", true);
+    }
+    if (!plan.shot().cache_collider) continue;
+    std::vector<Vec3> collider;
+    solver.collider_positions(solver.initial_state(), collider);
+    if (!collider.empty())
+      add({g, -1, true, make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles())},
+          primary.name + ".collider", "collider", false);
+    std::vector<Vec3> body(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
+    primary.trajectory->bind_pose(body);
+    add({g, -1, false, make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles)}, primary.name, "body", false);
+  }
+}
+
+void CacheSet::add(Source source, std::string name, const std::string& role, bool all_formats) {
+  ManifestSystem system;
+  system.name = std::move(name);
+  system.role = role;
+  system.primary = plan_.primaries[plan_.groups[source.group].primary].name;
+  system.vertex_count = source.mesh.vertex_count();
+  system.face_count = source.mesh.face_count();
+  system.topology = system.name + ".obj";
+  for (const std::string& name_of_format : plan_.shot().cache_formats) {
+    const CacheFormat* format = find_cache_format(name_of_format);
+    CHECK(format);
+    system.caches.push_back({name_of_format, system.name + std::string(format->extension), 0, {}});
+    if (!all_formats) break;
+  }
+  sources_.push_back(std::move(source));
+  systems_.push_back(std::move(system));
+}
+
+Status CacheSet::open(int keep_frames) {
+  writers_.clear();
+  const std::string version = "followthrough " + program_version();
+  for (std::size_t i = 0; i < systems_.size(); ++i) {
+    if (keep_frames == 0)
+      if (const Status written = write_obj(folder_ / systems_[i].topology, sources_[i].mesh); !written) return written;
+    CacheInfo info;
+    info.system = systems_[i].name;
+    info.mesh = sources_[i].mesh;
+    info.fps = plan_.shot().fps;
+    info.first_frame = plan_.first_written();
+    info.frame_count = plan_.written_count();
+    info.metadata = {{"inputs", plan_.inputs.fingerprint.hex()}, {"program", version}, {"units", "m"}};
+    auto& writers = writers_.emplace_back();
+    for (const ManifestCache& cache : systems_[i].caches) {
+      auto writer = find_cache_format(cache.format)->open_writer(folder_ / cache.file, info, keep_frames);
+      if (!writer) return writer.error();
+      CHECK((*writer)->frame_count() == keep_frames);
+      writers.push_back(std::move(*writer));
+    }
+  }
+  return {};
+}
+
+void CacheSet::positions_of(const Source& source, const State& state, std::span<Vec3> x) const {
+  const Solver& solver = *solvers_[source.group];
+  const auto& joined_of = plan_.groups[source.group].outputs[static_cast<std::size_t>(source.garment)].joined_of;
+  if (joined_of.empty()) return solver.system_positions(state, source.garment, x);
+  std::vector<Vec3> joined(static_cast<std::size_t>(solver.system_mesh(source.garment).vertex_count()));
+  solver.system_positions(state, source.garment, joined);
+  spread_welded(joined_of, joined, x);
+}
+
+Snapshot CacheSet::take(std::span<const State> states, const Snapshot* before) const {
+  Snapshot out;
+  out.frame = states.empty() ? 0 : states[0].frame;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Source& source = sources_[i];
+    const State& state = states[source.group];
+    std::vector<Vec3> x(static_cast<std::size_t>(source.mesh.vertex_count())), v;
+    if (source.garment >= 0) {
+      positions_of(source, state, x);
+      v.assign(x.size(), Vec3::Zero());
+      if (before)
+        for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - before->positions[i][k]) * plan_.shot().fps;
+    } else if (source.collider) {
+      solvers_[source.group]->collider_positions(state, x);
+    } else {
+      plan_.primaries[plan_.groups[source.group].primary].trajectory->sample(state.time, x);
+    }
+    out.positions.push_back(std::move(x));
+    out.velocities.push_back(std::move(v));
+  }
+  return out;
+}
+
+Status CacheSet::write(const Snapshot& snapshot) {
+  for (std::size_t i = 0; i < writers_.size(); ++i)
+    for (auto& writer : writers_[i])
+      if (const Status written = writer->write_frame(snapshot.positions[i], snapshot.velocities[i]); !written) return written;
+  return {};
+}
+
+Status CacheSet::close() {
+  for (auto& writers : writers_)
+    for (auto& writer : writers)
+      if (const Status closed = writer->close(); !closed) return closed;
+  writers_.clear();
+  for (ManifestSystem& system : systems_)
+    for (ManifestCache& cache : system.caches) {
+      auto bytes = read_file(folder_ / cache.file, std::numeric_limits<std::uint64_t>::max());
+      if (!bytes) return bytes.error();
+      cache.bytes = bytes->size();
+      cache.content = hash_bytes(*bytes).hex();
+    }
+  return {};
+}
+
+std::uint64_t CacheSet::expected_bytes() const {
+  std::uint64_t sum = 0;
+  const auto frames = static_cast<std::uint64_t>(std::max(0, plan_.written_count()));
+  for (const ManifestSystem& system : systems_) {
+    const auto vertices = static_cast<std::uint64_t>(system.vertex_count);
+    // 12 bytes a position; as much again for velocities where the format has them.
+    for (const ManifestCache& cache : system.caches) sum += vertices * frames * (cache.format == "pc2" || system.role != "cloth" ? 12 : 24);
+  }
+  return sum;
+}
+
+}  // namespace ft

@@ -1,0 +1,60 @@
+// All caches of one bake: every garment in every format, the feasible collider and the drawn body of each primary in the first
+// format. The walk takes a snapshot of a frame; the writer thread writes it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/manifest.h"
+#include "baker/plan.h"
+#include "io/cache/cache.h"
+
+namespace ft {
+
+using Solvers = std::vector<std::unique_ptr<Solver>>;
+
+/// Positions of every cached system at one frame [m], velocities [m/s] (of cloth only; empty otherwise).
+struct Snapshot {
+  int frame = 0;
+  std::vector<std::vector<Vec3>> positions, velocities;
+};
+
+class CacheSet {
+ public:
+  CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder);
+
+  /// keep_frames: frames that files of an interrupted bake keep; 0: new files, and the OBJ of each system beside them.
+  Status open(int keep_frames);
+  /// before: the snapshot of the frame before, for velocities; null: they are zero.
+  Snapshot take(std::span<const State> states, const Snapshot* before) const;
+  Status write(const Snapshot& snapshot);
+  Status close();
+
+  /// For the manifest; with sizes and content hashes once close() has succeeded.
+  const std::vector<ManifestSystem>& systems() const { return systems_; }
+  /// Estimate for all frames [bytes].
+  std::uint64_t expected_bytes() const;
+
+ private:
+  struct Source {
+    std::size_t group = 0;
+    int garment = -1;   ///< -1: the collider or the body
+    bool collider = false;
+    Mesh mesh;          ///< rest shape
+  };
+  /// Of a garment, in the order of its file.
+  void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
+  void add(Source source, std::string name, const std::string& role, bool all_formats);
+
+  const BakePlan& plan_;
+  const Solvers& solvers_;
+  std::filesystem::path folder_;
+  std::vector<Source> sources_;
+  std::vector<ManifestSystem> systems_;
+  std::vector<std::vector<std::unique_ptr<CacheWriter>>> writers_;
+};
+
+}  // namespace ft

@@ -1,0 +1,104 @@
+#include "baker/inputs.h"
+
+#include <nlohmann/json.hpp>
+
+#include "baker/core/file.h"
+#include "baker/version.h"
+#include "io/cache/cache.h"
+#include "solvers/energies/fabric.h"
+
+namespace ft {
+namespace {
+
+/// Names of the files that a glTF refers to for its geometry; empty for anything else.
+std::vector<std::string> gltf_buffers(const std::filesystem::path& file, const Bytes& bytes) {
+  std::vector<std::string> out;
+  if (file.extension() != ".gltf") return out;
+  const char* text = reinterpret_cast<const char*>(bytes.data());
+  const auto json = nlohmann::json::parse(text, text + bytes.size(), nullptr, false);
+  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return out;
+  for (const auto& buffer : json["buffers"]) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const auto uri = buffer["uri"].get<std::string>();
+    if (uri.rfind("data:", 0) != 0) out.push_back(uri);
+  }
+  return out;
+}
+
+Status add_file(BakeInputs& inputs, const std::string& role, const std::filesystem::path& path) {
+  if (path.empty()) return {};
+  auto bytes = read_file(path);
+  if (!bytes) return bytes.error();
+  InputFile file{role, path, hash_bytes(*bytes)};
+  const auto buffers = gltf_buffers(path, *bytes);
+  if (!buffers.empty()) {
+    Hasher all;
+    all.number(file.content.low).number(file.content.high);
+    for (const auto& name : buffers) {
+      const auto part = read_file(path.parent_path() / name);
+      all.text(name).text(part ? hash_bytes(part.value()).hex() : "absent");
+    }
+    file.content = all.digest();
+  }
+  inputs.files.push_back(std::move(file));
+  return {};
+}
+
+/// A path is no setting: what counts is the bytes behind it, and they are in `files`.
+bool is_path_key(const std::string& key) {
+  for (const char* end : {".file", ".mesh", ".animation", ".topology"})
+    if (key.ends_with(end)) return true;
+  return false;
+}
+
+}  // namespace
+
+ShotVocabulary shot_vocabulary() {
+  ShotVocabulary words;
+  for (const Fabric& fabric : fabrics()) words.fabrics.push_back(fabric.name);
+  for (const FabricKey& key : fabric_keys()) words.fabric_keys.emplace_back(key.key, key.lowest, key.highest, key.unit);
+  for (const CacheFormat& format : cache_formats()) words.cache_formats.emplace_back(format.name);
+  return words;
+}
+
+Hash128 fingerprint(const BakeInputs& inputs) {
+  Hasher all;
+  all.text(program_version()).text(program_build());
+  for (const InputFile& file : inputs.files) all.text(file.role).number(file.content.low).number(file.content.high);
+  for (const auto& [key, value] : inputs.settings) all.text(key).text(value);
+  return all.digest();
+}
+
+Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std::vector<std::string>& overrides,
+                               std::optional<FrameRange> frames, ShotFaults& faults) {
+  auto shot = read_shot(shot_file, shot_vocabulary(), overrides, faults);
+  if (!shot) return shot.error();
+  BakeInputs inputs;
+  inputs.shot = std::move(*shot);
+  Shot& s = inputs.shot;
+  if (frames) {
+    const double later = (frames->first - s.first_frame) / s.fps;
+    for (PrimarySpec& primary : s.primaries) primary.clip_start += later * primary.speed;
+    s.first_frame = frames->first;
+    s.last_frame = frames->last;
+  }
+  for (const PrimarySpec& primary : s.primaries) {
+    const std::string role = "primary." + primary.name;
+    for (const auto& [key, path] :
+         {std::pair{".file", primary.file}, {".animation", primary.animation}, {".topology", primary.topology}})
+      if (const Status added = add_file(inputs, role + key, path); !added) return added.error();
+  }
+  for (const ClothSpec& cloth : s.cloths) {
+    if (const Status added = add_file(inputs, "cloth." + cloth.name + ".mesh", cloth.mesh); !added) return added.error();
+    for (const PrimarySpec& primary : s.primaries)
+      if (primary.name == cloth.name || primary.name + ".collider" == cloth.name)
+        return usage_error("cloth \"" + cloth.name + "\" has the name of a cache of primary \"" + primary.name + "\"",
+                           shot_file.string(), "give it another name");
+  }
+  for (auto& [key, value] : settings(s))
+    if (!is_path_key(key)) inputs.settings.emplace_back(key, value);
+  inputs.fingerprint = fingerprint(inputs);
+  return inputs;
+}
+
+}  // namespace ft

@@ -1,0 +1,69 @@
+// manifest.json: what a bake is made of and what is promised of it. No times, hosts, paths or thread counts: the same bake
+// gives the same bytes. Written when a bake begins, when it is interrupted, and when it is complete.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "baker/core/hash.h"
+#include "baker/core/result.h"
+#include "solvers/solver.h"
+
+namespace ft {
+
+struct ManifestInput {
+  std::string role, name, content;  ///< "cloth.dress.mesh", "dress.obj", 32 hex digits
+};
+
+struct ManifestCache {
+  std::string format, file;
+  std::uint64_t bytes = 0;  ///< 0 until the bake is complete
+  std::string content;      ///< 32 hex digits; empty until the bake is complete
+};
+
+struct ManifestSystem {
+  std::string name;
+  std::string role;         ///< "cloth", "collider" (the feasible one), "body" (as drawn)
+  std::string primary;      ///< whom it belongs to
+  int vertex_count = 0, face_count = 0;
+  std::string topology;     ///< OBJ of the rest shape, for formats that hold points only
+  std::vector<ManifestCache> caches;
+};
+
+struct Manifest {
+  std::string version, build, fingerprint;
+  std::string shot;                     ///< name of the shot file
+  bool complete = false;
+  int first_frame = 1, last_frame = 1;  ///< of the shot
+  int first_written = 1;                ///< of the caches; before first_frame when the pre-roll is written
+  double fps = 24;
+  int preroll = 0;                      ///< frames
+  std::vector<ManifestInput> inputs;
+  std::vector<std::pair<std::string, std::string>> settings;
+  std::vector<ManifestSystem> systems;
+  std::vector<std::string> notes;
+  std::vector<FrameReport> frames;      ///< pre-roll frames first; as far as the bake has come
+
+  int written_count() const { return last_frame - first_written + 1; }
+};
+
+inline constexpr const char* k_manifest_name = "manifest.json";
+
+std::string to_text(const Manifest& manifest);
+Result<Manifest> manifest_from_text(const std::string& text, const std::string& where);
+Result<Manifest> read_manifest(const std::filesystem::path& bake_folder);
+
+/// Why a bake made of `before` is not the bake that is asked for now; empty: it is. One sentence each.
+std::vector<std::string> stale_reasons(const Manifest& before, const Manifest& now);
+
+/// The gates of the shot file, judged on the written frames.
+struct Gates {
+  double p99_strain = 0;   ///< 1; 0: off
+  bool crossings = false;
+};
+/// Error k_quality or k_diverged with the first frame that fails.
+Status judge(const Manifest& manifest, const Gates& gates);
+
+}  // namespace ft

@@ -1,0 +1,195 @@
+#include "baker/plan.h"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <map>
+
+#include "baker/pins.h"
+#include "io/shot/mesh_file.h"
+#include "io/shot/weld.h"
+
+namespace ft {
+namespace {
+
+// A primary outside these sizes is a slip of units, nearly always: said, unless the shot file sets the scale itself [m].
+constexpr double k_smallest_primary = 0.05, k_largest_primary = 30;
+
+std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
+  return shot.file.filename().string() + ": cloth \"" + cloth.name + "\"";
+}
+
+ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const std::filesystem::path& cache) {
+  ImportRequest request;
+  request.file = spec.file;
+  request.animation = spec.animation;
+  request.topology = spec.topology;
+  request.clip = spec.clip;
+  request.clip_start = spec.clip_start;
+  request.speed = spec.speed;
+  request.unit_scale = spec.unit_scale.value_or(0);
+  request.up = spec.up;
+  request.source_fps = spec.source_fps.value_or(0);
+  request.shot_fps = shot.fps;
+  if (!spec.body.empty()) request.body = spec.body;
+  request.height = spec.height.value_or(0);
+  request.meshes = spec.meshes;
+  request.preroll = shot.preroll / shot.fps;
+  request.duration = (shot.last_frame - shot.first_frame) / shot.fps;
+  request.cache_folder = cache;
+  return request;
+}
+
+std::vector<Vec3> bind_pose(const Trajectory& trajectory) {
+  std::vector<Vec3> out(static_cast<std::size_t>(trajectory.surface().vertex_count()));
+  trajectory.bind_pose(out);
+  return out;
+}
+
+Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory) {
+  const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
+  const auto pose = bind_pose(trajectory);
+  if (pose.empty() || trajectory.surface().triangles.empty())
+    return input_error("there is no surface in " + spec.file.filename().string(), where,
+                       "cloth needs a body: a mesh, or a BVH, for which one is built");
+  if (!all_finite(pose)) return input_error("the bind pose has positions that are not finite", where);
+  const double size = bounds(pose).size().maxCoeff();
+  if (!spec.unit_scale && !spec.height && !(size >= k_smallest_primary && size <= k_largest_primary))
+    return input_error(fmt::format("the character is {:.4g} m in size", size), where,
+                       size > k_largest_primary ? "if the file is in centimetres, write unit_scale = 0.01; any unit_scale or height silences this"
+                                                : "write unit_scale, in metres per unit of the file, or height");
+  // Every frame's pose is looked at once before the first is solved: a pose that is not finite must not reach a solver.
+  std::vector<Vec3> sample(pose.size());
+  for (int frame = shot.first_frame; frame <= shot.last_frame; ++frame) {
+    trajectory.sample((frame - shot.first_frame) / shot.fps, sample);
+    if (!all_finite(sample)) return input_error(fmt::format("the pose at frame {} is not finite", frame), where);
+  }
+  return {};
+}
+
+/// A pin on vertices of the file -> on joined ones; the strongest weight counts.
+ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
+  std::map<int, double> weight_of;
+  for (std::size_t i = 0; i < pin.vertices.size(); ++i) {
+    double& weight = weight_of[joined_of[static_cast<std::size_t>(pin.vertices[i])]];
+    weight = std::max(weight, pin.weights.empty() ? 1.0 : pin.weights[i]);
+  }
+  ClothPin out;
+  out.stiffness = pin.stiffness;
+  out.max_pull = pin.max_pull;
+  for (const auto& [vertex, weight] : weight_of) out.vertices.push_back(vertex), out.weights.push_back(weight);
+  return out;
+}
+
+Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, GroupPlan& group, std::vector<std::string>& notes) {
+  const auto located = [&](Error error) {
+    error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
+    return error;
+  };
+  auto mesh = read_obj(spec.mesh);
+  if (!mesh) return located(mesh.error());
+  ClothGarment garment;
+  GarmentOutput output;
+  garment.name = spec.name;
+  output.mesh = std::move(*mesh);
+  output.mesh.name = spec.name;
+  place_garment(output.mesh, spec);
+  garment.mesh = output.mesh;
+  if (spec.weld > 0 && all_finite(output.mesh.positions)) {
+    WeldedMesh welded = weld(output.mesh, spec.weld);
+    garment.mesh = std::move(welded.mesh);
+    garment.mesh.name = spec.name;
+    output.joined_of = std::move(welded.joined_of);
+  }
+  if (const Status checked = check_garment(garment.mesh); !checked) {
+    Error error = located(checked.error());
+    if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
+    return error;
+  }
+
+  const Fabric* fabric = find_fabric(spec.fabric);
+  if (!fabric) return located(usage_error("fabric \"" + spec.fabric + "\" does not exist"));
+  garment.fabric = *fabric;
+  for (const auto& [key, value] : spec.fabric_overrides)
+    if (!set_fabric_value(garment.fabric, key, value)) return located(usage_error("fabric has no value \"" + key + "\""));
+
+  const auto body = bind_pose(*primary.trajectory);
+  for (const PinSpec& pin_spec : spec.pins) {
+    auto pin = resolve_pin(pin_spec, output.mesh, body, primary.trajectory->surface().triangles);
+    if (!pin) return located(pin.error());
+    garment.pins.push_back(output.joined_of.empty() ? std::move(*pin) : on_joined(*pin, output.joined_of));
+  }
+  garment.thickness = spec.thickness;
+  garment.friction = spec.friction;
+  garment.self_friction = spec.self_friction;
+  garment.self_collision = spec.self_collision;
+
+  const Box cloth_box = bounds(garment.mesh.positions);
+  Box body_box = bounds(body);
+  const double ratio = cloth_box.size().maxCoeff() / body_box.size().maxCoeff();
+  if (ratio > 10 || ratio < 0.01)
+    notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?", spec.name,
+                                cloth_box.size().maxCoeff(), body_box.size().maxCoeff()));
+  body_box.inflate(0.1 * body_box.size().maxCoeff());
+  if (!cloth_box.overlaps(body_box))
+    notes.push_back(fmt::format("cloth \"{}\" is nowhere near \"{}\" in the bind pose: are offset and up right?", spec.name, primary.name));
+  group.setup.garments.push_back(std::move(garment));
+  group.outputs.push_back(std::move(output));
+  return {};
+}
+
+ClothSetup common_setup(const Shot& shot) {
+  ClothSetup setup;
+  setup.first_frame = shot.first_frame;
+  setup.fps = shot.fps;
+  setup.preroll_frames = shot.preroll;
+  setup.gravity = shot.solver.gravity;
+  setup.wind = shot.wind.velocity;
+  setup.min_substeps = shot.solver.min_substeps;
+  setup.max_substeps = shot.solver.max_substeps;
+  setup.newton_iterations = shot.solver.newton_iterations;
+  setup.linear_tolerance = shot.solver.linear_tolerance;
+  setup.bdf2 = shot.solver.integrator == "bdf2";
+  setup.feasible.gap = shot.solver.gap;
+  setup.feasible.carve = shot.solver.carve;
+  return setup;
+}
+
+}  // namespace
+
+void place_garment(Mesh& mesh, const ClothSpec& spec) {
+  for (Vec3& p : mesh.positions) {
+    p *= spec.unit_scale;
+    if (spec.up == "z") p = Vec3(p.x(), p.z(), -p.y());
+    p += spec.offset;
+  }
+}
+
+Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache) {
+  BakePlan plan;
+  plan.inputs = std::move(inputs);
+  const Shot& shot = plan.shot();
+  const auto clock = std::chrono::steady_clock::now();
+  for (const PrimarySpec& spec : shot.primaries) {
+    auto imported = importer(import_request(shot, spec, import_cache));
+    if (!imported) return imported.error();
+    CHECK(imported->trajectory);
+    if (const Status checked = check_primary(shot, spec, *imported->trajectory); !checked) return checked.error();
+    for (const std::string& note : imported->info.notes) plan.notes.push_back("primary \"" + spec.name + "\": " + note);
+    plan.primaries.push_back({spec.name, std::move(imported->trajectory), std::move(imported->info)});
+  }
+  plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+
+  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+    GroupPlan group{p, common_setup(shot), {}};
+    group.setup.primary = plan.primaries[p].trajectory;
+    for (const ClothSpec& spec : shot.cloths) {
+      if (spec.on != plan.primaries[p].name) continue;
+      if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added) return added.error();
+    }
+    if (!group.setup.garments.empty()) plan.groups.push_back(std::move(group));
+  }
+  if (plan.groups.empty()) return usage_error("no cloth is on any primary", shot.file.string());
+  return plan;
+}
+
+}  // namespace ft

@@ -1,0 +1,57 @@
+// The plan of a bake: everything read, imported, placed and checked before the first frame, so that a fault shows in the first
+// second and not after the night. --dry-run stops here and prints it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baker/inputs.h"
+#include "io/import/import.h"
+#include "solvers/cloth/cloth_solver.h"
+
+namespace ft {
+
+struct PrimaryPlan {
+  std::string name;
+  std::shared_ptr<const Trajectory> trajectory;
+  CharacterInfo info;
+};
+
+/// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation.
+struct GarmentOutput {
+  Mesh mesh;                   ///< the file's, placed
+  std::vector<int> joined_of;  ///< per vertex of the file: its vertex in the simulation; empty: the same
+};
+
+/// All garments of one primary are solved together and feel each other; garments on different primaries do not.
+struct GroupPlan {
+  std::size_t primary = 0;  ///< into BakePlan::primaries
+  ClothSetup setup;
+  std::vector<GarmentOutput> outputs;  ///< one per garment of setup
+};
+
+struct BakePlan {
+  BakeInputs inputs;
+  std::vector<PrimaryPlan> primaries;
+  std::vector<GroupPlan> groups;
+  std::vector<std::string> notes;      ///< what is odd and yet allowed; the same for the same inputs
+  double import_seconds = 0;           ///< wall
+
+  const Shot& shot() const { return inputs.shot; }
+  /// First frame that is written; frames before it are pre-roll.
+  int first_written() const { return shot().write_preroll ? shot().first_frame - shot().preroll : shot().first_frame; }
+  int written_count() const { return shot().last_frame - first_written() + 1; }
+};
+
+using Importer = std::function<Result<ImportedPrimary>(const ImportRequest&)>;
+
+/// import_cache: folder for import results, may be empty.
+Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache);
+
+/// Scale, axis and offset of the shot file -> metres, Y-up, the primary's bind pose.
+void place_garment(Mesh& mesh, const ClothSpec& spec);
+
+}  // namespace ft

@@ -1,0 +1,19 @@
+// A plan in words, for --dry-run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "baker/plan.h"
+
+namespace ft {
+
+std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder);
+/// "1.4 MB", powers of 1000.
+std::string size_text(std::uint64_t bytes);
+/// A character in words: sizes, units, clips.
+std::vector<std::string> character_lines(const CharacterInfo& info);
+
+}  // namespace ft

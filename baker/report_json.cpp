@@ -1,0 +1,205 @@
+#include "baker/report_json.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ft {
+namespace {
+
+constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing, Incident::Kind::k_penetration, Incident::Kind::k_released,
+                                         Incident::Kind::k_strain, Incident::Kind::k_start_inside, Incident::Kind::k_rewind};
+
+/// The one list of a report's fields: visit(name, member).
+template <class Report, class Visit>
+void for_each_field(Report& r, Visit&& visit) {
+  visit("frame", r.frame);
+  visit("substeps", r.substeps);
+  visit("newton_iterations", r.newton_iterations);
+  visit("linear_iterations", r.linear_iterations);
+  visit("rewinds", r.rewinds);
+  visit("crossings_body", r.crossings_body);
+  visit("crossings_self", r.crossings_self);
+  visit("crossings_drawn", r.crossings_drawn);
+  visit("smallest_gap", r.smallest_gap);
+  visit("deepest_drawn", r.deepest_drawn);
+  visit("strain_p99", r.strain_p99);
+  visit("strain_max", r.strain_max);
+  visit("strain_mean", r.strain_mean);
+  visit("kinetic_energy", r.kinetic_energy);
+  visit("released_vertices", r.released_vertices);
+  visit("finite", r.finite);
+}
+
+template <class Profile, class Visit>
+void for_each_time(Profile& p, Visit&& visit) {
+  visit("candidates", p.candidates);
+  visit("narrow", p.narrow);
+  visit("assembly", p.assembly);
+  visit("linear", p.linear);
+  visit("advance", p.advance);
+  visit("certificate", p.certificate);
+  visit("body", p.body);
+  visit("total", p.total);
+}
+
+/// JSON has no infinity; null comes back as the default.
+Json value_of(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+Json value_of(int v) { return v; }
+Json value_of(bool v) { return v; }
+
+struct Faulty {
+  const char* name;
+};
+
+void take(const Json& from, const char* name, double& out) {
+  if (!from.is_number()) throw Faulty{name};
+  out = from.get<double>();
+}
+void take(const Json& from, const char* name, int& out) {
+  if (!from.is_number_integer()) throw Faulty{name};
+  out = from.get<int>();
+}
+void take(const Json& from, const char* name, bool& out) {
+  if (!from.is_boolean()) throw Faulty{name};
+  out = from.get<bool>();
+}
+void take(const Json& from, const char* name, std::string& out) {
+  if (!from.is_string()) throw Faulty{name};
+  out = from.get<std::string>();
+}
+
+template <class T>
+void take_field(const Json& from, const char* name, T& out) {
+  const auto it = from.find(name);
+  if (it != from.end() && !it->is_null()) take(*it, name, out);
+}
+
+Incident incident_from(const Json& json) {
+  Incident out;
+  if (!json.is_object()) throw Faulty{"incidents"};
+  std::string kind;
+  take_field(json, "kind", kind);
+  for (const auto k : k_incident_kinds)
+    if (kind == name(k)) out.kind = k;
+  take_field(json, "frame", out.frame);
+  take_field(json, "system", out.system);
+  take_field(json, "vertex", out.vertex);
+  if (const auto place = json.find("place"); place != json.end()) {
+    if (!place->is_array() || place->size() != 3) throw Faulty{"place"};
+    for (int k = 0; k < 3; ++k)
+      if (!(*place)[static_cast<std::size_t>(k)].is_null()) take((*place)[static_cast<std::size_t>(k)], "place", out.place[k]);
+  }
+  take_field(json, "depth", out.depth);
+  take_field(json, "text", out.text);
+  return out;
+}
+
+void write_value(std::string& out, const Json& json, int depth) {
+  const bool flat = depth >= 2 || !json.is_structured() || json.empty();
+  if (flat) {
+    out += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
+  }
+  const std::string indent(static_cast<std::size_t>(depth) + 1, ' ');
+  out += json.is_object() ? "{" : "[";
+  bool first = true;
+  for (const auto& item : json.items()) {
+    out += first ? "\n" : ",\n";
+    first = false;
+    out += indent;
+    if (json.is_object()) out.append(Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace)).append(": ");
+    write_value(out, item.value(), depth + 1);
+  }
+  out.append("\n").append(indent, 1).append(json.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
+Json to_json(const Incident& i) {
+  return Json{{"kind", name(i.kind)}, {"frame", i.frame}, {"system", i.system}, {"vertex", i.vertex},
+              {"place", Json::array({value_of(i.place.x()), value_of(i.place.y()), value_of(i.place.z())})},
+              {"depth", value_of(i.depth)}, {"text", i.text}};
+}
+
+Json to_json(const FrameReport& report) {
+  Json out = Json::object();
+  for_each_field(report, [&](const char* name, const auto& value) { out[name] = value_of(value); });
+  if (!report.incidents.empty()) {
+    Json list = Json::array();
+    for (const Incident& i : report.incidents) list.push_back(to_json(i));
+    out["incidents"] = std::move(list);
+  }
+  return out;
+}
+
+Json to_json(const FrameProfile& profile) {
+  Json out = Json::object();
+  for_each_time(profile, [&](const char* name, double value) { out[name] = value_of(value); });
+  return out;
+}
+
+Result<FrameReport> frame_report_from_json(const Json& json) {
+  FrameReport out;
+  try {
+    if (!json.is_object()) return input_error("a frame's report is not an object");
+    for_each_field(out, [&](const char* name, auto& value) { take_field(json, name, value); });
+    if (const auto list = json.find("incidents"); list != json.end()) {
+      if (!list->is_array()) throw Faulty{"incidents"};
+      for (const Json& i : *list) out.incidents.push_back(incident_from(i));
+    }
+  } catch (const Faulty& fault) {
+    return input_error(std::string("a frame's report has a \"") + fault.name + "\" of another type");
+  }
+  return out;
+}
+
+Result<FrameProfile> frame_profile_from_json(const Json& json) {
+  FrameProfile out;
+  try {
+    if (!json.is_object()) return input_error("a frame's times are not an object");
+    for_each_time(out, [&](const char* name, double& value) { take_field(json, name, value); });
+  } catch (const Faulty& fault) {
+    return input_error(std::string("a frame's times have a \"") + fault.name + "\" of another type");
+  }
+  return out;
+}
+
+Result<Json> parse_json(const std::string& text, const std::string& where) {
+  auto json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return input_error("is not valid JSON", where);
+  return json;
+}
+
+std::string to_text(const Json& json) {
+  std::string out;
+  write_value(out, json, 0);
+  return out + "\n";
+}
+
+FrameReport merge(const FrameReport& a, const FrameReport& b) {
+  FrameReport out = a;
+  CHECK(a.frame == b.frame);
+  out.substeps = std::max(a.substeps, b.substeps);
+  out.newton_iterations += b.newton_iterations;
+  out.linear_iterations += b.linear_iterations;
+  out.rewinds += b.rewinds;
+  out.crossings_body += b.crossings_body;
+  out.crossings_self += b.crossings_self;
+  out.crossings_drawn += b.crossings_drawn;
+  out.smallest_gap = std::min(a.smallest_gap, b.smallest_gap);
+  out.deepest_drawn = std::max(a.deepest_drawn, b.deepest_drawn);
+  out.strain_p99 = std::max(a.strain_p99, b.strain_p99);
+  out.strain_max = std::max(a.strain_max, b.strain_max);
+  out.strain_mean = std::max(a.strain_mean, b.strain_mean);
+  out.kinetic_energy += b.kinetic_energy;
+  out.released_vertices += b.released_vertices;
+  out.finite = a.finite && b.finite;
+  out.incidents.insert(out.incidents.end(), b.incidents.begin(), b.incidents.end());
+  for (double FrameProfile::*time : {&FrameProfile::candidates, &FrameProfile::narrow, &FrameProfile::assembly, &FrameProfile::linear,
+                                     &FrameProfile::advance, &FrameProfile::certificate, &FrameProfile::body, &FrameProfile::total})
+    out.profile.*time += b.profile.*time;
+  return out;
+}
+
+}  // namespace ft

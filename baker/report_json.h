@@ -1,0 +1,33 @@
+// A frame's certificate as JSON and back, exactly (shortest digits that give the same double). The manifest, the checkpoint, the
+// log and `check` all speak through these, so a field is named once.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "baker/core/result.h"
+#include "solvers/solver.h"
+
+namespace ft {
+
+using Json = nlohmann::ordered_json;
+
+/// Certificate and incidents; no times.
+Json to_json(const FrameReport& report);
+Json to_json(const Incident& incident);
+/// Wall times [s].
+Json to_json(const FrameProfile& profile);
+
+/// Absent fields keep their defaults; a field of another type is an error.
+Result<FrameReport> frame_report_from_json(const Json& json);
+Result<FrameProfile> frame_profile_from_json(const Json& json);
+
+/// Text -> JSON; a fault names `where`.
+Result<Json> parse_json(const std::string& text, const std::string& where);
+
+/// One indent level for the outer structure, frames and other small objects on one line each: small files that diff well.
+std::string to_text(const Json& json);
+
+/// Worst of several systems in one frame: counts add up, depths and strains take the largest, gaps the smallest.
+FrameReport merge(const FrameReport& a, const FrameReport& b);
+
+}  // namespace ft

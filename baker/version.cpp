@@ -1,0 +1,21 @@
+#include "baker/version.h"
+
+#include "baker/core/file.h"
+#include "baker/core/hash.h"
+
+namespace ft {
+
+std::string program_version() { return FT_VERSION; }
+
+const std::string& program_build() {
+  static const std::string build = [] {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    if (error) return std::string("unknown");
+    const auto bytes = read_file(program);
+    return bytes ? hash_bytes(bytes.value()).hex() : std::string("unknown");
+  }();
+  return build;
+}
+
+}  // namespace ft

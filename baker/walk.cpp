@@ -1,0 +1,250 @@
+#include "baker/walk.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <fmt/format.h>
+
+#include "baker/core/file.h"
+#include "baker/core/parallel.h"
+#include "baker/report_json.h"
+#include "baker/signals.h"
+#include "baker/writer_thread.h"
+#include "collision/crossings.h"
+
+namespace ft {
+namespace {
+
+// A checkpoint is made after every frame, unless the state is so large that this would write more than this per frame [bytes].
+constexpr std::uint64_t k_checkpoint_bytes_per_frame = 8 << 20;
+constexpr int k_most_frames_between_checkpoints = 10;
+
+using Clock = std::chrono::steady_clock;
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+int checkpoint_interval(std::span<const State> states) {
+  std::uint64_t bytes = 0;
+  for (const State& state : states)
+    for (const StateBlock& block : state.blocks) bytes += sizeof(double) * block.values.size();
+  return std::clamp(static_cast<int>(bytes / k_checkpoint_bytes_per_frame) + 1, 1, k_most_frames_between_checkpoints);
+}
+
+bool finite(const Snapshot& snapshot) {
+  return std::all_of(snapshot.positions.begin(), snapshot.positions.end(), [](const auto& x) { return all_finite(x); });
+}
+
+/// Mean of the last frames [s].
+class Pace {
+ public:
+  void add(double seconds) {
+    recent_.push_back(seconds);
+    if (recent_.size() > 20) recent_.pop_front();
+  }
+  double mean() const {
+    double sum = 0;
+    for (const double s : recent_) sum += s;
+    return recent_.empty() ? 0 : sum / static_cast<double>(recent_.size());
+  }
+
+ private:
+  std::deque<double> recent_;
+};
+
+class Walk {
+ public:
+  Walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest, Progress& progress)
+      : plan_(plan), solvers_(solvers), caches_(caches), folder_(folder), manifest_(std::move(manifest)), progress_(progress) {}
+
+  WalkResult run(std::optional<Checkpoint> from) {
+    const auto clock = Clock::now();
+    Status status = start(std::move(from));
+    if (status) status = frames();
+    // What was computed is kept, whatever happened; the first fault is the one that counts.
+    if (const Status written = writer_.finish(); status && !written) status = written;
+    manifest_.systems = caches_.systems();
+    if (status) status = complete();
+    else if (status.error().kind == ErrorKind::k_interrupted) {
+      if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) status = written;
+    }
+    return {std::move(manifest_), status, since(clock)};
+  }
+
+ private:
+  Status start(std::optional<Checkpoint> from);
+  Status frames();
+  Status complete();
+  FrameReport advance();
+  Status emit(const Snapshot& snapshot, bool checkpoint);
+
+  const BakePlan& plan_;
+  const Solvers& solvers_;
+  CacheSet& caches_;
+  const BakeFolder& folder_;
+  Manifest manifest_;
+  Progress& progress_;
+  std::vector<State> states_;
+  WriterThread writer_;
+};
+
+Status Walk::start(std::optional<Checkpoint> from) {
+  if (from) {
+    states_ = std::move(from->states);
+    manifest_.frames = std::move(from->reports);
+    CHECK(states_.size() == solvers_.size());
+    const int kept = std::max(0, states_[0].frame - plan_.first_written() + 1);
+    return caches_.open(kept);
+  }
+  // The old checkpoint goes first: it must never stand beside caches that are not its own.
+  std::error_code error;
+  std::filesystem::remove(folder_.checkpoint(), error);
+  if (error) return output_error("cannot remove the old checkpoint: " + error.message(), folder_.checkpoint().string());
+  for (const auto& solver : solvers_) states_.push_back(solver->initial_state());
+  for (const State& state : states_) CHECK(state.frame == plan_.shot().first_frame - plan_.shot().preroll);
+  manifest_.systems = caches_.systems();
+  if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
+  return caches_.open(0);
+}
+
+FrameReport Walk::advance() {
+  FrameReport report;
+  for (std::size_t g = 0; g < solvers_.size(); ++g) {
+    const int expected = states_[g].frame + 1;
+    FrameReport one = solvers_[g]->advance_frame(states_[g]);
+    CHECK(states_[g].frame == expected && one.frame == expected);
+    report = g == 0 ? std::move(one) : merge(report, one);
+  }
+  return report;
+}
+
+Status Walk::emit(const Snapshot& snapshot, bool checkpoint) {
+  if (!finite(snapshot))
+    return Error{ErrorKind::k_diverged, "the solver returned positions that are not finite; nothing of this frame was written",
+                 fmt::format("frame {}", snapshot.frame), "try more substeps ([solver] max_substeps)"};
+  if (snapshot.frame >= plan_.first_written()) {
+    const Status taken = writer_.submit([this, snapshot] { return caches_.write(snapshot); });
+    if (!taken) return taken;
+  }
+  if (!checkpoint) return {};
+  Checkpoint now{plan_.inputs.fingerprint, snapshot.frame, states_, manifest_.frames};
+  return writer_.submit([this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), save(now)); });
+}
+
+Status Walk::frames() {
+  const Shot& shot = plan_.shot();
+  const int begin = shot.first_frame - shot.preroll, total = shot.last_frame - begin;
+  int vertices = 0;
+  for (const auto& solver : solvers_)
+    for (int s = 0; s < solver->system_count(); ++s) vertices += solver->system_mesh(s).vertex_count();
+  progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame, shot.preroll,
+                   states_[0].frame + 1, vertices, thread_count()});
+  Pace pace;
+  std::optional<Snapshot> before;
+  if (manifest_.frames.empty()) {
+    manifest_.frames.push_back(certify_start(plan_, solvers_, states_));
+    before = caches_.take(states_, nullptr);
+    if (const Status emitted = emit(*before, true); !emitted) return emitted;
+  } else {
+    before = caches_.take(states_, nullptr);  // positions only; this frame is in the caches already
+  }
+  const int interval = checkpoint_interval(states_);
+  int newest_checkpoint = states_[0].frame;
+  while (states_[0].frame < shot.last_frame) {
+    if (signal_received() != 0) {
+      if (newest_checkpoint != states_[0].frame) {
+        Checkpoint now{plan_.inputs.fingerprint, states_[0].frame, states_, manifest_.frames};
+        if (const Status s = writer_.submit([this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), save(now)); }); !s)
+          return s;
+      }
+      return Error{ErrorKind::k_interrupted, fmt::format("interrupted after frame {}", states_[0].frame), {}, "run again with --resume to go on"};
+    }
+    const auto clock = Clock::now();
+    const FrameReport report = advance();
+    manifest_.frames.push_back(report);
+    Snapshot now = caches_.take(states_, &*before);
+    const bool checkpoint = report.frame - newest_checkpoint >= interval || report.frame == shot.last_frame;
+    if (checkpoint) newest_checkpoint = report.frame;
+    if (const Status emitted = emit(now, checkpoint); !emitted) return emitted;
+    before = std::move(now);
+    pace.add(since(clock));
+    progress_.frame({report, report.frame - begin, total, report.frame < shot.first_frame, since(clock),
+                     pace.mean() * (shot.last_frame - report.frame)});
+  }
+  return {};
+}
+
+Status Walk::complete() {
+  if (const Status closed = caches_.close(); !closed) return closed;
+  manifest_.systems = caches_.systems();
+  manifest_.complete = true;
+  if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
+  std::error_code ignored;  // a checkpoint of a complete bake does no harm
+  std::filesystem::remove(folder_.checkpoint(), ignored);
+  return {};
+}
+
+}  // namespace
+
+FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states) {
+  FrameReport report;
+  report.frame = states[0].frame;
+  for (std::size_t g = 0; g < solvers.size(); ++g) {
+    std::vector<Vec3> collider;
+    solvers[g]->collider_positions(states[g], collider);
+    std::vector<Vec3> cloth;
+    std::vector<Triangle> triangles;
+    for (int s = 0; s < solvers[g]->system_count(); ++s) {
+      const Mesh& mesh = solvers[g]->system_mesh(s);
+      const int first = static_cast<int>(cloth.size());
+      cloth.resize(cloth.size() + mesh.positions.size());
+      solvers[g]->system_positions(states[g], s, std::span(cloth).subspan(static_cast<std::size_t>(first)));
+      for (const Triangle& t : triangulate(mesh)) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    const auto body = crossings_between(cloth, triangles, collider, solvers[g]->collider_triangles());
+    report.crossings_body += static_cast<int>(body.size());
+    report.crossings_self += static_cast<int>(crossings_within(cloth, triangles).size());
+    if (!body.empty()) {
+      Incident incident;
+      incident.kind = Incident::Kind::k_start_inside;
+      incident.frame = report.frame;
+      incident.system = plan.primaries[plan.groups[g].primary].name;
+      incident.place = cloth[static_cast<std::size_t>(body[0].edge_of_first ? body[0].edge[0] : body[0].triangle[0])];
+      incident.text = fmt::format("{} crossings with the body where the bake starts", body.size());
+      report.incidents.push_back(std::move(incident));
+    }
+  }
+  return report;
+}
+
+WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
+                std::optional<Checkpoint> from, Progress& progress) {
+  return Walk(plan, solvers, caches, folder, std::move(manifest), progress).run(std::move(from));
+}
+
+Status write_report(const BakeFolder& folder, const BakePlan& plan, const WalkResult& result) {
+  FrameProfile sum;
+  std::vector<double> totals;
+  Json frames = Json::array();
+  for (const FrameReport& frame : result.manifest.frames) {
+    frames.push_back({{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
+    if (frame.substeps > 0) totals.push_back(frame.profile.total);
+    for (double FrameProfile::*t : {&FrameProfile::candidates, &FrameProfile::narrow, &FrameProfile::assembly, &FrameProfile::linear,
+                                    &FrameProfile::advance, &FrameProfile::certificate, &FrameProfile::body, &FrameProfile::total})
+      sum.*t += frame.profile.*t;
+  }
+  std::sort(totals.begin(), totals.end());
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  Json out = Json::object();
+  out["threads"] = thread_count();
+  out["wall_seconds"] = result.seconds;
+  out["import_seconds"] = plan.import_seconds;
+  out["median_frame_seconds"] = totals.empty() ? 0.0 : totals[totals.size() / 2];
+  out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  out["profile"] = to_json(sum);
+  out["frames"] = std::move(frames);
+  return write_text_durably(folder.report(), to_text(out));
+}
+
+}  // namespace ft
