@@ -1,6 +1,7 @@
 // Two lower bounds of the time of impact, the later one taken at every iteration:
 //   additive (Li et al. 2021):  the features cannot approach faster than l = max|dx| of one + max|dx| of the other;
-//   planes (ours):              along the present normal every vertex moves linearly, so the time at which the first pair of
+//   planes (ours):              along the present normal every vertex moves linearly, so the time at which the first
+//   pair of
 //                               vertices has used up the room is known in closed form. It makes sliding contact cheap:
 //                               additive steps alone need motion / distance iterations there.
 // Motion that all four vertices share is taken out first; it cannot change a distance.
@@ -15,7 +16,8 @@ namespace {
 constexpr double k_step = 0.9;  // share of a bound that is used, as in the paper
 
 /// Time in which the slab along g.normal shrinks to keep; 0 when it is narrower already, infinite when it never does.
-double slab_time(int split, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx, const PairGeometry& g, double keep) {
+double slab_time(int split, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx, const PairGeometry& g,
+                 double keep) {
   double earliest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < split; ++i) {
     for (int j = split; j < 4; ++j) {
@@ -54,7 +56,8 @@ double ccd_time(PairKind kind, const std::array<Vec3, 4>& x_given, const std::ar
 
   PairGeometry g = pair_geometry(kind, x0);
   if (g.distance <= rounding) return 0;
-  const double speed = largest_norm(std::span(dx).first(first_count)) + largest_norm(std::span(dx).subspan(first_count));
+  const double speed =
+      largest_norm(std::span(dx).first(first_count)) + largest_norm(std::span(dx).subspan(first_count));
   const double floor = g.distance > settings.floor + rounding ? settings.floor : 0.0;
   const double keep = std::max({floor, settings.gap_kept * g.distance, rounding});
   if (g.distance - keep >= speed) return 1;

@@ -1,9 +1,10 @@
 // Closest points of a vertex-face or an edge-edge pair, in double, with a stated answer for degenerate features
 // (Ericson 2005, chapter 5). The offset vector is p_first - p_second = sum weight[i] * x[i].
 //
-// Degenerate features: a face without area is its three edges, an edge without length is a point; parallel edges answer with
-// a closest pair that has an end point in it. Caution: closeness decides between candidates, so the answer is never farther
-// than a true closest pair by more than rounding, but which of several equally close pairs is given is not specified.
+// Degenerate features: a face without area is its three edges, an edge without length is a point; parallel edges answer
+// with a closest pair that has an end point in it. Caution: closeness decides between candidates, so the answer is
+// never farther than a true closest pair by more than rounding, but which of several equally close pairs is given is
+// not specified.
 #pragma once
 
 #include <array>
@@ -16,10 +17,11 @@ namespace ft {
 enum class PairKind { k_vertex_face, k_edge_edge };
 
 struct PairGeometry {
-  double distance = 0;                 ///< m
-  Vec3 normal = Vec3::Zero();          ///< unit, from the second feature (face, second edge) to the first; zero if distance is 0
-  std::array<double, 4> weight{};      ///< vertex-face: 1, -u, -v, -w; edge-edge: 1-s, s, -(1-t), -t
-  bool interior = false;               ///< closest points inside both features (face interior; both edge parameters in (0,1))
+  double distance = 0;  ///< m
+  Vec3 normal =
+      Vec3::Zero();  ///< unit, from the second feature (face, second edge) to the first; zero if distance is 0
+  std::array<double, 4> weight{};  ///< vertex-face: 1, -u, -v, -w; edge-edge: 1-s, s, -(1-t), -t
+  bool interior = false;  ///< closest points inside both features (face interior; both edge parameters in (0,1))
 };
 
 PairGeometry vertex_face_geometry(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
@@ -32,11 +34,13 @@ inline PairGeometry pair_geometry(PairKind kind, const std::array<Vec3, 4>& x) {
 }
 
 /// How many of the four vertices belong to the first feature.
-constexpr int first_feature_size(PairKind kind) { return kind == PairKind::k_vertex_face ? 1 : 2; }
+constexpr int first_feature_size(PairKind kind) {
+  return kind == PairKind::k_vertex_face ? 1 : 2;
+}
 
-/// Width of the slab across geometry.normal that has the first feature on one side and the second on the other [m]; negative
-/// when there is none. A lower bound of the true distance for any normal, so it is proof where the closest points are only
-/// an answer (slivers).
+/// Width of the slab across geometry.normal that has the first feature on one side and the second on the other [m];
+/// negative when there is none. A lower bound of the true distance for any normal, so it is proof where the closest
+/// points are only an answer (slivers).
 double separation(PairKind kind, const std::array<Vec3, 4>& x, const PairGeometry& geometry);
 
 /// True when all vertices really lie on their sides, at least floor [m] apart.

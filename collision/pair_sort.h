@@ -1,6 +1,6 @@
-// Sorting of feature pairs that come up in any order: a pair is one 64-bit key, first feature in the high half. One counting
-// pass over first features, then a short sort within each: three times as fast as std::sort at half a million pairs. For
-// fcl_pair_finder.cpp; buffers are kept from call to call.
+// Sorting of feature pairs that come up in any order: a pair is one 64-bit key, first feature in the high half. One
+// counting pass over first features, then a short sort within each: three times as fast as std::sort at half a million
+// pairs. For fcl_pair_finder.cpp; buffers are kept from call to call.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,12 @@ namespace ft {
 constexpr std::uint64_t pair_key(int first, int second) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(first)) << 32 | static_cast<std::uint32_t>(second);
 }
-constexpr int key_first(std::uint64_t key) { return static_cast<int>(key >> 32); }
-constexpr int key_second(std::uint64_t key) { return static_cast<int>(key & 0xffffffffu); }
+constexpr int key_first(std::uint64_t key) {
+  return static_cast<int>(key >> 32);
+}
+constexpr int key_second(std::uint64_t key) {
+  return static_cast<int>(key & 0xffffffffu);
+}
 
 class PairSorter {
  public:

@@ -1,5 +1,5 @@
-// The planes are found from the vertices, not from the closest points: along the pair's normal the lowest vertex of the first
-// feature and the highest of the second bound the room. A wrong normal (sliver) then costs motion, never safety.
+// The planes are found from the vertices, not from the closest points: along the pair's normal the lowest vertex of the
+// first feature and the highest of the second bound the room. A wrong normal (sliver) then costs motion, never safety.
 //
 //      first      ----o-----.----      lowest vertex of the first feature
 //                 - - - - - - - -      its plane: it may come down to here          |
@@ -76,8 +76,8 @@ std::array<double, 4> truncate_pair(PairKind kind, const std::array<Vec3, 4>& x,
   return share;
 }
 
-void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const ContactPairs& pairs,
-                            double floor, std::span<double> share) {
+void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count,
+                            const ContactPairs& pairs, double floor, std::span<double> share) {
   const auto movable_end = static_cast<std::size_t>(movable_count);
   CHECK(x.size() >= movable_end && dx.size() >= movable_end && share.size() >= movable_end);
   std::fill(share.begin(), share.end(), 1.0);

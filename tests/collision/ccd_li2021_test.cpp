@@ -1,5 +1,6 @@
-// Conservative CCD: a missed hit fails, a needless one is only counted. Hits come from constructions whose instant is known
-// and from the sample of the NYU collision detection benchmark (Wang et al. 2021), whose truth was found in rationals.
+// Conservative CCD: a missed hit fails, a needless one is only counted. Hits come from constructions whose instant is
+// known and from the sample of the NYU collision detection benchmark (Wang et al. 2021), whose truth was found in
+// rationals.
 #include "collision/ccd_li2021.h"
 
 #include <gtest/gtest.h>
@@ -58,18 +59,19 @@ TEST(Ccd, Misses_no_hit_of_the_public_sample) {
       ASSERT_TRUE(queries.ok());
       ASSERT_GT(queries->size(), 50u);
       for (const double floor : {0.0, 1e-5}) {
-        int hits = 0, missed = 0, needless = 0;
+        int hits = 0, missed = 0, needless = 0, touching = 0;
         for (const Query& q : *queries) {
           const bool found = ccd_time(kind, q.x, q.dx, {.gap_kept = 0.1, .floor = floor}) < 1;
           hits += q.hit;
           missed += q.hit && !found;
           needless += !q.hit && found;
+          touching += !q.hit && found && pair_geometry(kind, q.x).distance < 1e-12;
           ++total;
         }
         EXPECT_EQ(missed, 0) << path << " floor " << floor;
-        std::printf("  %-28s %-11s floor %-6g %5zu queries, %4d hits, %d missed, %d needless\n",
-                    entry.path().filename().c_str(), path.parent_path().filename().c_str(), floor, queries->size(), hits,
-                    missed, needless);
+        std::printf("  %-28s %-11s floor %-6g %5zu queries, %4d hits, %d missed, %d needless (%d touch at the start)\n",
+                    entry.path().filename().c_str(), path.parent_path().filename().c_str(), floor, queries->size(),
+                    hits, missed, needless, touching);
       }
     }
   }
@@ -148,7 +150,6 @@ TEST(Ccd, Keeps_its_distance_up_to_the_time_it_tells) {
 TEST(Ccd, Is_not_needlessly_shy) {
   Dice dice(13);
   for (const PairKind kind : k_kinds) {
-    double shyest = 1;
     for (int trial = 0; trial < 20000; ++trial) {
       double time = 0;
       const Query q = constructed_hit(kind, dice, 0.01, 0.01, time);
@@ -162,10 +163,8 @@ TEST(Ccd, Is_not_needlessly_shy) {
       double next = left;
       for (std::size_t i = 0; i < 4; ++i) now[i] += 0.02 * q.dx[i];
       next = std::min(next, pair_geometry(kind, now).distance / start);
-      shyest = std::min(shyest, 0.12 / std::max(next, 1e-3));
       EXPECT_LT(std::min(left, next), 0.25) << "trial " << trial;
     }
-    std::printf("  shyest %g\n", shyest);
   }
 }
 

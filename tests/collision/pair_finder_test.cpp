@@ -1,12 +1,12 @@
-// The pair finder against brute force over all features, on tame and untamed meshes: the same list, element for element.
-#include "collision/contact_pairs.h"
-
+// The pair finder against brute force over all features, on tame and untamed meshes: the same list, element for
+// element.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "baker/core/parallel.h"
+#include "collision/contact_pairs.h"
 #include "tests/collision/pair_scene.h"
 
 namespace ft {
@@ -76,7 +76,8 @@ ContactPairs brute_force(const Scene& scene, bool self) {
 }
 
 /// A wavy n x n grid of quads, two triangles each, numbered from first.
-void add_grid(int n, int first, double height, double wave, Dice& dice, std::vector<Vec3>& x, std::vector<Triangle>& triangles) {
+void add_grid(int n, int first, double height, double wave, Dice& dice, std::vector<Vec3>& x,
+              std::vector<Triangle>& triangles) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const double u = i / (n - 1.0), v = j / (n - 1.0);
@@ -138,7 +139,9 @@ void expect_same(const ContactPairs& a, const ContactPairs& b) {
   EXPECT_TRUE(a.edge_edge == b.edge_edge);
 }
 
-PairFinder finder_of(const Scene& s) { return {s.cloth_vertices, s.cloth, s.collider_vertices, s.collider}; }
+PairFinder finder_of(const Scene& s) {
+  return {s.cloth_vertices, s.cloth, s.collider_vertices, s.collider};
+}
 
 TEST(PairFinder, Finds_what_brute_force_finds_between_two_wavy_sheets) {
   for (const double reach : {0.001, 0.02, 0.08}) {
@@ -168,8 +171,10 @@ TEST(PairFinder, Finds_what_brute_force_finds_in_random_soups_of_triangles) {
       expect_same(found, brute_force(scene, self));
       pairs += static_cast<int>(found.edge_edge.size());
       if (HasFailure()) FAIL() << "seed " << seed << ", search " << again;
-      scene.boxes = soup(seed * 7 + static_cast<std::uint64_t>(again) + 1000).boxes;  // moved elsewhere: refit, not rebuilt
-      scene.boxes.resize(static_cast<std::size_t>(scene.cloth_vertices + scene.collider_vertices), VertexBox::swept({0, 0, 0}, {0.5, 0, 0}, 0.1));
+      scene.boxes =
+          soup(seed * 7 + static_cast<std::uint64_t>(again) + 1000).boxes;  // moved elsewhere: refit, not rebuilt
+      scene.boxes.resize(static_cast<std::size_t>(scene.cloth_vertices + scene.collider_vertices),
+                         VertexBox::swept({0, 0, 0}, {0.5, 0, 0}, 0.1));
     }
   }
   EXPECT_GT(pairs, 10000);
@@ -184,7 +189,8 @@ TEST(PairFinder, Every_pair_that_can_meet_inside_its_boxes_is_listed) {
   const auto inside = [&](int v) {
     const VertexBox& b = scene.boxes[static_cast<std::size_t>(v)];
     Vec3 p;
-    for (int i = 0; i < 3; ++i) p[i] = dice.uniform(b.lo[static_cast<std::size_t>(i)], b.hi[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i)
+      p[i] = dice.uniform(b.lo[static_cast<std::size_t>(i)], b.hi[static_cast<std::size_t>(i)]);
     return p;
   };
   for (int trial = 0; trial < 20; ++trial) {
@@ -192,7 +198,8 @@ TEST(PairFinder, Every_pair_that_can_meet_inside_its_boxes_is_listed) {
     for (int v = 0; v < scene.cloth_vertices; ++v) {
       for (const Triangle& t : scene.collider) {
         Vec3 lo = x[static_cast<std::size_t>(t[0])], hi = lo;
-        for (const int w : t) lo = lo.cwiseMin(x[static_cast<std::size_t>(w)]), hi = hi.cwiseMax(x[static_cast<std::size_t>(w)]);
+        for (const int w : t)
+          lo = lo.cwiseMin(x[static_cast<std::size_t>(w)]), hi = hi.cwiseMax(x[static_cast<std::size_t>(w)]);
         const Vec3& p = x[static_cast<std::size_t>(v)];
         if ((p.array() < lo.array()).any() || (p.array() > hi.array()).any()) continue;
         const Stencil wanted{{v, t[0], t[1], t[2]}};
@@ -266,7 +273,8 @@ TEST(PairFinder, Nothing_meets_nothing) {
 TEST(VertexBox, Holds_the_swept_ball_however_the_numbers_round) {
   Dice dice(3);
   for (int trial = 0; trial < 100000; ++trial) {
-    const double scale = std::pow(10, dice.uniform(-9, 3)), r = trial % 3 == 0 ? 0.0 : std::pow(10, dice.uniform(-9, 0));
+    const double scale = std::pow(10, dice.uniform(-9, 3)),
+                 r = trial % 3 == 0 ? 0.0 : std::pow(10, dice.uniform(-9, 0));
     const Vec3 a = dice.cube(scale), b = trial % 5 == 0 ? a : dice.cube(scale);
     const VertexBox box = VertexBox::swept(a, b, r);
     for (int i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
-// Closest points against a slow solution that shares nothing with the fast one: the quadratic program solved by enumerating
-// every active set with a pivoted long double solve, and the optimality conditions of the answer itself.
+// Closest points against a slow solution that shares nothing with the fast one: the quadratic program solved by
+// enumerating every active set with a pivoted long double solve, and the optimality conditions of the answer itself.
 #include "collision/pair_geometry.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ using test::random_stencil;
 using Wide3 = Eigen::Matrix<long double, 3, 1>;
 
 /// Nearest point of the affine hull of some points to the origin, if it lies in their convex hull; else nothing.
-/// The Minkowski difference of the two features is the convex hull of up to four differences; for edge-edge a parallelogram.
+/// The Minkowski difference of the two features is the convex hull of up to four differences; for edge-edge a
+/// parallelogram.
 long double hull_distance(const std::vector<Wide3>& points) {
   long double best = 1e300L;
   for (const Wide3& p : points) best = std::min(best, p.norm());
@@ -64,7 +65,8 @@ void expect_consistent(PairKind kind, const std::array<Vec3, 4>& x, const PairGe
   }
   EXPECT_NEAR(first, 1, 1e-14);
   EXPECT_NEAR(second, -1, 1e-14);
-  EXPECT_NEAR((offset - g.distance * g.normal).norm(), 0, 1e3 * rounding);  // interior feet of slim features: 1 / sin(angle)
+  EXPECT_NEAR((offset - g.distance * g.normal).norm(), 0,
+              1e3 * rounding);  // interior feet of slim features: 1 / sin(angle)
   if (g.distance > 0) {
     EXPECT_NEAR(g.normal.norm(), 1, 1e-14);
   } else {
@@ -89,8 +91,12 @@ void compare_with_slow(PairKind kind, std::uint64_t seed) {
   }
 }
 
-TEST(PairGeometry, Vertex_face_distance_is_that_of_the_slow_solution) { compare_with_slow(PairKind::k_vertex_face, 1); }
-TEST(PairGeometry, Edge_edge_distance_is_that_of_the_slow_solution) { compare_with_slow(PairKind::k_edge_edge, 2); }
+TEST(PairGeometry, Vertex_face_distance_is_that_of_the_slow_solution) {
+  compare_with_slow(PairKind::k_vertex_face, 1);
+}
+TEST(PairGeometry, Edge_edge_distance_is_that_of_the_slow_solution) {
+  compare_with_slow(PairKind::k_edge_edge, 2);
+}
 
 TEST(PairGeometry, A_vertex_above_the_middle_of_a_face_has_the_face_normal_and_thirds) {
   const Vec3 a(0, 0, 0), b(3, 0, 0), c(0, 3, 0);

@@ -30,8 +30,8 @@ class Dice {
   std::uint64_t draw_ = 0;
 };
 
-/// Four points of one of several kinds: anywhere; on a small grid (coincident, parallel, coplanar); the grid with 1e-12 of
-/// noise; slivers, of a width down to 1e-14 of their length.
+/// Four points of one of several kinds: anywhere; on a small grid (coincident, parallel, coplanar); the grid with 1e-12
+/// of noise; slivers, of a width down to 1e-14 of their length.
 inline std::array<Vec3, 4> random_stencil(Dice& dice, double scale) {
   std::array<Vec3, 4> x;
   const int kind = dice.below(4);
