@@ -1,8 +1,9 @@
-// Out-of-plane elasticity of cloth: dihedral hinges with rest angles (Grinspun et al. 2003, "Discrete shells"), with damping of the
-// angle's rate.
-//   U = sum k/2 ((theta - rest)^2 + d (theta - theta_ref)^2),   k = B |e|^2 / (A1 + A2),   d as in membrane.h
-// Hessian: Gauss-Newton, (1 + d) k grad theta grad theta^T, positive semidefinite by construction and blind to rigid rotation.
-// For garments, whose rest shape is not flat. Where k comes from: cloth_topology.cpp.
+// Out-of-plane elasticity of cloth. The angles theta of all inner edges, less those of the rest shape, are coupled triangle by
+// triangle, because three of them make the curvature of one (cloth_topology_bending.cpp):
+//   U = 1/2 phi.K.phi + 1/2 rho.K.rho,  phi = theta - rest,  rho = sqrt(d) (theta - theta_ref),  d and the reference as in membrane.h
+// K holds up to five numbers per edge and never changes. Hessian: Gauss-Newton, sum (1 + d) M_ij grad theta_i grad theta_j^T per
+// triangle, positive semidefinite by construction and blind to rigid rotation.
+// For garments, whose rest shape is not flat, with rigidities of warp and weft in N m.
 // Caution: theta jumps at +-pi; contact keeps cloth from folding through itself.
 #pragma once
 
@@ -19,28 +20,44 @@ class Bending final : public Energy {
  public:
   explicit Bending(const ClothTopology& topology);
   std::string_view name() const override { return "bending"; }
-  std::vector<std::array<int, 4>> stencils() const override { return stencils_; }
+  std::vector<std::array<int, 4>> stencils() const override;
   void begin_step(const StepContext& context) override;
   double value(std::span<const Vec3> x) const override;
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
 
-  /// k_lanes hinges; all zero in padding.
-  struct Group {
+  static constexpr int k_couplings = 5;
+
+  /// k_lanes hinges; no coupling in padding.
+  struct HingeGroup {
     int vertex[4][k_lanes];
-    double stiffness[k_lanes];     ///< N m
-    double rest_angle[k_lanes];    ///< rad
-    double damping_time[k_lanes];  ///< s
-    double floor2[k_lanes];        ///< see hinge_angles() [m4]
-    double reference[k_lanes];     ///< theta_ref of the step [rad]
+    int neighbour[k_couplings][k_lanes];    ///< slots of the hinges of a row of K; itself first
+    double coupling[k_couplings][k_lanes];  ///< N m
+    double rest_angle[k_lanes];             ///< rad
+    double damping_time[k_lanes];           ///< s
+    double floor2[k_lanes], floor3[k_lanes];  ///< see hinge_gradient_lanes() [m4]
+    double reference[k_lanes];              ///< theta_ref of the step [rad]
+  };
+  /// k_lanes triangles with the vertices beyond their edges, for the Hessian.
+  struct PatchGroup {
+    int vertex[6][k_lanes];
+    double root[3][3][k_lanes];  ///< [i][k]: M = root root^T; zero for free edges [sqrt(N m)]
+    double damping_time[k_lanes];
+    double floor_own[k_lanes], floor_beyond[3][k_lanes];
   };
 
  private:
-  std::vector<std::array<int, 4>> stencils_;
-  ElementSchedule schedule_;
-  std::vector<Group> groups_;
-  double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
-  mutable BlockPositions<4> positions_;
+  void measure(std::span<const Vec3> x) const;
+
+  std::vector<std::array<int, 4>> hinges_;
+  ElementSchedule hinge_schedule_;
+  std::vector<HingeGroup> hinge_groups_;
+  std::vector<std::array<int, 6>> patches_;  ///< corners, then beyond the edge opposite to each; -1 beyond a free edge
+  ElementSchedule patch_schedule_;
+  std::vector<PatchGroup> patch_groups_;
+  double inverse_rate_time_ = 0;             ///< 1/s; 0: no damping
+  mutable BlockPositions<6> positions_;
+  mutable std::vector<double> phi_, rho_;    ///< scratch, per hinge slot
 };
 
 }  // namespace ft

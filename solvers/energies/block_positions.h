@@ -17,7 +17,9 @@ class BlockPositions {
  public:
   using Positions = std::array<int, Corners * Corners>;
 
-  void bind(const BlockPattern& pattern, std::span<const std::array<int, 4>> stencils, std::span<const int> slots) {
+  /// Slots hold indices of stencils; corners of -1 are left at -1, too.
+  template <class Stencils>
+  void bind(const BlockPattern& pattern, const Stencils& stencils, std::span<const int> slots) {
     if (pattern_ == &pattern && columns_ == pattern.column.size()) return;
     positions_.resize(slots.size());
     for (std::size_t s = 0; s < slots.size(); ++s) {
@@ -26,6 +28,7 @@ class BlockPositions {
       const auto& v = stencils[static_cast<std::size_t>(slots[s])];
       for (std::size_t a = 0; a < Corners; ++a)
         for (std::size_t b = 0; b < Corners; ++b) {
+          if (v[a] < 0 || v[b] < 0) continue;
           const int p = pattern.find(v[a], v[b]);
           CHECK(p >= 0);
           positions_[s][Corners * a + b] = p;

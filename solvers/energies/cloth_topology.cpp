@@ -1,15 +1,11 @@
-// Hinges come sorted by edge, so that the result does not depend on the order of the triangles. An edge of more than two
-// triangles (a seam sewn flat, a pocket) gets a hinge for each consecutive pair.
-// Hinge stiffness k = B |e|^2 / (A1 + A2): a sheet bent to the curvature kappa then stores B kappa^2 / 2 per area, exactly so on
-// equilateral meshes (Seung and Nelson 1988: B = sqrt(3)/2 k) and on grids bent about a mesh line. The factor 3 printed beside
-// this formula in the literature (Grinspun et al. 2003; Bergou et al. 2006) makes both three times too stiff.
+// Triangles and masses; hinges and curvature are in cloth_topology_bending.cpp.
 #include "solvers/energies/cloth_topology.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "baker/core/check.h"
-#include "baker/core/mesh.h"
+#include "solvers/energies/cloth_topology_bending.h"
 
 namespace ft {
 namespace {
@@ -37,13 +33,6 @@ Vec3 warp_from_shape(const Vec3& normal) {
   }
   return Vec3::Zero();
 }
-
-struct EdgeUse {
-  Edge edge;
-  int triangle;
-  int opposite;
-  bool operator<(const EdgeUse& o) const { return edge != o.edge ? edge < o.edge : triangle < o.triangle; }
-};
 
 }  // namespace
 
@@ -75,7 +64,6 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
   out.triangle_piece.resize(count);
   out.rest_area.assign(count, 0.0);
   out.rest_inverse.assign(count, {0, 0, 0, 0});
-  std::vector<Vec3> warp(count, Vec3::Zero());
   for (std::size_t t = 0; t < count; ++t) {
     const Triangle& tri = triangles[t];
     for (const int v : tri) CHECK(v >= 0 && v < out.vertex_count);
@@ -95,41 +83,12 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
     const double det = a * d - b * c;  // = area2
     out.rest_inverse[t] = {d / det, -b / det, -c / det, a / det};
     out.rest_area[t] = 0.5 * area2;
-    warp[t] = axis2;
     const double third = out.fabric_of_triangle(t).mass_per_area * out.rest_area[t] / 3;
     for (const int v : tri) out.mass[at(v)] += third;
   }
 
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * count);
-  for (std::size_t t = 0; t < count; ++t) {
-    if (out.rest_area[t] == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      const int a = triangles[t][at(k)], b = triangles[t][at((k + 1) % 3)];
-      uses.push_back({{std::min(a, b), std::max(a, b)}, static_cast<int>(t), triangles[t][at((k + 2) % 3)]});
-    }
-  }
-  std::sort(uses.begin(), uses.end());
-  for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
-    const EdgeUse &u = uses[i], &w = uses[i + 1];
-    if (u.edge != w.edge || u.opposite == w.opposite) continue;
-    const Triangle& tri = triangles[at(u.triangle)];
-    Hinge hinge;
-    hinge.vertex = {u.edge[0], u.edge[1], u.opposite, w.opposite};
-    for (int k = 0; k < 3; ++k)  // the orientation of the first triangle
-      if (tri[at(k)] == u.edge[1] && tri[at((k + 1) % 3)] == u.edge[0]) std::swap(hinge.vertex[0], hinge.vertex[1]);
-    const auto& v = hinge.vertex;
-    const Vec3 &x0 = rest[at(v[0])], &x1 = rest[at(v[1])];
-    hinge.piece = out.triangle_piece[at(u.triangle)];
-    hinge.rest_area = out.rest_area[at(u.triangle)] + out.rest_area[at(w.triangle)];
-    hinge.rest_angle = hinge_angle(x0, x1, rest[at(v[2])], rest[at(v[3])]);
-    // The sheet bends across the edge: the yarns in that direction resist.
-    const double along = (x1 - x0).normalized().dot(warp[at(u.triangle)]);
-    const Fabric& fabric = out.pieces[at(hinge.piece)].fabric;
-    const double rigidity = fabric.bend_warp * (1 - along * along) + fabric.bend_weft * along * along;
-    hinge.stiffness = rigidity * (x1 - x0).squaredNorm() / hinge.rest_area;
-    out.hinges.push_back(hinge);
-  }
+  add_hinges(out);
+  add_bend_elements(out);
   return out;
 }
 

@@ -24,9 +24,18 @@ struct ClothPiece {
 struct Hinge {
   std::array<int, 4> vertex{};
   double rest_angle = 0;    ///< rad, -pi..pi, signed as hinge_angle() says
-  double stiffness = 0;     ///< N m: moment per radian of the whole hinge
   double rest_area = 0;     ///< of both triangles [m2]
+  std::array<int, 2> triangle{};
   int piece = 0;
+};
+
+/// Bending of one triangle: its curvature follows from the angles at its edges. U = bends.M.bends / 2, with bends = angle - rest
+/// angle of each edge's hinge, signed by this triangle's orientation. Edge k is opposite to corner k.
+struct BendElement {
+  int triangle = 0;
+  std::array<int, 3> hinge{-1, -1, -1};   ///< of each edge; -1: free edge
+  std::array<int, 3> sign{1, 1, 1};       ///< -1: the hinge sees this triangle from behind
+  Mat3 stiffness = Mat3::Zero();          ///< M [N m / rad2]; rows of free edges are zero
 };
 
 struct ClothTopology {
@@ -38,6 +47,7 @@ struct ClothTopology {
   /// Inverse of the 2x2 matrix of rest edges (x1 - x0, x2 - x0) in material axes, row by row [1/m]; zero when degenerate.
   std::vector<std::array<double, 4>> rest_inverse;
   std::vector<Hinge> hinges;
+  std::vector<BendElement> bends;                ///< one per triangle that has a hinge and resists bending
   std::vector<double> mass;                      ///< kg per vertex: a third of each triangle around it
   std::vector<ClothPiece> pieces;
 

@@ -25,19 +25,21 @@ std::uint32_t morton(const Vec3& p, const Box& box) {
 
 }  // namespace
 
-ElementSchedule make_element_schedule(std::span<const std::array<int, 4>> stencils, std::span<const Vec3> rest) {
+ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest) {
+  const std::size_t count = vertices.size() / corners;
+  const auto element = [&](std::size_t i) { return vertices.subspan(i * corners, corners); };
   ElementSchedule out;
   const Box box = bounds(rest);
-  std::vector<std::pair<std::uint32_t, int>> keys(stencils.size());
-  for (std::size_t i = 0; i < stencils.size(); ++i) {
+  std::vector<std::pair<std::uint32_t, int>> keys(count);
+  for (std::size_t i = 0; i < count; ++i) {
     Vec3 centre = Vec3::Zero();
-    int corners = 0;
-    for (const int v : stencils[i])
-      if (v >= 0) centre += rest[at(v)], ++corners;
-    keys[i] = {morton(centre / std::max(corners, 1), box), static_cast<int>(i)};
+    int used = 0;
+    for (const int v : element(i))
+      if (v >= 0) centre += rest[at(v)], ++used;
+    keys[i] = {morton(centre / std::max(used, 1), box), static_cast<int>(i)};
   }
   std::sort(keys.begin(), keys.end());
-  const std::size_t groups = block_count(stencils.size(), k_lanes);
+  const std::size_t groups = block_count(count, k_lanes);
   out.slot.assign(groups * k_lanes, -1);
   for (std::size_t i = 0; i < keys.size(); ++i) out.slot[i] = keys[i].second;
 
@@ -50,7 +52,7 @@ ElementSchedule make_element_schedule(std::span<const std::array<int, 4>> stenci
     const auto for_each_vertex = [&](auto&& visit) {
       for (std::size_t s = chunk * slots; s < end; ++s)
         if (out.slot[s] >= 0)
-          for (const int v : stencils[at(out.slot[s])])
+          for (const int v : element(at(out.slot[s])))
             if (v >= 0) visit(taken[at(v)]);
     };
     std::uint64_t used = 0;

@@ -24,7 +24,13 @@ struct ElementSchedule {
 /// Groups of one chunk.
 inline constexpr std::size_t k_chunk_groups = 32;
 
-ElementSchedule make_element_schedule(std::span<const std::array<int, 4>> stencils, std::span<const Vec3> rest);
+/// vertices: corners per element, one element after the other; -1 entries are skipped.
+ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest);
+
+template <std::size_t Corners>
+ElementSchedule make_element_schedule(const std::vector<std::array<int, Corners>>& stencils, std::span<const Vec3> rest) {
+  return make_element_schedule({stencils.empty() ? nullptr : stencils[0].data(), Corners * stencils.size()}, Corners, rest);
+}
 
 /// body(first group, end group) for every chunk, colour after colour.
 template <class Body>
