@@ -9,7 +9,6 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/parallel.h"
-#include "io/import/bind.h"
 #include "io/import/body_bones.h"
 #include "io/import/surface_nets.h"
 
@@ -156,7 +155,7 @@ void skin_by_diffusion(const std::vector<BodyBone>& bones, const std::vector<std
     std::sort(row.begin(), row.end());
     if (row.size() > k_most_influences) row.resize(k_most_influences);
     double sum = 0;
-    for (const auto& [minus_weight, k] : row) sum -= static_cast<double>(minus_weight);
+    for (const auto& entry : row) sum -= static_cast<double>(entry.first);
     std::sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     for (const auto& [minus_weight, k] : row) {
       mesh.influence_bone.push_back(k);
@@ -167,14 +166,13 @@ void skin_by_diffusion(const std::vector<BodyBone>& bones, const std::vector<std
 }
 
 /// Columns of the weight table: one per node that a bone moves with; they become the mesh's bones.
-std::vector<int> add_bones(const Character& character, const std::vector<BodyBone>& bones, CharacterMesh& mesh) {
-  const std::vector<Mat4> globals = rest_globals(character);
-  std::vector<int> column(character.nodes.size(), -1), out;
+std::vector<int> add_bones(const BodyFrame& frame, const std::vector<BodyBone>& bones, CharacterMesh& mesh) {
+  std::vector<int> column(frame.globals.size(), -1), out;
   for (const BodyBone& bone : bones) {
     int& c = column[static_cast<std::size_t>(bone.node)];
     if (c < 0) {
       c = static_cast<int>(mesh.bones.size());
-      mesh.bones.push_back({bone.node, globals[static_cast<std::size_t>(bone.node)].inverse()});
+      mesh.bones.push_back({bone.node, frame.globals[static_cast<std::size_t>(bone.node)].inverse()});
     }
     out.push_back(c);
   }
@@ -184,14 +182,16 @@ std::vector<int> add_bones(const Character& character, const std::vector<BodyBon
 Status add_blended(const Character& character, const BodyFrame& frame, CharacterMesh& mesh) {
   const std::vector<BodyBone> bones = flesh(character, frame);
   if (bones.empty()) return input_error("no body can be built: the skeleton has no bones");
-  for (const double spacing : {1.0, 0.93, 1.08, 0.85}) {  // two sheets in one cell: another grid
-    const NetSurface net = surface_nets(sample_field(bones, spacing * k_spacing));
+  for (const double spacing : {1.0, 0.93, 1.08, 0.85}) {
+    FieldGrid grid = sample_field(bones, spacing * k_spacing);
+    separate_sheets(grid);
+    const NetSurface net = surface_nets(grid);
     std::vector<Vec3> positions = net.positions;
     const auto around = neighbours(positions.size(), net.quads);
     relax(bones, around, positions);
     mesh.triangles = split(net.quads, positions);
     if (!is_closed(mesh.triangles)) continue;
-    const std::vector<int> columns = add_bones(character, bones, mesh);
+    const std::vector<int> columns = add_bones(frame, bones, mesh);
     skin_by_diffusion(bones, around, positions, columns, static_cast<int>(mesh.bones.size()), mesh);
     mesh.positions = std::move(positions);
     return {};
@@ -238,7 +238,7 @@ void add_capsule(const BodyBone& bone, int column, CharacterMesh& mesh) {
 Status add_capsules(const Character& character, const BodyFrame& frame, CharacterMesh& mesh) {
   const std::vector<BodyBone> bones = capsules(character, frame);
   if (bones.empty()) return input_error("no body can be built: the skeleton has no bones");
-  const std::vector<int> columns = add_bones(character, bones, mesh);
+  const std::vector<int> columns = add_bones(frame, bones, mesh);
   mesh.influence_start = {0};
   for (std::size_t b = 0; b < bones.size(); ++b) add_capsule(bones[b], columns[b], mesh);
   return {};
@@ -255,6 +255,7 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
   if (Status s = style == "capsules" ? add_capsules(character, *frame, mesh) : add_blended(character, *frame, mesh); !s) return s;
   const Mat3 back = axes.transpose() / frame->scale;
   for (Vec3& p : mesh.positions) p = back * p;
+  if (frame->arms_raised) character.notes.emplace_back("arms hang in the rest pose; the body, and what it wears, is modelled with arms raised");
   character.nodes.push_back({mesh.name, -1, Mat4::Identity(), {}});
   character.meshes.push_back(std::move(mesh));
   return {};

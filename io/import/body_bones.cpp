@@ -198,16 +198,8 @@ class FleshBuilder {
   /// between and behind the hip joints.
   void add_torso() {
     const Vec3 low = middle(marks_.thighs) - 0.010 * marks_.forward, high = middle(marks_.arms) + 0.012 * marks_.forward;
-    const double shoulder = 0.5 * std::abs((at(marks_.arms[0]) - at(marks_.arms[1])).dot(marks_.side));
-    double most = 1;
-    for (const int arm : marks_.arms)  // an arm that hangs beside the torso in the rest pose needs room
-      for (const int elbow : frame_.children[static_cast<std::size_t>(arm)]) {
-        const Vec3 along = (at(elbow) - at(arm)).normalized();
-        if (along.y() < -0.7) most = shoulder - 0.056;
-      }
     const auto lobe = [&](const Section& s, double sign) -> Vec3 {
-      const double breadth = std::min(s.breadth, std::max(most, s.depth));
-      return low + s.at * (high - low) + sign * std::max(breadth - s.depth, 0.0) * marks_.side;
+      return low + s.at * (high - low) + sign * (s.breadth - s.depth) * marks_.side;
     };
     for (std::size_t k = 0; k + 1 < std::size(k_torso); ++k) {
       const Section &s = k_torso[k], &t = k_torso[k + 1];
@@ -244,14 +236,44 @@ class FleshBuilder {
   std::vector<BodyBone> out_;
 };
 
+/// Turns an arm that points down by more than 45 degrees about its shoulder until it points sideways.
+void raise_arms(const Character& character, BodyFrame& frame) {
+  const Landmarks marks = find_landmarks(character, frame, limbs(character, frame));
+  if (!marks.complete) return;
+  for (const int arm : marks.arms) {
+    const auto& below = frame.children[static_cast<std::size_t>(arm)];
+    const Vec3 shoulder = frame.joints[static_cast<std::size_t>(arm)];
+    Vec3 along = Vec3::Zero();
+    for (const int elbow : below) along += frame.joints[static_cast<std::size_t>(elbow)] - shoulder;
+    if (along.norm() < 1e-6 || along.normalized().y() > -0.7) continue;
+    const double sign = (shoulder - 0.5 * (frame.joints[static_cast<std::size_t>(marks.arms[0])] + frame.joints[static_cast<std::size_t>(marks.arms[1])])).dot(marks.side);
+    const Mat3 turn = Quat::FromTwoVectors(along, sign < 0 ? Vec3(-marks.side) : marks.side).toRotationMatrix();
+    const Mat3 turn_in_file = frame.axes.transpose() * turn * frame.axes;
+    const Vec3 pivot = frame.globals[static_cast<std::size_t>(arm)].topRightCorner<3, 1>();
+    Mat4 move = Mat4::Identity();
+    move.topLeftCorner<3, 3>() = turn_in_file;
+    move.topRightCorner<3, 1>() = pivot - turn_in_file * pivot;
+    std::vector<int> stack{arm};
+    while (!stack.empty()) {
+      const auto joint = static_cast<std::size_t>(stack.back());
+      stack.pop_back();
+      frame.globals[joint] = move * frame.globals[joint];
+      frame.joints[joint] = shoulder + turn * (frame.joints[joint] - shoulder);
+      stack.insert(stack.end(), frame.children[joint].begin(), frame.children[joint].end());
+    }
+    frame.arms_raised = true;
+  }
+}
+
 }  // namespace
 
 Result<BodyFrame> body_frame(const Character& character, const Mat3& axes) {
   BodyFrame frame;
   frame.axes = axes;
+  frame.globals = rest_globals(character);
   frame.children.resize(character.nodes.size());
   Box box;
-  for (const Mat4& m : rest_globals(character)) {
+  for (const Mat4& m : frame.globals) {
     frame.joints.push_back(axes * m.topRightCorner<3, 1>());
     box.include(frame.joints.back());
   }
@@ -262,6 +284,7 @@ Result<BodyFrame> body_frame(const Character& character, const Mat3& axes) {
     return input_error("no body can be built: the skeleton has no height in its rest pose", "", "check up = ..., or use a file with a mesh");
   frame.scale = 1 / height;
   for (Vec3& p : frame.joints) p *= frame.scale;
+  raise_arms(character, frame);
   return frame;
 }
 

@@ -14,8 +14,11 @@ struct BodyBone {
   double radius_a = 0, radius_b = 0;
 };
 
-/// Joints in the normal frame: position = scale * axes * global translation.
+/// Joints in the normal frame: position = scale * axes * global translation. The pose is the rest pose, with arms that hang
+/// beside the body raised to the side, so that hands do not grow together with thighs.
 struct BodyFrame {
+  std::vector<Mat4> globals;  ///< of all nodes in that pose, file units and axes
+  bool arms_raised = false;
   std::vector<Vec3> joints;
   std::vector<std::vector<int>> children;
   Mat3 axes = Mat3::Identity();

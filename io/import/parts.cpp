@@ -43,16 +43,33 @@ std::vector<double> volumes(std::span<const Vec3> positions, const std::vector<T
   return volume;
 }
 
+/// The node that really moves each node: itself when a clip moves it or it is a bone, else the next such one above. A rigid
+/// shell hung on a bone is a piece of that bone.
+std::vector<int> carriers(const Character& character) {
+  std::vector<char> moves(character.nodes.size(), 0);
+  for (const Clip& clip : character.clips)
+    for (const Channel& channel : clip.channels) moves[static_cast<std::size_t>(channel.node)] = 1;
+  for (const CharacterMesh& mesh : character.meshes)
+    for (const SkinBone& bone : mesh.bones) moves[static_cast<std::size_t>(bone.node)] = 1;
+  std::vector<int> out;
+  for (std::size_t i = 0; i < character.nodes.size(); ++i) {
+    const int parent = character.nodes[i].parent;
+    out.push_back(moves[i] || parent < 0 ? static_cast<int>(i) : out[static_cast<std::size_t>(parent)]);
+  }
+  return out;
+}
+
 }  // namespace
 
 void assign_parts(const Character& character, std::span<const Vec3> positions, Skin& skin) {
   const std::size_t nodes = character.nodes.size();
+  const std::vector<int> carrier = carriers(character);
   std::vector<int> node_of_vertex(skin.base.size());
   for (std::size_t i = 0; i < skin.base.size(); ++i) {
     std::vector<std::pair<double, int>> by_node;  // several bindings may be of one node
     for (int k = skin.start[i]; k < skin.start[i + 1]; ++k) {
       const int node = skin.bindings[static_cast<std::size_t>(skin.binding[static_cast<std::size_t>(k)])].node;
-      by_node.push_back({skin.weight[static_cast<std::size_t>(k)], -node});
+      by_node.push_back({skin.weight[static_cast<std::size_t>(k)], -carrier[static_cast<std::size_t>(node)]});
     }
     node_of_vertex[i] = -std::max_element(by_node.begin(), by_node.end())->second;
   }

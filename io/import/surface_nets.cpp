@@ -1,6 +1,60 @@
 #include "io/import/surface_nets.h"
 
+#include <algorithm>
+
 namespace ft {
+namespace {
+
+/// Corners of the set that can be reached from its lowest one along the edges of the cell.
+unsigned reached(unsigned set) {
+  unsigned got = set & (~set + 1), before = 0;
+  while (got != before) {
+    before = got;
+    for (unsigned c = 0; c < 8; ++c)
+      if (got >> c & 1)
+        for (unsigned axis = 0; axis < 3; ++axis) got |= set & 1u << (c ^ 1u << axis);
+  }
+  return got;
+}
+
+bool one_sheet(unsigned inside) {
+  const unsigned outside = ~inside & 255u;
+  if (inside == 0 || outside == 0) return true;
+  if (reached(inside) != inside || reached(outside) != outside) return false;
+  for (unsigned axis = 0; axis < 3; ++axis)
+    for (unsigned side = 0; side < 2; ++side) {
+      const unsigned u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, base = side << axis;
+      const bool a = inside >> base & 1, b = inside >> (base | u) & 1, c = inside >> (base | u | v) & 1, d = inside >> (base | v) & 1;
+      if (a == c && b == d && a != b) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+void separate_sheets(FieldGrid& grid) {
+  for (bool again = true; again;) {
+    again = false;
+    for (int z = 0; z + 1 < grid.nz; ++z)
+      for (int y = 0; y + 1 < grid.ny; ++y)
+        for (int x = 0; x + 1 < grid.nx; ++x) {
+          unsigned inside = 0;
+          std::size_t nearest = grid.values.size();
+          for (int c = 0; c < 8; ++c) {
+            const int at[3] = {x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)};
+            const std::size_t i = grid.index(at[0], at[1], at[2]);
+            const bool border = at[0] == 0 || at[1] == 0 || at[2] == 0 || at[0] == grid.nx - 1 || at[1] == grid.ny - 1 || at[2] == grid.nz - 1;
+            if (grid.values[i] < 0)
+              inside |= 1u << c;
+            else if (!border && (nearest == grid.values.size() || grid.values[i] < grid.values[nearest]))
+              nearest = i;
+          }
+          if (one_sheet(inside) || nearest == grid.values.size()) continue;
+          grid.values[nearest] = -std::max(1e-3 * grid.spacing, 0.5 * grid.values[nearest]);
+          again = true;
+        }
+  }
+}
 
 NetSurface surface_nets(const FieldGrid& grid) {
   NetSurface out;

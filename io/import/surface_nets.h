@@ -1,5 +1,5 @@
 // Surface of a field, as triangles: naive surface nets (Gibson 1998) on a regular grid. Closed where the field is positive on the
-// whole border of the grid. Vertices that would be shared by two sheets are rare and are left to the caller to detect.
+// whole border of the grid, and two-manifold once separate_sheets() has filled the cells where two sheets would share a vertex.
 #pragma once
 
 #include <vector>
@@ -24,6 +24,10 @@ struct NetSurface {
   std::vector<Vec3> positions;
   std::vector<std::array<int, 4>> quads;  ///< counter-clockwise seen from outside
 };
+
+/// Fills corners until every cell holds one piece of surface: inside and outside corners each connected along the cell's edges,
+/// no face with diagonal signs. Narrow gaps close; nothing opens. Border values stay.
+void separate_sheets(FieldGrid& grid);
 
 NetSurface surface_nets(const FieldGrid& grid);
 
