@@ -196,7 +196,8 @@ Result<Mesh> make_top(const Body& body, const BodyShape& shape, const TopSetting
   // Cells whose middles lie on the cuts, so that the border vertices are near their planes from the start.
   Box box;
   box.lo = Vec3(middle - half - 0.5 * cell, shape.waist + settings.hem - 0.5 * cell, shape.bounds.lo.z() - margin);
-  box.hi = Vec3(middle + half, shape.neck_base, shape.bounds.hi.z() + margin);
+  // The cloth lies at its distance above the shoulders; a cut below that would take them away.
+  box.hi = Vec3(middle + half, shape.neck_base + settings.distance + cell, shape.bounds.hi.z() + margin);
   for (int k = 0; k < 3; ++k) {
     const double cells = std::ceil(box.size()[k] / cell);
     if (!(cells > 2 && cells < 400)) return input_error("the body gives a top no sensible size", "", "try another --waist or --cell");
