@@ -37,8 +37,9 @@ BodyAdvance::~BodyAdvance() = default;
 /// Carries the cloth and collects candidates. Less inertia in the carry costs candidates, not time: a blocked piece tries that
 /// before it is shortened. Returns the share of the remaining motion that is free.
 double BodyAdvance::plan(const ClothMotion& cloth, double h, double extra_slack, double* beta) {
+  const double fastest = scratch_->candidates.find_near(cloth, h, scratch_->piece);
   while (true) {
-    const double fastest = scratch_->candidates.carry(cloth, h, *beta, scratch_->piece);
+    scratch_->candidates.carry(cloth, h, *beta, scratch_->piece);
     const double t = scratch_->candidates.collect(cloth, h, fastest, extra_slack, scratch_->piece);
     if (t >= 1 || *beta == 0) return t;
     *beta = *beta > 0.5 ? 0.5 : 0;

@@ -57,13 +57,10 @@ bool Candidates::counts(const ClothMotion& cloth, const Stencil& stencil) const 
   return true;
 }
 
-double Candidates::carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece) {
+double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
-  inertia_.resize(nc);
-  for (std::size_t i = 0; i < nc; ++i) inertia_[i] = beta * h * cloth.v[i];
-  piece.carry = inertia_;
+  near_body_.vertex_face.clear();
   if (nb == 0) return 0;
-
   Vec3 mean = Vec3::Zero();
   Box box = bounds(cloth.x);
   for (std::size_t i = 0; i < nc; ++i) {
@@ -78,24 +75,30 @@ double Candidates::carry(const ClothMotion& cloth, double h, double beta, PieceM
     swept.include((piece.start[nc + i] + piece.body_motion[i]).eval());
     if (swept.overlaps(box)) fastest = std::max(fastest, (piece.body_motion[i] - mean).norm());
   }
-  const double range = 2 * radius_ + std::min(fastest, k_farthest_range);
+  range_ = 2 * radius_ + std::min(fastest, k_farthest_range);
   boxes_.resize(nc + nb);
-  for (std::size_t i = 0; i < nc + nb; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], 0.5 * range);
+  for (std::size_t i = 0; i < nc + nb; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], 0.5 * range_);
   finder_.find(boxes_, false, found_);
-  near_body_.vertex_face.clear();
-  for (const Stencil& stencil : found_.vertex_face)
+  for (const Stencil& stencil : found_.vertex_face)  // cloth with the body only, either way round
     if (counts(cloth, stencil)) near_body_.vertex_face.push_back(stencil);
-  if (near_body_.vertex_face.empty()) return fastest;
+  return fastest;
+}
+
+void Candidates::carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece) {
+  inertia_.resize(cloth.x.size());
+  for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = beta * h * cloth.v[i];
+  piece.carry = inertia_;
+  if (near_body_.vertex_face.empty()) return;
   CarryInput input;
-  input.cloth_vertex_count = static_cast<int>(nc);
+  input.cloth_vertex_count = static_cast<int>(cloth.x.size());
   input.x = piece.start;
   input.body_motion = piece.body_motion;
   input.inertia = inertia_;
   input.edges = model_.edges;
   input.pairs = &near_body_;
-  input.range = range;
+  input.part_of_body_vertex = model_.collider->part_of_vertex();
+  input.range = range_;
   carry_field(input, piece.carry);
-  return fastest;
 }
 
 double Candidates::collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece) {

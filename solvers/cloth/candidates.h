@@ -25,9 +25,10 @@ class Candidates {
  public:
   explicit Candidates(const ClothModel& model);
 
-  /// Fills piece.carry: near the body its motion, else beta times the cloth's own. Returns the largest body motion near the cloth,
-  /// relative to the cloth's mean [m].
-  double carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece);
+  /// Finds the surfaces near the cloth for carry(). Returns the largest body motion near the cloth, relative to the cloth's mean [m].
+  double find_near(const ClothMotion& cloth, double h, const PieceMotion& piece);
+  /// Fills piece.carry: near the body its motion, else beta times the cloth's own. After find_near().
+  void carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece);
   /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
   double collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece);
   /// Takes out the pairs that touch within `share` of the motion: cloth vertices are let through the collider's part (noted in
@@ -45,6 +46,7 @@ class Candidates {
   const ClothModel& model_;
   PairFinder finder_;
   double radius_ = 1e-3;
+  double range_ = 0;  ///< of near_body_ [m]
   bool any_self_ = false;
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;

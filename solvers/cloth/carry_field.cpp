@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/parallel.h"
 #include "collision/pair_geometry.h"
 
 namespace ft {
 namespace {
+
+constexpr std::size_t k_block = 4096;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -16,29 +19,57 @@ struct Pull {
   std::array<double, 4> weight;
   Vec3 normal;
   double strength;
-  double target;  ///< n . u_body at the contact
+  double target;       ///< n . u_body at the contact
+  double body_motion;  ///< |u_body| there [m]
+  int part;
 };
+
+/// Of each vertex with each part the nearest face only: the faces of one surface say the same thing many times over.
+std::vector<Pull> find_pulls(const CarryInput& in) {
+  const int n = in.cloth_vertex_count;
+  const double g = 1.0 / (in.range * in.range);
+  const auto& pairs = in.pairs->vertex_face;
+  std::vector<std::vector<Pull>> blocks(block_count(pairs.size(), k_block));
+  parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    std::vector<Pull>& mine = blocks[begin / k_block];
+    std::size_t run = 0;  // pulls of the vertex at hand begin here
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto& v = pairs[k].v;
+      if (k > begin && v[0] != pairs[k - 1].v[0]) run = mine.size();
+      const PairGeometry geo = vertex_face_geometry(in.x[at(v[0])], in.x[at(v[1])], in.x[at(v[2])], in.x[at(v[3])]);
+      if (geo.distance >= in.range || geo.distance <= 0) continue;
+      const double d = std::max(geo.distance, 1e-5);
+      Pull pull{v, geo.weight, geo.normal, 1.0 / (d * d) - g, 0, 0, 0};
+      Vec3 body = Vec3::Zero();
+      for (std::size_t c = 0; c < 4; ++c)
+        if (v[c] >= n) {
+          body += geo.weight[c] * in.body_motion[at(v[c] - n)];
+          pull.part = in.part_of_body_vertex[at(v[c] - n)];
+        }
+      // sum weight * displacement over all four vertices is the relative motion: the cloth's part shall cancel the body's.
+      pull.target = -geo.normal.dot(body);
+      pull.body_motion = body.norm();
+      const auto same = std::find_if(mine.begin() + static_cast<std::ptrdiff_t>(run), mine.end(),
+                                     [&](const Pull& p) { return p.part == pull.part; });
+      if (same == mine.end())
+        mine.push_back(pull);
+      else if (pull.strength > same->strength)
+        *same = pull;
+    }
+  });
+  std::vector<Pull> pulls;
+  for (const auto& block : blocks) pulls.insert(pulls.end(), block.begin(), block.end());
+  return pulls;
+}
 
 }  // namespace
 
 void carry_field(const CarryInput& in, std::span<Vec3> carry) {
   const int n = in.cloth_vertex_count;
   const double g = 1.0 / (in.range * in.range);
-  std::vector<Pull> pulls;
+  const std::vector<Pull> pulls = find_pulls(in);
   double fastest = 0;
-  for (const Stencil& s : in.pairs->vertex_face) {
-    const bool first_cloth = s.v[0] < n;
-    if (first_cloth == (s.v[3] < n)) continue;
-    const PairGeometry geo = vertex_face_geometry(in.x[at(s.v[0])], in.x[at(s.v[1])], in.x[at(s.v[2])], in.x[at(s.v[3])]);
-    if (geo.distance >= in.range || geo.distance <= 0) continue;
-    Vec3 body = Vec3::Zero();
-    for (std::size_t k = 0; k < 4; ++k)
-      if (s.v[k] >= n) body += geo.weight[k] * in.body_motion[at(s.v[k] - n)];
-    fastest = std::max(fastest, body.norm());
-    // sum weight * displacement over all four vertices is the relative motion: the cloth's part shall cancel the body's.
-    const double d = std::max(geo.distance, 1e-5);
-    pulls.push_back({s.v, geo.weight, geo.normal, 1.0 / (d * d) - g, -geo.normal.dot(body)});
-  }
+  for (const Pull& p : pulls) fastest = std::max(fastest, p.body_motion);
   double fastest_own = 0;
   for (int i = 0; i < n; ++i) fastest_own = std::max(fastest_own, in.inertia[at(i)].norm());
 

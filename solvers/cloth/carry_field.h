@@ -19,6 +19,7 @@ struct CarryInput {
   std::span<const Vec3> inertia;       ///< beta h v per cloth vertex [m]
   std::span<const Edge> edges;         ///< of the cloth
   const ContactPairs* pairs = nullptr; ///< cloth-body pairs at least within `range`
+  std::span<const int> part_of_body_vertex;  ///< of each body vertex: the nearest face of each part pulls
   double range = 0;                    ///< R: 2 r + largest body motion [m]
   int sweeps = 10;
 };
