@@ -1,0 +1,157 @@
+// `info FILE`: what is in a character, a garment mesh, a shot, a cache or a bake folder. By content where the format allows it:
+// folders, shots and OBJ by name; caches by their magic; everything else is tried as a character.
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "baker/commands/command_line.h"
+#include "baker/inputs.h"
+#include "baker/manifest.h"
+#include "baker/plan_text.h"
+#include "io/cache/cache.h"
+#include "io/import/import.h"
+#include "io/shot/mesh_file.h"
+#include "io/shot/shot.h"
+
+namespace ft {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string size_of(const Box& box) {
+  const Vec3 size = box.size();
+  return box.empty() ? "empty" : fmt::format("{:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g})", size.x(), size.y(), size.z(),
+                                             box.lo.x(), box.lo.y(), box.lo.z());
+}
+
+Result<Lines> folder_info(const std::filesystem::path& path) {
+  auto manifest = read_manifest(path);
+  if (!manifest) return manifest.error();
+  const Manifest& m = *manifest;
+  Lines out;
+  out.push_back(fmt::format("bake of {}, followthrough {}, {}", m.shot, m.version, m.complete ? "complete" : "not finished"));
+  out.push_back(fmt::format("  frames {}-{} at {:g} fps, {} frames of pre-roll, caches from {}", m.first_frame, m.last_frame, m.fps, m.preroll, m.first_written));
+  for (const ManifestInput& i : m.inputs) out.push_back(fmt::format("  input {}: {}", i.role, i.name));
+  for (const ManifestSystem& s : m.systems) {
+    std::string files;
+    for (const ManifestCache& c : s.caches) files += " " + c.file + (c.bytes > 0 ? " (" + size_text(c.bytes) + ")" : "");
+    out.push_back(fmt::format("  {} \"{}\": {} vertices, {} faces:{}", s.role, s.name, s.vertex_count, s.face_count, files));
+  }
+  int crossings = 0, incidents = 0;
+  double deepest = 0, strain = 0;
+  for (const FrameReport& f : m.frames) {
+    incidents += static_cast<int>(f.incidents.size());
+    if (f.frame < m.first_written) continue;
+    crossings += f.crossings_body + f.crossings_self;
+    deepest = std::max(deepest, f.deepest_drawn);
+    strain = std::max(strain, f.strain_p99);
+  }
+  out.push_back(fmt::format("  certificate: {} crossings, deepest in the drawn body {:.2f} mm, worst p99 strain {:.2f} %, {} incidents", crossings,
+                            1e3 * deepest, 100 * strain, incidents));
+  for (const std::string& note : m.notes) out.push_back("  note: " + note);
+  return out;
+}
+
+Result<Lines> shot_info(const std::filesystem::path& path) {
+  ShotFaults faults;
+  auto shot = read_shot(path, shot_vocabulary(), {}, faults);
+  if (!shot) {
+    for (std::size_t i = 1; i < faults.messages.size(); ++i) complain(faults.messages[i]);
+    return shot.error();
+  }
+  Lines out{fmt::format("shot: frames {}-{} at {:g} fps, {} primaries, {} cloths", shot->first_frame, shot->last_frame, shot->fps,
+                        shot->primaries.size(), shot->cloths.size())};
+  for (const auto& [key, value] : settings(*shot)) out.push_back("  " + key + " = " + value);
+  return out;
+}
+
+Result<Lines> mesh_info(const std::filesystem::path& path) {
+  auto mesh = read_obj(path);
+  if (!mesh) return mesh.error();
+  Lines out{fmt::format("mesh: {} vertices, {} faces, {} pattern coordinates", mesh->vertex_count(), mesh->face_count(), mesh->uvs.size())};
+  out.push_back("  size " + size_of(bounds(mesh->positions)) + " if the file is in metres");
+  for (const VertexGroup& group : mesh->groups) out.push_back(fmt::format("  group \"{}\": {} vertices", group.name, group.vertices.size()));
+  const Status garment = check_garment(*mesh);
+  out.push_back(garment ? "  as a garment: good" : "  as a garment: " + garment.error().what);
+  return out;
+}
+
+Lines cache_info(CacheReader& reader) {
+  const CacheInfo& info = reader.info();
+  Lines out{fmt::format("cache of \"{}\": {} frames from {}{}, {} vertices", info.system, info.frame_count, info.first_frame,
+                        info.has_fps ? fmt::format(" at {:g} fps", info.fps) : std::string(), info.mesh.vertex_count())};
+  out.push_back(fmt::format("  {}, {}", info.has_topology ? fmt::format("{} faces", info.mesh.face_count()) : "points only",
+                            info.has_velocity ? "with velocities" : "without velocities"));
+  Box box;
+  std::vector<Vec3f> x;
+  for (int i = 0; i < info.frame_count; ++i) {
+    if (const Status read = reader.read_frame(i, x); !read) {
+      out.push_back("  frame " + std::to_string(info.first_frame + i) + " cannot be read: " + read.error().text());
+      break;
+    }
+    for (const Vec3f& p : x) box.include(p.cast<double>());
+  }
+  out.push_back("  bounds over all frames " + size_of(box));
+  for (const auto& [key, value] : info.metadata) out.push_back("  " + key + ": " + value);
+  return out;
+}
+
+Result<Lines> file_info(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return input_error("does not exist", path.string());
+  if (std::filesystem::is_directory(path, error)) return folder_info(path);
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".toml") return shot_info(path);
+  if (extension == ".obj") return mesh_info(path);
+  for (const CacheFormat& format : cache_formats())
+    if (extension == format.extension) {
+      auto cache = open_cache(path);
+      if (!cache) return cache.error();
+      return cache_info(**cache);
+    }
+  auto character = inspect_character(path);
+  if (!character) return character.error();
+  Lines out{"character"};
+  for (std::string& line : character_lines(*character)) out.push_back(std::move(line));
+  for (const std::string& note : character->notes) out.push_back("  note: " + note);
+  return out;
+}
+
+struct InfoArguments {
+  std::filesystem::path file;
+  bool shot_keys = false;
+};
+
+int run(const InfoArguments& a) {
+  if (a.shot_keys) {
+    std::printf("%s", shot_file_reference(shot_vocabulary()).c_str());
+    if (a.file.empty()) return 0;
+  }
+  if (a.file.empty()) {
+    complain("info needs a file (or --shot-keys)");
+    return exit_code(ErrorKind::k_usage);
+  }
+  auto lines = file_info(a.file);
+  if (!lines) {
+    complain(lines.error().text());
+    return exit_code(lines.error().kind);
+  }
+  for (const std::string& line : *lines) std::printf("%s\n", line.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("info", "Says what is in a character, mesh, shot, cache or bake folder");
+  auto a = std::make_shared<InfoArguments>();
+  command->add_option("file", a->file, "The file or folder")->type_name("FILE");
+  command->add_flag("--shot-keys", a->shot_keys, "Print the keys of a shot file as Markdown");
+  command->callback([a, &exit_code] { exit_code = run(*a); });
+}
+
+}  // namespace ft

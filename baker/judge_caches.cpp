@@ -1,0 +1,172 @@
+#include "baker/judge_caches.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+#include "baker/manifest.h"
+#include "baker/report_json.h"
+#include "collision/crossings.h"
+#include "collision/penetration.h"
+#include "io/cache/cache.h"
+#include "io/shot/mesh_file.h"
+
+namespace ft {
+namespace {
+
+struct Track {
+  std::string name;
+  std::unique_ptr<CacheReader> reader;
+  Mesh rest;
+  std::vector<Triangle> triangles;
+
+  Status read(int index, std::vector<Vec3>& out) const {
+    std::vector<Vec3f> x;
+    if (const Status done = reader->read_frame(index, x); !done) return done;
+    for (const Vec3f& p : x) out.push_back(p.cast<double>());
+    return {};
+  }
+};
+
+/// What moves with one primary.
+struct Group {
+  std::vector<Track> cloths;
+  std::vector<Track> collider, body;   ///< none or one
+  std::vector<Triangle> cloth_triangles;
+  std::vector<Edge> edges;
+  std::vector<double> rest_length;
+  std::vector<int> first_vertex;
+};
+
+Result<Track> open_track(const std::filesystem::path& folder, const ManifestSystem& system, const Manifest& manifest) {
+  if (system.caches.empty()) return input_error("system \"" + system.name + "\" has no cache", folder.string());
+  const auto path = folder / system.caches[0].file;
+  auto reader = open_cache(path);
+  if (!reader) return reader.error();
+  Track track{system.name, std::move(*reader), {}, {}};
+  auto rest = read_obj(folder / system.topology);
+  if (!rest) return rest.error();
+  track.rest = std::move(*rest);
+  const CacheInfo& info = track.reader->info();
+  if (info.mesh.vertex_count() != track.rest.vertex_count())
+    return input_error(fmt::format("has {} vertices, {} has {}", info.mesh.vertex_count(), system.topology, track.rest.vertex_count()), path.string());
+  if (info.frame_count != manifest.written_count() && manifest.complete)
+    return input_error(fmt::format("has {} frames, the manifest says {}", info.frame_count, manifest.written_count()), path.string());
+  track.triangles = triangulate(track.rest);
+  return track;
+}
+
+void prepare(Group& group) {
+  int first = 0;
+  for (const Track& cloth : group.cloths) {
+    group.first_vertex.push_back(first);
+    for (const Triangle& t : cloth.triangles) group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Edge& e : unique_edges(cloth.triangles)) {
+      const double length = (cloth.rest.positions[static_cast<std::size_t>(e[0])] - cloth.rest.positions[static_cast<std::size_t>(e[1])]).norm();
+      if (length <= 0) continue;
+      group.edges.push_back({e[0] + first, e[1] + first});
+      group.rest_length.push_back(length);
+    }
+    first += cloth.rest.vertex_count();
+  }
+  group.first_vertex.push_back(first);
+}
+
+void place_incident(const Group& group, int vertex, Incident& incident) {
+  const auto next = std::upper_bound(group.first_vertex.begin(), group.first_vertex.end(), vertex);
+  const auto garment = static_cast<std::size_t>(next - group.first_vertex.begin()) - 1;
+  incident.system = group.cloths[garment].name;
+  incident.vertex = vertex - group.first_vertex[garment];
+}
+
+Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
+  FrameReport report;
+  report.frame = frame;
+  std::vector<Vec3> x;
+  for (const Track& cloth : group.cloths)
+    if (const Status read = cloth.read(index, x); !read) return read.error();
+  report.finite = all_finite(x);
+  const auto incident = [&](Incident::Kind kind, int vertex, double depth, std::string text) {
+    Incident out;
+    out.kind = kind;
+    out.frame = frame;
+    out.place = x[static_cast<std::size_t>(vertex)];
+    out.depth = depth;
+    out.text = std::move(text);
+    place_incident(group, vertex, out);
+    report.incidents.push_back(std::move(out));
+  };
+  std::vector<double> strain(group.edges.size());
+  for (std::size_t e = 0; e < strain.size(); ++e)
+    strain[e] = (x[static_cast<std::size_t>(group.edges[e][0])] - x[static_cast<std::size_t>(group.edges[e][1])]).norm() / group.rest_length[e] - 1;
+  for (const double s : strain) report.strain_mean += s / static_cast<double>(strain.size());
+  if (!strain.empty()) {
+    std::sort(strain.begin(), strain.end());
+    report.strain_max = strain.back();
+    report.strain_p99 = strain[strain.size() * 99 / 100];
+  }
+  for (const Track& collider : group.collider) {
+    std::vector<Vec3> y;
+    if (const Status read = collider.read(index, y); !read) return read.error();
+    const auto crossings = crossings_between(x, group.cloth_triangles, y, collider.triangles);
+    report.crossings_body = static_cast<int>(crossings.size());
+    if (!crossings.empty())
+      incident(Incident::Kind::k_crossing, crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0], 0,
+               fmt::format("{} crossings with the feasible collider", crossings.size()));
+  }
+  const auto own = crossings_within(x, group.cloth_triangles);
+  report.crossings_self = static_cast<int>(own.size());
+  if (!own.empty()) incident(Incident::Kind::k_crossing, own[0].edge[0], 0, fmt::format("{} crossings among cloths", own.size()));
+  for (const Track& body : group.body) {
+    std::vector<Vec3> y;
+    if (const Status read = body.read(index, y); !read) return read.error();
+    report.crossings_drawn = static_cast<int>(crossings_between(x, group.cloth_triangles, y, body.triangles).size());
+    int worst = -1;
+    for (const Penetration& p : penetrations(x, y, body.triangles))
+      if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
+    if (worst >= 0)
+      incident(Incident::Kind::k_penetration, worst, report.deepest_drawn, fmt::format("{:.2f} mm inside the drawn body", 1e3 * report.deepest_drawn));
+  }
+  return report;
+}
+
+}  // namespace
+
+Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
+  auto manifest = read_manifest(bake_folder);
+  if (!manifest) return manifest.error();
+  CacheJudgement out;
+  out.shot = manifest->shot;
+  std::map<std::string, Group> groups;
+  for (const ManifestSystem& system : manifest->systems) {
+    auto track = open_track(bake_folder, system, *manifest);
+    if (!track) return track.error();
+    Group& group = groups[system.primary];
+    (system.role == "cloth" ? group.cloths : system.role == "collider" ? group.collider : group.body).push_back(std::move(*track));
+  }
+  int frames = manifest->written_count();
+  for (auto& [primary, group] : groups) {
+    prepare(group);
+    out.has_collider = out.has_collider || !group.collider.empty();
+    out.has_body = out.has_body || !group.body.empty();
+    if (group.collider.empty()) out.notes.push_back("the feasible collider of \"" + primary + "\" is not cached: crossings with it are not judged");
+    for (const auto* tracks : {&group.cloths, &group.collider, &group.body})
+      for (const Track& track : *tracks) frames = std::min(frames, track.reader->info().frame_count);
+  }
+  if (!manifest->complete) out.notes.push_back(fmt::format("the bake is not finished: {} of {} frames are judged", frames, manifest->written_count()));
+  for (int i = 0; i < frames; ++i) {
+    bool first = true;
+    FrameReport all;
+    for (const auto& [primary, group] : groups) {
+      if (group.cloths.empty()) continue;
+      auto report = judge_frame(group, i, manifest->first_written + i);
+      if (!report) return report.error();
+      all = first ? std::move(*report) : merge(all, *report);
+      first = false;
+    }
+    if (!first) out.frames.push_back(std::move(all));
+  }
+  return out;
+}
+
+}  // namespace ft
