@@ -43,8 +43,12 @@ class PairFinder {
   /// self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in the list. Pairs
   /// that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in nothing.
   void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
+  /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
+  void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
 
  private:
+  void search(std::span<const VertexBox> boxes, bool self, bool edges, ContactPairs& out);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -102,6 +102,7 @@ struct Walk {
   const PairFeatures& features;
   const FclNode *ta, *tb;
   const PairElement *ea, *eb;
+  bool want_edges;
   Found& out;
 
   /// All pairs below node n of ta, which is tb.
@@ -138,6 +139,7 @@ struct Walk {
   void meet(const PairElement& a, const PairElement& b) const {
     vertices_against_face(a, b);
     vertices_against_face(b, a);
+    if (!want_edges) return;
     for (int i = 0; i < a.owned_edge_count; ++i) {
       const int ra = a.owned_edge[at(i)];
       const VertexBox& box = features.edge_boxes[at(ra)];
@@ -172,6 +174,7 @@ struct Task {
 
 struct PairFinder::Impl {
   PairFeatures features;
+  bool want_edges = true;
   Tree cloth, collider;
 
   // Scratch, kept from search to search.
@@ -226,6 +229,7 @@ void PairFinder::Impl::run_task(const Task& task, Found& out) const {
                   task.self ? cloth.nodes() : collider.nodes(),
                   features.cloth.data(),
                   task.self ? features.cloth.data() : features.collider.data(),
+                  want_edges,
                   out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
@@ -233,12 +237,19 @@ void PairFinder::Impl::run_task(const Task& task, Found& out) const {
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                        std::span<const Triangle> collider_triangles)
     : impl_(new Impl{
-          {cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles}, {}, {}, {}, {}, {}, {}}) {}
+          {cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles}, true, {}, {}, {}, {}, {}, {}}) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 
-void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
+void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) { search(boxes, self, true, out); }
+
+void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
+  search(boxes, self, false, out);
+}
+
+void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, ContactPairs& out) {
   Impl& m = *impl_;
+  m.want_edges = edges;
   const PairFeatures& features = m.features;
   m.features.set_boxes(boxes);
   if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes);

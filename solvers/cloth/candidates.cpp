@@ -78,7 +78,7 @@ double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMoti
   range_ = 2 * radius_ + std::min(fastest, k_farthest_range);
   boxes_.resize(nc + nb);
   for (std::size_t i = 0; i < nc + nb; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], 0.5 * range_);
-  finder_.find(boxes_, false, found_);
+  finder_.find_vertex_face(boxes_, false, found_);
   for (const Stencil& stencil : found_.vertex_face)  // cloth with the body only, either way round
     if (counts(cloth, stencil)) near_body_.vertex_face.push_back(stencil);
   return fastest;
