@@ -111,6 +111,9 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, d
   for (std::size_t i = 0; i < nc; ++i) {
     piece.slack[i] = 1.2 * (h * cloth.v[i] - piece.carry[i]).norm() + 0.6 * h * h * gravity + 1e-3 +
                      0.1 * std::min(fastest, k_farthest_range) + extra_slack;
+    // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
+    if (cloth.h_previous > 0)
+      piece.slack[i] += std::min(1.5 * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(), k_farthest_range);
     boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, piece.slack[i] + 0.5 * radius_);
   }
   for (std::size_t i = 0; i < nb; ++i) {
