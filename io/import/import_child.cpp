@@ -111,6 +111,14 @@ bool wait_for(pid_t child, double seconds, int& status) {
   return in_time;
 }
 
+/// The child's words may hold bytes of the damaged file.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
+  if (text.size() > 500) text.resize(500);
+  return text;
+}
+
 std::string seconds_text(double s) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g s", s);
@@ -145,7 +153,7 @@ Result<Character> import_in_child(const std::filesystem::path& file, const Impor
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == k_exit_refused) {
     const auto reason = read_text(out, 1 << 16);
-    return input_error(reason ? *reason : std::string("cannot be read"), name);
+    return input_error(reason ? printable(*reason) : std::string("cannot be read"), name);
   }
   if (code == k_exit_out_of_memory)
     return input_error("import needs more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory", name, hint);

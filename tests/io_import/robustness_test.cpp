@@ -1,0 +1,131 @@
+// Any file in ends in a character or a named error, within the limits, and nothing that is not finite gets through: Debian's
+// assimp-testmodels (malformed ones among them), and seeded mutations and cuts of good files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <set>
+
+#include "baker/core/file.h"
+#include "baker/core/parallel.h"
+#include "baker/core/random.h"
+#include "io/import/import.h"
+#include "tests/support/assets.h"
+
+namespace ft {
+namespace {
+
+struct Tally {
+  int loaded = 0, refused = 0, stopped = 0, bodies = 0;
+  std::vector<std::string> faults;
+};
+
+/// Imports with every chance given (own unit, any size) and looks at everything that comes out.
+void try_file(const std::filesystem::path& file, double seconds, Tally& tally) {
+  ImportRequest request;
+  request.file = file;
+  request.unit_scale = 1;
+  request.limits.seconds = seconds;
+  request.limits.memory_bytes = std::uint64_t{2} << 30;
+  auto primary = import_primary(request);
+  if (!primary) {
+    const Error& error = primary.error();
+    ++tally.refused;
+    if (error.what.find("crashed") != std::string::npos || error.what.find("stopped") != std::string::npos) {
+      ++tally.stopped;
+      std::printf("  stopped: %s\n", error.text().c_str());
+    }
+    if (error.where.empty() || error.what.empty()) tally.faults.push_back("no name in: " + error.text());
+    return;
+  }
+  ++tally.loaded;
+  const Trajectory& t = *primary->trajectory;
+  const Surface& surface = t.surface();
+  const int n = surface.vertex_count();
+  for (const Triangle& triangle : surface.triangles)
+    for (const int v : triangle)
+      if (v < 0 || v >= n) tally.faults.push_back(file.string() + ": triangle out of range");
+  for (const int part : surface.part_of_vertex)
+    if (part < 0 || part >= static_cast<int>(surface.parts.size())) {
+      tally.faults.push_back(file.string() + ": part out of range");
+      break;
+    }
+  std::vector<Vec3> positions(static_cast<std::size_t>(n));
+  t.bind_pose(positions);
+  if (!all_finite(positions)) tally.faults.push_back(file.string() + ": bind pose not finite");
+  for (const double time : {-1.0, -0.5, 0.0, 0.37}) {
+    t.sample(time, positions);
+    if (!all_finite(positions)) tally.faults.push_back(file.string() + ": sample not finite");
+  }
+}
+
+void report(const char* what, const Tally& tally) {
+  std::printf("  %s: %d loaded, %d refused (%d of them crashed or timed out in the child)\n", what, tally.loaded, tally.refused, tally.stopped);
+  for (const std::string& fault : tally.faults) ADD_FAILURE() << fault;
+}
+
+TEST(Robustness, Every_model_of_assimps_tests_loads_or_is_refused_slow) {
+  const auto root = test::assimp_models_root();
+  FT_REQUIRE_FILE(root);
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  Tally tally;
+  for (const auto& file : files) try_file(file, 10, tally);
+  report("assimp models", tally);
+  EXPECT_GT(tally.loaded, 100);
+}
+
+/// Flips, overwrites, cuts, repeats; what happens is a function of the seed.
+Bytes mutate(Bytes bytes, std::uint64_t seed) {
+  const auto draw = [&](std::uint64_t k, std::uint64_t range) { return random_bits({seed, 1, 2, 3}, k) % range; };
+  if (bytes.empty()) return bytes;
+  const auto kind = draw(0, 5);
+  if (kind == 0) {
+    bytes.resize(draw(1, bytes.size()));
+    return bytes;
+  }
+  // Half of the mutations go to the head of the file, where lengths and counts live.
+  const std::size_t reach = draw(1, 2) == 0 ? std::min<std::size_t>(bytes.size(), 4096) : bytes.size();
+  const auto count = 1 + draw(2, draw(3, 3) == 0 ? 24 : 2);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const std::size_t at = draw(10 + 3 * k, reach);
+    if (kind == 1) bytes[at] ^= static_cast<std::byte>(1u << draw(11 + 3 * k, 8));
+    if (kind == 2) bytes[at] = static_cast<std::byte>(draw(11 + 3 * k, 256));
+    if (kind == 3) bytes[at] = draw(11 + 3 * k, 2) == 0 ? std::byte{0xff} : std::byte{0};
+    if (kind == 4) std::swap(bytes[at], bytes[draw(12 + 3 * k, bytes.size())]);
+  }
+  return bytes;
+}
+
+TEST(Robustness, Mutated_good_files_load_or_are_refused_slow) {
+  const auto characters = test::assets_root() / "characters";
+  const auto models = test::assimp_models_root();
+  const std::filesystem::path good[] = {
+      characters / "cesium_man/cesium_man.gltf",   characters / "robot_expressive/RobotExpressive.glb", characters / "m2m_horse/horse-animations.glb",
+      characters / "ozz_pab_fbx/skeleton.fbx",     characters / "ozz_pab_fbx/skeleton.dae",             models / "FBX/huesitos.fbx",
+      models / "glTF2/RiggedSimple-glTF-Binary/RiggedSimple.glb", test::assets_root() / "mocap/animateddrawings_cmu_jacks/jumping_jacks.bvh",
+      models / "X/anim_test.x", models / "MD5/SimpleCube.md5mesh"};
+  const test::ScratchFolder scratch;
+  Tally tally;
+  int tried = 0;
+  for (const auto& file : good) {
+    const auto bytes = read_file(file);
+    if (!bytes) continue;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      const auto path = scratch / ("mutant_" + std::to_string(seed) + file.extension().string());
+      ASSERT_TRUE(write_file_durably(path, mutate(*bytes, seed * 977 + bytes->size())));
+      try_file(path, 10, tally);
+      ++tried;
+    }
+  }
+  if (tried == 0) GTEST_SKIP() << "skipped: no good file present";
+  report("mutations", tally);
+  EXPECT_EQ(tally.loaded + tally.refused, tried);
+  EXPECT_GT(tally.loaded, tried / 20) << "mutations that nothing survives test little";
+}
+
+}  // namespace
+}  // namespace ft
