@@ -101,8 +101,9 @@ DistanceGrid make_distance_grid(const Body& body, const Box& box, double cell, d
   for (int k = 0; k < 3; ++k) grid.size[at(k)] = std::max(2, static_cast<int>(std::ceil(box.size()[k] / cell)) + 1);
   grid.values.assign(at(grid.size[0] * grid.size[1] * grid.size[2]), band);
   for (const Triangle& t : body.triangles) {
-    Box reach;
-    for (const int v : t) reach.include(body.positions[at(v)]);
+    Box own;
+    for (const int v : t) own.include(body.positions[at(v)]);
+    Box reach = own;
     reach.inflate(band);
     int lo[3], hi[3];
     for (int k = 0; k < 3; ++k) {
@@ -113,7 +114,9 @@ DistanceGrid make_distance_grid(const Body& body, const Box& box, double cell, d
       for (int y = lo[1]; y <= hi[1]; ++y)
         for (int x = lo[0]; x <= hi[0]; ++x) {
           double& d = grid.values[at(grid.index(x, y, z))];
-          d = std::min(d, distance_to_triangle(grid.node(x, y, z), body.positions[at(t[0])], body.positions[at(t[1])], body.positions[at(t[2])]));
+          const Vec3 p = grid.node(x, y, z);
+          if ((own.lo - p).cwiseMax(p - own.hi).cwiseMax(0.0).squaredNorm() >= d * d) continue;
+          d = std::min(d, distance_to_triangle(p, body.positions[at(t[0])], body.positions[at(t[1])], body.positions[at(t[2])]));
         }
   }
   std::vector<unsigned char> inside(grid.values.size(), 0);

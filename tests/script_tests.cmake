@@ -1,0 +1,15 @@
+# Tests of the whole program, as scripts: SCRIPT PROGRAM SHOT. All are slow. 77 means skipped.
+function(ft_script_test name script)
+  if(TARGET followthrough AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${script})
+    add_test(NAME ${name} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/${script} $<TARGET_FILE:followthrough> ${ARGN})
+    set_tests_properties(${name} PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 900)
+  endif()
+endfunction()
+
+set(small_shot ${CMAKE_CURRENT_SOURCE_DIR}/data/small_shot/shot.toml)
+ft_script_test(determinism baker/determinism.sh ${small_shot})
+ft_script_test(kill_resume baker/kill_resume.sh ${small_shot})
+ft_script_test(failing_writes baker/failing_writes.sh ${small_shot})
+if(TARGET failing_write AND TEST failing_writes)
+  set_property(TEST failing_writes APPEND PROPERTY ENVIRONMENT FT_FAILING_WRITE=$<TARGET_FILE:failing_write>)
+endif()
