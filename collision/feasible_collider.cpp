@@ -17,7 +17,11 @@ namespace ft {
 namespace {
 
 constexpr int k_push_rounds = 3;        ///< rounds of pushing out, so that a vertex between two parts settles
-constexpr int k_smooth_sweeps = 2;      ///< Laplacian sweeps of the displacement between rounds
+constexpr int k_smooth_sweeps = 8;      ///< Laplacian sweeps of the displacement between rounds
+constexpr double k_smooth_move = 20e-3; ///< move from which on a vertex is smoothed fully [m]
+constexpr int k_groove_rounds = 6;      ///< rounds for one point between several parts
+constexpr double k_facing = -0.9;       ///< cosine of two parts' normals below which they make a slot, not a groove
+constexpr double k_content = 1e-9;      ///< missing distance that is not worth a push [m]
 constexpr int k_sag_rounds = 3;         ///< rounds of lifting edges
 constexpr double k_sag_share = 0.85;    ///< share of the gap that edges' middles must keep [1]
 constexpr std::size_t k_block = 16 * k_cluster;  ///< vertices per parallel block
@@ -44,7 +48,7 @@ struct FeasibleCollider::Impl {
     std::vector<TriangleTree> trees;
   };
   struct Contact {
-    Vec3 normal;
+    Vec3 normal = Vec3::Zero();
     double distance = std::numeric_limits<double>::infinity();  ///< to the nearest opponent [m]
   };
   /// One part's work in one evaluation.
@@ -64,6 +68,9 @@ struct FeasibleCollider::Impl {
   void look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin, std::size_t end,
                    std::vector<Side>& side) const;
   void resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch, std::vector<Side>& side) const;
+  template <class Keep, class Reach>
+  bool push(const Carving& carving, const Scratch& scratch, Vec3& point, std::span<int> hints, Keep&& keep, Reach&& reach,
+            Contact* contact) const;
   bool push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point, Contact& contact,
                 std::span<int> hints) const;
   bool lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle, std::span<int> hints) const;
@@ -192,33 +199,62 @@ void FeasibleCollider::Impl::find_active(Carving& carving, const Scratch& scratc
     if (carving.is_active[i] != 0) carving.active.push_back(static_cast<int>(i));
 }
 
-/// Moves the vertex out of every opponent; true when it moved.
-bool FeasibleCollider::Impl::push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point,
-                                      Contact& contact, std::span<int> hints) const {
-  const Yielding& part = carving.part;
+/// Moves the point until it keeps its distance from every opponent, or for some rounds; true when it moved. keep(part) is the
+/// distance, reach(part, squared distance from its box) how far to look. Between two opponents it takes the shortest way to
+/// where both are content, as if they were planes: pushing by turns creeps in a groove.
+template <class Keep, class Reach>
+bool FeasibleCollider::Impl::push(const Carving& carving, const Scratch& scratch, Vec3& point, std::span<int> hints, Keep&& keep,
+                                  Reach&& reach, Contact* contact) const {
   bool moved = false;
-  contact.distance = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < carving.opponents.size(); ++k) {
-    const Opponent& opponent = carving.opponents[k];
-    double reach = 0;
-    for (const int other : opponent.parts) {
-      const double d2 = scratch.trees[at(other)].box().squared_distance(point);
-      if (d2 > near * near || plan.keep(part, local, other) == k_free) continue;
-      reach = std::max(reach, d2 == 0 && (carving.inside[at(local)] != 0 || carving.moved[at(local)] != 0)
-                                  ? std::max(near, surface->depth_limit(other))
-                                  : near);
+  for (int round = 0; round < k_groove_rounds; ++round) {
+    std::array<Contact, 2> worst{};  // distance: how much is missing
+    worst[0].distance = worst[1].distance = 0;
+    int looked_at = 0;
+    for (std::size_t k = 0; k < carving.opponents.size(); ++k) {
+      const Opponent& opponent = carving.opponents[k];
+      double how_far = 0;
+      for (const int other : opponent.parts)
+        how_far = std::max(how_far, reach(other, scratch.trees[at(other)].box().squared_distance(point)));
+      if (how_far == 0) continue;
+      ++looked_at;
+      const auto answer =
+          surface->distance(point, opponent.parts, carving.part.allowed, how_far, {scratch.x, scratch.trees}, hints[k]);
+      if (!answer) continue;
+      const double wanted = keep(answer->part);
+      if (contact != nullptr && round == 0 && wanted == settings.gap && answer->distance < contact->distance)
+        *contact = {answer->normal, std::max(answer->distance, wanted)};
+      const double missing = wanted - answer->distance;
+      if (missing <= worst[1].distance) continue;
+      worst[1] = {answer->normal, missing};
+      if (worst[1].distance > worst[0].distance) std::swap(worst[0], worst[1]);
     }
-    if (reach == 0) continue;
-    const auto answer =
-        surface->distance(point, opponent.parts, part.allowed, reach, {scratch.x, scratch.trees}, hints[k]);
-    if (!answer) continue;
-    const double keep = plan.keep(part, local, answer->part);
-    if (keep == settings.gap && answer->distance < contact.distance) contact = {answer->normal, std::max(answer->distance, keep)};
-    if (answer->distance >= keep) continue;
-    point += (keep - answer->distance) * answer->normal;
+    if (worst[0].distance <= k_content) return moved;
     moved = true;
+    const double cosine = worst[0].normal.dot(worst[1].normal), u = worst[0].distance, v = worst[1].distance;
+    if (v <= cosine * u) {  // one push does for both
+      point += u * worst[0].normal;
+    } else if (cosine < k_facing) {  // a slot: its middle
+      point += 0.5 * (u - v) * worst[0].normal;
+    } else {
+      const double sine2 = 1 - cosine * cosine;
+      point += ((u - cosine * v) * worst[0].normal + (v - cosine * u) * worst[1].normal) / sine2;
+    }
+    if (looked_at < 2) return moved;
   }
   return moved;
+}
+
+bool FeasibleCollider::Impl::push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point,
+                                      Contact& contact, std::span<int> hints) const {
+  const bool deep = carving.inside[at(local)] != 0 || carving.moved[at(local)] != 0;
+  contact.distance = std::numeric_limits<double>::infinity();
+  return push(
+      carving, scratch, point, hints, [&](int other) { return plan.keep(carving.part, local, other); },
+      [&](int other, double d2) {
+        if (d2 > near * near || plan.keep(carving.part, local, other) == k_free) return 0.0;
+        return d2 == 0 && deep ? std::max(near, surface->depth_limit(other)) : near;
+      },
+      &contact);
 }
 
 void FeasibleCollider::Impl::push_out_all(Carving& carving, Scratch& scratch) const {
@@ -235,6 +271,12 @@ void FeasibleCollider::Impl::push_out_all(Carving& carving, Scratch& scratch) co
 void FeasibleCollider::Impl::smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch& scratch) const {
   const Yielding& part = carving.part;
   std::vector<Vec3> next(carving.active.size());
+  // Vertices that have hardly moved are hardly smoothed, so that a vertex that starts to move does not jump.
+  std::vector<double> share(next.size());
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const int v = carving.active[i];
+    share[i] = 0.5 * std::min(1.0, (scratch.x[at(part.vertices[at(v)])] - drawn[at(v)]).norm() / k_smooth_move);
+  }
   for (int sweep = 0; sweep < k_smooth_sweeps; ++sweep) {
     const auto displacement = [&](int v) { return (scratch.x[at(part.vertices[at(v)])] - drawn[at(v)]).eval(); };
     for (std::size_t i = 0; i < next.size(); ++i) {
@@ -244,7 +286,7 @@ void FeasibleCollider::Impl::smooth(const Carving& carving, std::span<const Vec3
       for (const int w : row) mean += displacement(w);
       next[i] = row.empty() || carving.moved[at(v)] == 0
                     ? displacement(v)
-                    : (0.5 * displacement(v) + (0.5 / static_cast<double>(row.size())) * mean).eval();
+                    : ((1 - share[i]) * displacement(v) + (share[i] / static_cast<double>(row.size())) * mean).eval();
     }
     for (std::size_t i = 0; i < next.size(); ++i)
       scratch.x[at(part.vertices[at(carving.active[i])])] = drawn[at(carving.active[i])] + next[i];
@@ -254,23 +296,12 @@ void FeasibleCollider::Impl::smooth(const Carving& carving, std::span<const Vec3
 /// The middle of an edge, moved to where it keeps its share of the gap; only where both ends have to keep the whole gap.
 bool FeasibleCollider::Impl::lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle,
                                          std::span<int> hints) const {
-  bool moved = false;
-  for (std::size_t k = 0; k < carving.opponents.size(); ++k) {
-    const Opponent& opponent = carving.opponents[k];
-    bool close = false;
-    for (const int other : opponent.parts)
-      close = close || scratch.trees[at(other)].box().squared_distance(middle) <= settings.gap * settings.gap;
-    if (!close) continue;
-    const auto answer =
-        surface->distance(middle, opponent.parts, carving.part.allowed, near, {scratch.x, scratch.trees}, hints[k]);
-    if (!answer || answer->distance >= k_sag_share * settings.gap) continue;
-    if (plan.keep(carving.part, edge[0], answer->part) < settings.gap ||
-        plan.keep(carving.part, edge[1], answer->part) < settings.gap)
-      continue;
-    middle += (k_sag_share * settings.gap - answer->distance) * answer->normal;
-    moved = true;
-  }
-  return moved;
+  const auto held = [&](int other) {
+    return plan.keep(carving.part, edge[0], other) == settings.gap && plan.keep(carving.part, edge[1], other) == settings.gap;
+  };
+  return push(
+      carving, scratch, middle, hints, [&](int other) { return held(other) ? k_sag_share * settings.gap : k_free; },
+      [&](int, double d2) { return d2 <= settings.gap * settings.gap ? near : 0.0; }, nullptr);
 }
 
 /// Edges whose ends keep the gap may still cut a larger part's curve: their middles are lifted, and both ends with them.
