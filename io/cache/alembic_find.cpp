@@ -60,13 +60,18 @@ class Reader {
     if (!find_first(archive_.top, found)) return fault("holds no polygon mesh");
     const Property& geom = *property_of(*found.mesh, ".geom");
     view_.info.system = found.mesh->name;
-    view_.transforms = std::move(found.transforms);
+    auto transforms = TransformChain::read(file_, archive_, found.transforms);
+    if (!transforms) return transforms.error();
+    view_.transforms = std::move(*transforms);
     Status status = read_animation(geom);
     if (status) status = read_topology(geom);
     if (status) status = read_uvs(geom);
     if (status) status = read_provenance(geom);
     if (!status) return status.error();
     read_times();
+    const Eigen::Affine3d to_world = view_.transforms.at(sample_time(view_.times, 0));
+    if (!view_.transforms.identity())
+      for (Vec3& p : view_.info.mesh.positions) p = to_world * p;
     return std::move(view_);
   }
 
@@ -98,7 +103,8 @@ class Reader {
       view_.info.mesh.positions.push_back(point);
     }
     const Property* v = geom.find(".velocities");
-    if (!is_array(v, Pod::k_f32, 3) || v->sample_count != p->sample_count) return {};
+    // Under animated transforms the velocities of the file leave out how the transforms move.
+    if (!is_array(v, Pod::k_f32, 3) || v->sample_count != p->sample_count || !view_.transforms.constant()) return {};
     for (const Sample& s : v->samples)
       if (s.size != sample.size) return fault("is damaged: velocities do not match positions");
     view_.velocities = *v;
@@ -184,7 +190,7 @@ class Reader {
   }
 
   void read_times() {
-    const TimeSampling& t = archive_.time_samplings[view_.positions.time_sampling];
+    const TimeSampling& t = view_.times = archive_.time_samplings[view_.positions.time_sampling];
     double step = t.time_per_cycle / static_cast<double>(t.times.size());
     if (t.times.size() > 1) step = t.times[1] - t.times[0];  // unevenly spaced times have no frame rate; this is the best guess
     view_.info.has_fps = t.times.size() == 1 && view_.positions.time_sampling != 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/cache/alembic_archive.h"
+#include "io/cache/alembic_transform.h"
 #include "io/cache/cache.h"
 
 namespace ft::alembic {
@@ -47,10 +48,11 @@ bool is_own(const Archive& archive);
 
 /// What a reader needs, found in an archive of any origin: the first PolyMesh of constant topology.
 struct MeshView {
-  CacheInfo info;  ///< mesh.positions: the first frame, or the rest positions of a cache without frames
+  CacheInfo info;  ///< mesh.positions: the first frame, or the rest positions of a cache without frames, in the world
   Property positions;
   Property velocities;                   ///< no samples where there are none
-  std::vector<Property> transforms;      ///< .xform compounds of the objects around the mesh, outermost first
+  TransformChain transforms;             ///< of the objects around the mesh
+  TimeSampling times;                    ///< of positions
 };
 Result<MeshView> find_mesh(const InputFile& file, const Archive& archive);
 

@@ -14,11 +14,21 @@ class AlembicReader final : public CacheReader {
 
   const CacheInfo& info() const override { return view_.info; }
 
-  Status read_frame(int index, std::vector<Vec3f>& positions) override { return read(view_.positions, index, positions); }
+  Status read_frame(int index, std::vector<Vec3f>& positions) override {
+    const Status status = read(view_.positions, index, positions);
+    if (!status || view_.transforms.identity()) return status;
+    const Eigen::Affine3d to_world = to_world_at(index);
+    for (Vec3f& p : positions) p = (to_world * p.cast<double>()).cast<float>();
+    return finite(index, positions);
+  }
 
   Status read_velocities(int index, std::vector<Vec3f>& velocities) override {
     if (!view_.info.has_velocity) return input_error("holds no velocities", file_.path().string());
-    return read(view_.velocities, index, velocities);
+    const Status status = read(view_.velocities, index, velocities);
+    if (!status || view_.transforms.identity()) return status;
+    const Mat3 to_world = to_world_at(index).linear();
+    for (Vec3f& v : velocities) v = (to_world * v.cast<double>()).cast<float>();
+    return finite(index, velocities);
   }
 
  private:
@@ -27,9 +37,19 @@ class AlembicReader final : public CacheReader {
       return input_error("has no frame with index " + std::to_string(index), file_.path().string());
     const auto raw = read_values(file_, property.samples[property.slot_of(static_cast<std::uint32_t>(index))]);
     if (!raw) return raw.error();
-    if (!points_from_bytes(raw.value(), points))
-      return input_error("is damaged: frame " + std::to_string(view_.info.first_frame + index) + " holds numbers that are not finite",
-                         file_.path().string());
+    points_from_bytes(raw.value(), points);
+    return finite(index, points);
+  }
+
+  Eigen::Affine3d to_world_at(int index) const {
+    return view_.transforms.at(sample_time(view_.times, static_cast<std::uint32_t>(index)));
+  }
+
+  Status finite(int index, const std::vector<Vec3f>& points) const {
+    for (const Vec3f& p : points)
+      if (!p.allFinite())
+        return input_error("is damaged: frame " + std::to_string(view_.info.first_frame + index) + " holds numbers that are not finite",
+                           file_.path().string());
     return {};
   }
 

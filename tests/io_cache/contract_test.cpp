@@ -18,7 +18,7 @@ class CacheFormats : public testing::TestWithParam<CacheFormat> {
     return data ? std::move(*data) : Bytes{};
   }
   void put(const Bytes& bytes, const std::filesystem::path& p) const { ASSERT_TRUE(write_file_durably(p, bytes)); }
-  ScratchFolder scratch_;
+  ScratchFolder scratch_{ScratchFolder::k_in_memory};
 };
 
 void expect_same_points(const std::vector<Vec3>& wanted, const std::vector<Vec3f>& found) {

@@ -13,8 +13,10 @@ std::filesystem::path assets_root() {
 
 std::filesystem::path assimp_models_root() { return "/usr/share/assimp/models"; }
 
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "followthrough_test_XXXXXX").string();
+ScratchFolder::ScratchFolder(Place place) {
+  const bool in_memory = place == k_in_memory && ::access("/dev/shm", W_OK) == 0;
+  const auto base = in_memory ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path();
+  std::string pattern = (base / "followthrough_test_XXXXXX").string();
   path_ = ::mkdtemp(pattern.data());
 }
 

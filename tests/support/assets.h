@@ -15,7 +15,8 @@ std::filesystem::path assimp_models_root();
 /// A fresh folder below the system's temporary folder, removed at the end.
 class ScratchFolder {
  public:
-  ScratchFolder();
+  enum Place { k_temporary, k_in_memory };  ///< in memory where the system has such a place: for tests that sync a lot
+  explicit ScratchFolder(Place place = k_temporary);
   ~ScratchFolder();
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
