@@ -47,7 +47,18 @@ Result<std::vector<Query>> read_queries(const std::filesystem::path& path) {
   return out;
 }
 
-TEST(Ccd, Misses_no_hit_of_the_public_sample) {
+/// Smallest distance on the way, sampled.
+double lowest_distance(PairKind kind, const Query& q) {
+  double lowest = pair_geometry(kind, q.x).distance;
+  for (int k = 1; k <= 2000; ++k) {
+    std::array<Vec3, 4> now;
+    for (std::size_t i = 0; i < 4; ++i) now[i] = q.x[i] + (k / 2000.0) * q.dx[i];
+    lowest = std::min(lowest, pair_geometry(kind, now).distance);
+  }
+  return lowest;
+}
+
+TEST(Ccd, Misses_no_hit_of_the_public_sample_and_stops_only_who_comes_near) {
   const auto root = test::assets_root() / "reference/ccd_sample_queries";
   FT_REQUIRE_FILE(root);
   int total = 0;
@@ -59,19 +70,24 @@ TEST(Ccd, Misses_no_hit_of_the_public_sample) {
       ASSERT_TRUE(queries.ok());
       ASSERT_GT(queries->size(), 50u);
       for (const double floor : {0.0, 1e-5}) {
-        int hits = 0, missed = 0, needless = 0, touching = 0;
+        int hits = 0, missed = 0, needless = 0, shy = 0;
         for (const Query& q : *queries) {
           const bool found = ccd_time(kind, q.x, q.dx, {.gap_kept = 0.1, .floor = floor}) < 1;
           hits += q.hit;
           missed += q.hit && !found;
           needless += !q.hit && found;
-          touching += !q.hit && found && pair_geometry(kind, q.x).distance < 1e-12;
+          // Who stops needlessly comes as near as the distance kept (one sliding at 3e-7 m is cut short by the
+          // iterations).
+          const CcdSettings patient{.gap_kept = 0.1, .floor = floor, .max_iterations = 100000};
+          const double keep = std::max(0.1 * pair_geometry(kind, q.x).distance, floor);
+          if (!q.hit && ccd_time(kind, q.x, q.dx, patient) < 1) shy += lowest_distance(kind, q) > 1.2 * keep;
           ++total;
         }
         EXPECT_EQ(missed, 0) << path << " floor " << floor;
-        std::printf("  %-28s %-11s floor %-6g %5zu queries, %4d hits, %d missed, %d needless (%d touch at the start)\n",
+        EXPECT_EQ(shy, 0) << path << ": stopped although the pair stays outside the distance kept";
+        std::printf("  %-28s %-11s floor %-6g %5zu queries, %4d hits, %d missed, %d needless\n",
                     entry.path().filename().c_str(), path.parent_path().filename().c_str(), floor, queries->size(),
-                    hits, missed, needless, touching);
+                    hits, missed, needless);
       }
     }
   }
