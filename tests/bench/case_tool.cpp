@@ -123,7 +123,8 @@ Status result_line(const std::vector<std::string>& a) {
   const auto report = nlohmann::json::parse(*text, nullptr, false);
   if (report.is_discarded() || !report.contains("frames")) return input_error("is not a report of a bake", a[2]);
   std::vector<double> ours, theirs;
-  for (const auto& frame : report["frames"]) ours.push_back(frame.value("milliseconds", 0.0) / 1e3);
+  for (const auto& frame : report["frames"])
+    if (const double milliseconds = frame.value("milliseconds", 0.0); milliseconds > 0) ours.push_back(milliseconds / 1e3);  // the first is given
   const double frame_count = static_cast<double>(ours.size());
   const double our_cpu = std::atof(a[3].c_str()) / frame_count, rss = report.value("peak_memory_bytes", 0.0) / 1e6;
   auto timing = read_text(a[4]);
