@@ -19,6 +19,12 @@ struct ElementSchedule {
   std::vector<int> slot;                  ///< element of each slot, k_lanes slots a group; -1 pads the last group
   std::vector<std::vector<int>> colours;  ///< chunks of each colour
   std::size_t group_count() const { return slot.size() / k_lanes; }
+  /// Elements of a group; padding comes last.
+  std::size_t used(std::size_t group) const {
+    std::size_t n = 0;
+    while (n < k_lanes && slot[group * k_lanes + n] >= 0) ++n;
+    return n;
+  }
 };
 
 /// Groups of one chunk.

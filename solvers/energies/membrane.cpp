@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baker/core/check.h"
+#include "solvers/energies/block_scatter.h"
 
 namespace ft {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Lane = double[k_lanes];
-using LaneF = float[k_lanes];
 
 /// Two edges and the deformation gradient F = (f1 f2) of a group.
 struct Deformation {
@@ -56,56 +56,83 @@ void stress(const Membrane::Group& g, const Membrane::Reference& ref, double inv
   }
 }
 
-/// Blocks (1,1), (1,2), (2,2) of the element matrix; the others follow from its rows summing to zero.
+Lanes as_lanes(const Lane& values) {
+  Lanes out;
+  for (int l = 0; l < k_lanes; ++l) out[l] = static_cast<float>(values[l]);
+  return out;
+}
+
+/// Blocks (1,1), (1,2), (2,2) of the element matrix, column by column; the others follow from its rows summing to zero.
 struct ElementBlocks {
-  alignas(32) LaneF b11[9], b12[9], b22[9];  ///< column by column
+  Lanes b11[9], b12[9], b22[9];
 };
 
-/// Block (a, b) = F M_ab F^T + s_ab I, where M_ab holds the shape gradients g and the stiffness, s_ab = g_a . S+ g_b.
+/// What the blocks are made of: F = (u w), area times stiffness c with damping, positive part p of area times stress.
+struct ElementParts {
+  Lanes u[3], w[3], c11, c22, c12, c33, p11, p22, p12;
+};
+
+/// Block (a, b) = F M_ab F^T + s_ab I, where M_ab holds the shape gradients (ax, ay), (bx, by) and the stiffness,
+/// s_ab = (ax, ay) . S+ (bx, by).
+void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by, Lanes* out) {
+  const Lanes xx = ax * bx, yy = ay * by, xy = ax * by, yx = ay * bx;
+  const Lanes m11 = e.c11 * xx + e.c33 * yy, m22 = e.c22 * yy + e.c33 * xx;
+  const Lanes m12 = e.c12 * xy + e.c33 * yx, m21 = e.c12 * yx + e.c33 * xy;
+  const Lanes sab = e.p11 * xx + e.p22 * yy + e.p12 * (xy + yx);
+  for (int column = 0; column < 3; ++column) {
+    const Lanes h = m11 * e.u[column] + m12 * e.w[column], k = m21 * e.u[column] + m22 * e.w[column];
+    for (int row = 0; row < 3; ++row) out[3 * column + row] = e.u[row] * h + e.w[row] * k;
+    out[4 * column] += sab;
+  }
+}
+
 void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* s, double inverse_rate_time,
                     ElementBlocks& out) {
-  alignas(32) LaneF f1[3], f2[3], r[4], c[4], t[3];
-  for (int l = 0; l < k_lanes; ++l) {
-    const double more = 1 + g.damping_time[l] * inverse_rate_time;
-    for (int k = 0; k < 3; ++k) {
-      f1[k][l] = static_cast<float>(d.f1[k][l]);
-      f2[k][l] = static_cast<float>(d.f2[k][l]);
-      t[k][l] = static_cast<float>(s[k][l]);
-    }
-    for (int k = 0; k < 4; ++k) {
-      r[k][l] = static_cast<float>(g.rest_inverse[k][l]);
-      c[k][l] = static_cast<float>(more * g.stiffness[k][l]);
-    }
-  }
   // Positive part of the 2x2 stress: alpha S + beta I, from the eigenvalues mean +- radius.
-  alignas(32) LaneF p11, p22, p12;
+  alignas(32) Lane p[3], more;
   for (int l = 0; l < k_lanes; ++l) {
-    const float mean = 0.5f * (t[0][l] + t[1][l]), half = 0.5f * (t[0][l] - t[1][l]);
-    const float radius = std::sqrt(half * half + t[2][l] * t[2][l]);
-    const float l1 = mean + radius, l2 = mean - radius;
-    const float q1 = l1 > 0 ? l1 : 0, q2 = l2 > 0 ? l2 : 0;
-    const float twice = 2 * radius > 1e-30f ? 2 * radius : 1e-30f;
-    const float alpha = (q1 - q2) / twice, beta = q1 - alpha * l1;
-    p11[l] = alpha * t[0][l] + beta, p22[l] = alpha * t[1][l] + beta, p12[l] = alpha * t[2][l];
+    const double mean = 0.5 * (s[0][l] + s[1][l]), half = 0.5 * (s[0][l] - s[1][l]);
+    const double radius = std::sqrt(half * half + s[2][l] * s[2][l]);
+    const double l1 = mean + radius, l2 = mean - radius;
+    const double q1 = l1 > 0 ? l1 : 0, q2 = l2 > 0 ? l2 : 0;
+    const double twice = 2 * radius > 1e-100 ? 2 * radius : 1e-100;
+    const double alpha = (q1 - q2) / twice, beta = q1 - alpha * l1;
+    p[0][l] = alpha * s[0][l] + beta, p[1][l] = alpha * s[1][l] + beta, p[2][l] = alpha * s[2][l];
+    more[l] = 1 + g.damping_time[l] * inverse_rate_time;
   }
-  const auto block = [&](const LaneF& ax, const LaneF& ay, const LaneF& bx, const LaneF& by, LaneF* o) {
-    for (int l = 0; l < k_lanes; ++l) {
-      const float xx = ax[l] * bx[l], yy = ay[l] * by[l], xy = ax[l] * by[l], yx = ay[l] * bx[l];
-      const float m11 = c[0][l] * xx + c[3][l] * yy, m22 = c[1][l] * yy + c[3][l] * xx;
-      const float m12 = c[2][l] * xy + c[3][l] * yx, m21 = c[2][l] * yx + c[3][l] * xy;
-      const float sab = p11[l] * xx + p22[l] * yy + p12[l] * (xy + yx);
-      const float u0 = f1[0][l], u1 = f1[1][l], u2 = f1[2][l], w0 = f2[0][l], w1 = f2[1][l], w2 = f2[2][l];
-      // F M_ab F^T = u (m11 u + m12 w)^T + w (m21 u + m22 w)^T
-      const float h0 = m11 * u0 + m12 * w0, h1 = m11 * u1 + m12 * w1, h2 = m11 * u2 + m12 * w2;
-      const float k0 = m21 * u0 + m22 * w0, k1 = m21 * u1 + m22 * w1, k2 = m21 * u2 + m22 * w2;
-      o[0][l] = u0 * h0 + w0 * k0 + sab, o[1][l] = u1 * h0 + w1 * k0, o[2][l] = u2 * h0 + w2 * k0;
-      o[3][l] = u0 * h1 + w0 * k1, o[4][l] = u1 * h1 + w1 * k1 + sab, o[5][l] = u2 * h1 + w2 * k1;
-      o[6][l] = u0 * h2 + w0 * k2, o[7][l] = u1 * h2 + w1 * k2, o[8][l] = u2 * h2 + w2 * k2 + sab;
+  ElementParts e;
+  for (int k = 0; k < 3; ++k) e.u[k] = as_lanes(d.f1[k]), e.w[k] = as_lanes(d.f2[k]);
+  const Lanes factor = as_lanes(more);
+  e.c11 = factor * as_lanes(g.stiffness[0]), e.c22 = factor * as_lanes(g.stiffness[1]);
+  e.c12 = factor * as_lanes(g.stiffness[2]), e.c33 = factor * as_lanes(g.stiffness[3]);
+  e.p11 = as_lanes(p[0]), e.p22 = as_lanes(p[1]), e.p12 = as_lanes(p[2]);
+  const Lanes ax = as_lanes(g.rest_inverse[0]), ay = as_lanes(g.rest_inverse[1]);
+  const Lanes bx = as_lanes(g.rest_inverse[2]), by = as_lanes(g.rest_inverse[3]);
+  element_block(e, ax, ay, ax, ay, out.b11);
+  element_block(e, ax, ay, bx, by, out.b12);
+  element_block(e, bx, by, bx, by, out.b22);
+}
+
+/// Adds the nine blocks of `used` elements.
+void scatter(const ElementBlocks& e, const BlockPositions<3>& positions, std::size_t first, std::size_t used, Mat3f* blocks) {
+  const auto at_block = [&](std::size_t k) { return [&positions, first, k](std::size_t l) { return positions[first + l][k]; }; };
+  Lanes b00[9], b10[9], b20[9];
+  for (std::size_t column = 0; column < 3; ++column)
+    for (std::size_t row = 0; row < 3; ++row) {
+      const std::size_t k = 3 * column + row;
+      b10[k] = -(e.b11[k] + e.b12[k]);
+      b20[k] = -(e.b12[3 * row + column] + e.b22[k]);
     }
-  };
-  block(r[0], r[1], r[0], r[1], out.b11);
-  block(r[0], r[1], r[2], r[3], out.b12);
-  block(r[2], r[3], r[2], r[3], out.b22);
+  for (std::size_t k = 0; k < 9; ++k) b00[k] = -(b10[k] + b20[k]);
+  add_blocks(b00, used, blocks, at_block(0));
+  add_transposed_blocks(b10, used, blocks, at_block(1));
+  add_transposed_blocks(b20, used, blocks, at_block(2));
+  add_blocks(b10, used, blocks, at_block(3));
+  add_blocks(e.b11, used, blocks, at_block(4));
+  add_blocks(e.b12, used, blocks, at_block(5));
+  add_blocks(b20, used, blocks, at_block(6));
+  add_transposed_blocks(e.b12, used, blocks, at_block(7));
+  add_blocks(e.b22, used, blocks, at_block(8));
 }
 
 }  // namespace
@@ -228,19 +255,7 @@ void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const 
       strain(d, e);
       stress(g, reference_[i], inverse_rate_time_, e, s);
       element_blocks(g, d, s, inverse_rate_time_, blocks);
-      for (std::size_t l = 0; l < k_lanes && schedule_.slot[i * k_lanes + l] >= 0; ++l) {
-        const auto& p = positions_[i * k_lanes + l];
-        Mat3f b11, b12, b22;
-        for (int k = 0; k < 9; ++k)
-          b11.data()[k] = blocks.b11[k][l], b12.data()[k] = blocks.b12[k][l], b22.data()[k] = blocks.b22[k][l];
-        const Mat3f b21 = b12.transpose();
-        const Mat3f b10 = -(b11 + b12), b20 = -(b21 + b22);
-        const Mat3f b00 = -(b10 + b20);
-        Mat3f* h = hessian.blocks.data();
-        h[p[0]] += b00, h[p[1]] += b10.transpose(), h[p[2]] += b20.transpose();
-        h[p[3]] += b10, h[p[4]] += b11, h[p[5]] += b12;
-        h[p[6]] += b20, h[p[7]] += b21, h[p[8]] += b22;
-      }
+      scatter(blocks, positions_, i * k_lanes, schedule_.used(i), hessian.blocks.data());
     }
   });
 }

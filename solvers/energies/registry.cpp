@@ -16,9 +16,9 @@ std::unique_ptr<Energy> make_air_drag(const ClothTopology& topology, const AirSe
 }
 
 constexpr ClothEnergyKind k_kinds[] = {
-    {"membrane", make_plain<Membrane>, true},
-    {"bending", make_plain<Bending>, true},
-    {"air_drag", make_air_drag, false},
+    {"membrane", make_plain<Membrane>, true, true},
+    {"bending", make_plain<Bending>, true, false},
+    {"air_drag", make_air_drag, false, true},
 };
 
 }  // namespace

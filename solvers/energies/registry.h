@@ -16,6 +16,7 @@ struct ClothEnergyKind {
   std::string_view name;
   std::unique_ptr<Energy> (*make)(const ClothTopology& topology, const AirSettings& air);
   bool elastic;  ///< knows no place and no direction in space: no force at rest, none from rigid motion
+  bool exact_hessian;  ///< equals the second derivative where that is positive definite; false: more than half of it
 };
 
 std::span<const ClothEnergyKind> cloth_energy_kinds();

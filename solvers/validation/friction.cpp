@@ -20,6 +20,7 @@ std::vector<double> slide(double angle_deg, int frames) {
   });
   const ClothSetup standard;
   ClothSetup setup = accurate_setup(mesh, Fabric(), standard.fps, standard.min_substeps);
+  setup.max_substeps = standard.max_substeps;
   setup.newton_iterations = standard.newton_iterations;
   setup.linear_tolerance = standard.linear_tolerance;
   setup.garments[0].friction = k_friction;
@@ -38,10 +39,10 @@ std::vector<double> slide(double angle_deg, int frames) {
   return out;
 }
 
-/// From two instants of a slide that starts at rest, 12 and 18 frames after.
+/// Of frames 10 to 18, when the patch has long been sliding [m/s2].
 double acceleration(const std::vector<double>& way) {
-  const double t1 = 12 / 24.0, t2 = 18 / 24.0;
-  return 2 * (way[17] - way[11]) / (t2 * t2 - t1 * t1);
+  const double t = 4 / ClothSetup().fps;
+  return (way[17] - 2 * way[13] + way[9]) / (t * t);
 }
 
 }  // namespace
@@ -50,9 +51,12 @@ std::vector<ValidationCase> validate_incline() {
   const double limit = std::atan(k_friction) / k_degree;
   const std::string source = "Coulomb: slides where tan(angle) > mu, a = g (sin - mu cos)";
   std::vector<ValidationCase> out;
-  // The law is smoothed below 20 um/s: 0.2 mm in ten seconds is the most that rest may creep.
-  out.push_back(validation_case("incline", "creep in 10 s, 0.5 degrees below the angle of friction", 1e3 * slide(limit - 0.5, 240).back(),
-                                0, 0.2, "mm", source));
+  // The law is smoothed below 20 um/s: 0.2 mm in ten seconds is the most that rest may creep. The first second is left out, in which
+  // the patch takes hold.
+  const auto rest = slide(limit - 0.5, 264);
+  out.push_back(validation_case("incline", "creep in 10 s, 0.5 degrees below the angle of friction", 1e3 * (rest[263] - rest[23]), 0, 0.2,
+                                "mm", source));
+  out.push_back(validation_case("incline", "way until it holds", 1e3 * rest[23], 0, 1, "mm", source));
   const double steep = (limit + 0.5) * k_degree;
   const double a = acceleration(slide(limit + 0.5, 18));
   const double angle = std::atan(std::tan(steep) - a / (k_gravity * std::cos(steep))) / k_degree;

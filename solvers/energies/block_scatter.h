@@ -1,0 +1,61 @@
+// Adds k_lanes 3x3 blocks, computed side by side in vector registers, to their places in the matrix: one transposition in registers,
+// then nine consecutive floats per block. For the energies; GCC and Clang vector extensions, so it compiles for any machine.
+#pragma once
+
+#include <cstring>
+
+#include "baker/core/types.h"
+#include "solvers/energies/element_schedule.h"
+
+namespace ft {
+
+using Lanes = float __attribute__((vector_size(4 * k_lanes)));  ///< one number of k_lanes elements
+
+namespace detail {
+
+/// out[l][k] = in[k][l].
+inline void transpose(const Lanes* in, Lanes* out) {
+  Lanes t[8], s[8];
+  for (int i = 0; i < 8; i += 2) {
+    t[i] = __builtin_shufflevector(in[i], in[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    t[i + 1] = __builtin_shufflevector(in[i], in[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int k = 0; k < 2; ++k) {
+      s[i + 2 * k] = __builtin_shufflevector(t[i + k], t[i + 2 + k], 0, 1, 8, 9, 4, 5, 12, 13);
+      s[i + 2 * k + 1] = __builtin_shufflevector(t[i + k], t[i + 2 + k], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int i = 0; i < 4; ++i) {
+    out[i] = __builtin_shufflevector(s[i], s[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    out[i + 4] = __builtin_shufflevector(s[i], s[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+}  // namespace detail
+
+/// block: nine numbers, column by column, of k_lanes blocks. position(l): where block l goes, negative for nowhere.
+template <class Position>
+inline void add_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, Position&& position) {
+  static_assert(k_lanes == 8 && sizeof(Mat3f) == 9 * sizeof(float));
+  Lanes by_lane[8];
+  detail::transpose(block, by_lane);
+  for (std::size_t l = 0; l < used; ++l) {
+    const int p = position(l);
+    if (p < 0) continue;
+    float* target = blocks[p].data();
+    Lanes sum;
+    std::memcpy(&sum, target, sizeof sum);
+    sum += by_lane[l];
+    std::memcpy(target, &sum, sizeof sum);
+    target[8] += block[8][l];
+  }
+}
+
+/// The same blocks, transposed.
+template <class Position>
+inline void add_transposed_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, Position&& position) {
+  const Lanes turned[9] = {block[0], block[3], block[6], block[1], block[4], block[7], block[2], block[5], block[8]};
+  add_blocks(turned, used, blocks, position);
+}
+
+}  // namespace ft
