@@ -90,14 +90,6 @@ Channel collapse(const std::vector<int>& chain, const AssimpNodes& nodes, const 
   return out;
 }
 
-void set_range(Clip& clip) {
-  double first = std::numeric_limits<double>::infinity(), last = -first;
-  for (const Channel& c : clip.channels)
-    for (const Track* t : {&c.translation, &c.rotation, &c.scale, &c.weights})
-      if (!t->empty()) first = std::min(first, t->times.front()), last = std::max(last, t->times.back());
-  if (first <= last) clip.start = first, clip.end = last;
-}
-
 /// Morph weights: assimp names the channel "mesh*0" (FBX) or after the node (glTF, read by us instead).
 void read_morph_channel(const aiMeshMorphAnim& source, double seconds_per_tick, const Character& character, Clip& clip, int& dropped) {
   std::string name = source.mName.C_Str();
@@ -165,7 +157,7 @@ void read_clips(const aiScene& scene, const AssimpNodes& nodes, Character& out) 
     }
     for (unsigned m = 0; m < animation.mNumMorphMeshChannels; ++m)
       read_morph_channel(*animation.mMorphMeshChannels[m], 1 / rate, out, clip, dropped);
-    set_range(clip);
+    clip.find_range();
     out.clips.push_back(std::move(clip));
   }
   if (dropped > 0) out.notes.push_back(std::to_string(dropped) + " keys were not later than the one before; dropped");

@@ -159,6 +159,7 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // drawings of the bones where a file has no mesh
   // No joining of vertices (it ignores weights and morphs), no GlobalScale (float): welding and units are done here, in double.
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr) {
@@ -173,7 +174,7 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   if (out.format == "BVH") out.file_unit = 0, out.file_up.clear();
   const AssimpNodes nodes = read_nodes(*scene, out);
   if (nodes.raw.size() > k_max_character_nodes) return input_error("has more than 200,000 nodes");
-  if (out.format != "BVH") read_meshes(*scene, nodes, out);  // a BVH's mesh is a drawing of its bones, made by assimp
+  if (out.format != "BVH") read_meshes(*scene, nodes, out);
   read_clips(*scene, nodes, out);
   record_dependencies(file, files->opened(), out);
   if (out.format == "glTF") read_gltf_clips(file, out);

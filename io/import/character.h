@@ -38,6 +38,8 @@ struct Clip {
   double start = 0, end = 0;  ///< s, first and last key
   std::vector<Channel> channels;
   double duration() const { return end - start; }
+  /// Sets start and end from the channels' keys; 0 and 0 without keys.
+  void find_range();
 };
 
 struct CharacterNode {

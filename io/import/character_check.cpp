@@ -1,5 +1,6 @@
 // Looks at every number of an imported character once. It runs on what the child process wrote and on what the import cache
 // held, so it assumes nothing.
+#include <algorithm>
 #include <cmath>
 
 #include "io/import/character.h"
@@ -68,6 +69,15 @@ Status check_mesh(const CharacterMesh& mesh, int node_count) {
 }
 
 }  // namespace
+
+void Clip::find_range() {
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const Channel& c : channels)
+    for (const Track* t : {&c.translation, &c.rotation, &c.scale, &c.weights})
+      if (!t->empty()) first = std::min(first, t->times.front()), last = std::max(last, t->times.back());
+  start = first <= last ? first : 0;
+  end = first <= last ? last : 0;
+}
 
 Status check_character(const Character& character) {
   const int node_count = static_cast<int>(character.nodes.size());

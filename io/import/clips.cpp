@@ -124,6 +124,7 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
         channel.weights = {};
       moved.channels.push_back(std::move(channel));
     }
+    if (!moved.channels.empty()) moved.find_range();  // cameras and lights of the other file may be longer
     out.push_back(std::move(moved));
   }
   if (source.clips.empty()) return input_error("has no animation", source_file);

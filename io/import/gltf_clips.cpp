@@ -212,12 +212,15 @@ std::vector<int> match_nodes(const Json& json, const Character& character) {
 /// told from a rotation once it is in a matrix).
 void fill_rest(const Json& node, Channel& channel) {
   if (node.contains("matrix")) return;
+  double first = std::numeric_limits<double>::infinity();  // constant keys do not lengthen the clip
+  for (const Track* t : {&channel.translation, &channel.rotation, &channel.scale})
+    if (!t->empty()) first = std::min(first, t->times.front());
   const auto fill = [&](Track& track, const char* key, std::vector<double> otherwise) {
     if (!track.empty()) return;
     std::vector<double> value = numbers(member(node, key));
     if (value.size() != otherwise.size()) value = std::move(otherwise);
     track.width = static_cast<int>(value.size());
-    track.times = {0};
+    track.times = {first};
     track.values = std::move(value);
   };
   fill(channel.translation, "translation", {0, 0, 0});
@@ -255,7 +258,6 @@ Result<std::vector<Clip>> read_clips(GltfFile& file, const std::vector<int>& nod
     if (clip.name.empty()) clip.name = "animation_" + std::to_string(a);
     std::vector<Channel> of_node(character.nodes.size());
     const Json& channels = member(animations[a], "channels");
-    double first = std::numeric_limits<double>::infinity(), last = -first;
     for (std::size_t c = 0; channels.is_array() && c < channels.size(); ++c) {
       const Json& target = member(channels[c], "target");
       const std::int64_t node = integer(member(target, "node"), -1);
@@ -270,7 +272,6 @@ Result<std::vector<Clip>> read_clips(GltfFile& file, const std::vector<int>& nod
       if (!read) return read.error();
       *track = std::move(*read);
       channel.node = static_cast<int>(node);  // of the JSON, until the rest is filled in
-      if (!track->empty()) first = std::min(first, track->times.front()), last = std::max(last, track->times.back());
     }
     for (std::size_t n = 0; n < of_node.size(); ++n) {
       Channel& channel = of_node[n];
@@ -280,7 +281,7 @@ Result<std::vector<Clip>> read_clips(GltfFile& file, const std::vector<int>& nod
       channel.node = static_cast<int>(n);
       clip.channels.push_back(std::move(channel));
     }
-    if (first <= last) clip.start = first, clip.end = last;
+    clip.find_range();
     clips.push_back(std::move(clip));
   }
   return clips;
