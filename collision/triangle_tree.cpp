@@ -10,6 +10,7 @@ namespace ft {
 namespace {
 
 constexpr int k_leaf_size = 4;
+constexpr double k_sliver = 1e-12;  ///< squared sine of an angle below which a triangle is answered as its edges
 
 float round_down(double v) {
   const auto f = static_cast<float>(v);
@@ -56,13 +57,15 @@ ClosestOnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& 
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
   if (d6 >= 0 && d5 <= d6) return answer(c, 2);
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 - d3 > 0) return answer(a + ab * (d1 / (d1 - d3)), 3);
-  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 - d6 > 0) return answer(a + ac * (d2 / (d2 - d6)), 5);
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0)
-    return answer(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 4);
-  const double sum = va + vb + vc;
-  if (va > 0 && vb > 0 && vc > 0 && sum > 0) return answer(a + ab * (vb / sum) + ac * (vc / sum), 6);
-  // No area, or rounding left every region: the nearest of the three edges.
+  const double sum = va + vb + vc;  // twice the area, squared
+  if (sum > k_sliver * ab.squaredNorm() * ac.squaredNorm()) {
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return answer(a + ab * (d1 / (d1 - d3)), 3);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return answer(a + ac * (d2 / (d2 - d6)), 5);
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+      return answer(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 4);
+    if (va > 0 && vb > 0 && vc > 0) return answer(a + ab * (vb / sum) + ac * (vc / sum), 6);
+  }
+  // A sliver, whose regions rounding would mix up: the nearest of the three edges.
   ClosestOnTriangle best = closest_on_segment(p, a, b, 0, 1, 3);
   for (const ClosestOnTriangle& other : {closest_on_segment(p, b, c, 1, 2, 4), closest_on_segment(p, c, a, 2, 0, 5)})
     if (other.squared_distance < best.squared_distance) best = other;
