@@ -1,6 +1,7 @@
 // Judges a garment before it is simulated: for the artist, all faults in one message, with counts and the first places.
-// Caution: two vertices at one place start in contact with themselves and are never equal for a solver; so are seams that
-// were modelled as separate borders. They are refused rather than joined silently, because joining changes the vertex count.
+// Caution: two vertices at one place start in contact with themselves and are never equal for a solver; so are seams
+// that were modelled as separate borders. They are refused rather than joined silently, because joining changes the
+// vertex count.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,16 +11,19 @@
 namespace ft {
 namespace {
 
-/// Twice the area of a triangle over its longest edge squared; below it the rest shape cannot be inverted in double precision
-/// without losing more than ten digits.
+/// Twice the area of a triangle over its longest edge squared; below it the rest shape cannot be inverted in double
+/// precision without losing more than ten digits.
 constexpr double k_flat_triangle = 1e-10;
 /// Vertices nearer than this fraction of the bounding diagonal are at one place: the sixth decimal of a file in metres.
 constexpr double k_same_place = 1e-7;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// "3 faces (12, 15, 99)", "1 face (12)", "90 faces (1, 2, 3, ...)".
-std::string places(std::size_t count, std::string_view singular, std::string_view plural, const std::vector<std::string>& first) {
+std::string places(std::size_t count, std::string_view singular, std::string_view plural,
+                   const std::vector<std::string>& first) {
   std::string out = std::to_string(count) + " " + std::string(count == 1 ? singular : plural) + " (";
   for (std::size_t i = 0; i < first.size(); ++i) out += (i > 0 ? ", " : "") + first[i];
   return out + (count > first.size() ? ", ...)" : ")");
@@ -52,9 +56,8 @@ std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
     }
     begin += size;
   }
-  std::sort(out.begin(), out.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.face < b.face;
-  });
+  std::sort(out.begin(), out.end(),
+            [](const HalfEdge& a, const HalfEdge& b) { return a.edge != b.edge ? a.edge < b.edge : a.face < b.face; });
   return out;
 }
 
@@ -73,7 +76,8 @@ void judge_numbers(const Mesh& mesh, GarmentFindings& out) {
   Finding bad;
   for (int i = 0; i < mesh.vertex_count(); ++i)
     if (!mesh.positions[at(i)].allFinite()) bad.add(std::to_string(i + 1));
-  if (bad.count > 0) out.faults.push_back(places(bad.count, "vertex is", "vertices are", bad.first) + " not a finite point");
+  if (bad.count > 0)
+    out.faults.push_back(places(bad.count, "vertex is", "vertices are", bad.first) + " not a finite point");
 }
 
 void judge_faces(const Mesh& mesh, GarmentFindings& out) {
@@ -101,8 +105,11 @@ void judge_faces(const Mesh& mesh, GarmentFindings& out) {
       }
     }
   }
-  if (repeated.count > 0) out.faults.push_back(places(repeated.count, "face uses", "faces use", repeated.first) + " a vertex twice");
-  if (flat.count > 0) out.faults.push_back(places(flat.count, "face has", "faces have", flat.first) + " no area, or a corner in line with its neighbours");
+  if (repeated.count > 0)
+    out.faults.push_back(places(repeated.count, "face uses", "faces use", repeated.first) + " a vertex twice");
+  if (flat.count > 0)
+    out.faults.push_back(places(flat.count, "face has", "faces have", flat.first) +
+                         " no area, or a corner in line with its neighbours");
 }
 
 void judge_edges(const Mesh& mesh, GarmentFindings& out) {
@@ -111,14 +118,19 @@ void judge_edges(const Mesh& mesh, GarmentFindings& out) {
   for (std::size_t i = 0, end = 0; i < half_edges.size(); i = end) {
     end = i + 1;
     while (end < half_edges.size() && half_edges[end].edge == half_edges[i].edge) ++end;
-    const std::string name = std::to_string(half_edges[i].edge[0] + 1) + "-" + std::to_string(half_edges[i].edge[1] + 1);
-    if (end - i > 2) crowded.add(name);
-    else if (end - i == 2 && half_edges[i].forward == half_edges[i + 1].forward) mixed.add(name);
+    const std::string name =
+        std::to_string(half_edges[i].edge[0] + 1) + "-" + std::to_string(half_edges[i].edge[1] + 1);
+    if (end - i > 2)
+      crowded.add(name);
+    else if (end - i == 2 && half_edges[i].forward == half_edges[i + 1].forward)
+      mixed.add(name);
   }
   if (crowded.count > 0)
-    out.faults.push_back(places(crowded.count, "edge has", "edges have", crowded.first) + " more than two faces (non-manifold)");
+    out.faults.push_back(places(crowded.count, "edge has", "edges have", crowded.first) +
+                         " more than two faces (non-manifold)");
   if (mixed.count > 0)
-    out.notes.push_back(places(mixed.count, "edge lies", "edges lie", mixed.first) + " between faces of opposite winding; normals point both ways");
+    out.notes.push_back(places(mixed.count, "edge lies", "edges lie", mixed.first) +
+                        " between faces of opposite winding; normals point both ways");
 }
 
 void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
@@ -136,16 +148,16 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
     box.include(mesh.positions[at(i)]);
   }
   if (isolated.count > 0)
-    out.notes.push_back(places(isolated.count, "vertex belongs", "vertices belong", isolated.first) + " to no face; carried along rigidly");
+    out.notes.push_back(places(isolated.count, "vertex belongs", "vertices belong", isolated.first) +
+                        " to no face; carried along rigidly");
 
   // Sweep along the longest side of the box; of vertices at one place, each is counted once, against the first.
   const double near = k_same_place * box.size().norm();
   int axis = 0;
   box.size().maxCoeff(&axis);
   const auto& x = mesh.positions;
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return x[at(a)][axis] != x[at(b)][axis] ? x[at(a)][axis] < x[at(b)][axis] : a < b;
-  });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return x[at(a)][axis] != x[at(b)][axis] ? x[at(a)][axis] < x[at(b)][axis] : a < b; });
   std::vector<std::pair<int, int>> twins;
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = i + 1; j < order.size() && x[at(order[j])][axis] - x[at(order[i])][axis] <= near; ++j)
@@ -159,8 +171,9 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
     coincident.add(std::to_string(later + 1) + " on " + std::to_string(earlier + 1));
   }
   if (coincident.count > 0)
-    out.faults.push_back(places(coincident.count, "vertex lies", "vertices lie", coincident.first) +
-                         " exactly on another (merge them by distance in the modelling tool, or set weld for this cloth)");
+    out.faults.push_back(
+        places(coincident.count, "vertex lies", "vertices lie", coincident.first) +
+        " exactly on another (merge them by distance in the modelling tool, or set weld for this cloth)");
 }
 
 /// Connected pieces: a garment that falls apart into several is legal, but good to know of.

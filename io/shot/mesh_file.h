@@ -1,6 +1,6 @@
-// Garment meshes from OBJ, in the file's own vertex order (assimp would split shared vertices). Every fault is named, all at
-// once. For the conductor and for topologies of geometry caches.
-// Caution: positions come in the file's unit and axes; the caller applies ClothSpec::unit_scale, up and offset.
+// Garment meshes from OBJ, in the file's own vertex order (assimp would split shared vertices). Every fault is named,
+// all at once. For the conductor and for topologies of geometry caches. Caution: positions come in the file's unit and
+// axes; the caller applies ClothSpec::unit_scale, up and offset.
 #pragma once
 
 #include <filesystem>
@@ -14,15 +14,15 @@
 namespace ft {
 
 /// Reads v, vt, f (negative and v/vt/vn indices), g/o (face groups become vertex groups), vertex colours (groups "red",
-/// "green", "blue" with the channel as weight). Unknown lines are skipped. Refuses numbers that are not finite, faces with
-/// fewer than three corners and indices that name nothing; uvs are kept only when every corner has one.
+/// "green", "blue" with the channel as weight). Unknown lines are skipped. Refuses numbers that are not finite, faces
+/// with fewer than three corners and indices that name nothing; uvs are kept only when every corner has one.
 Result<Mesh> read_obj(const std::filesystem::path& path);
 
 /// The same from text; `where` stands in front of line numbers in messages.
 Result<Mesh> parse_obj(std::string_view text, std::string_view where);
 
-/// Shortest digits that read back to the same doubles. Groups come back where they consist of whole faces with weight 1;
-/// groups "red", "green", "blue" are written as vertex colours.
+/// Shortest digits that read back to the same doubles. Groups come back where they consist of whole faces with weight
+/// 1; groups "red", "green", "blue" are written as vertex colours.
 Status write_obj(const std::filesystem::path& path, const Mesh& mesh);
 
 /// What stands against simulating a mesh. Vertices and faces are numbered from 1, as in an OBJ file.
@@ -32,9 +32,9 @@ struct GarmentFindings {
 };
 GarmentFindings inspect_garment(const Mesh& mesh);
 
-/// Refuses what cannot be simulated: no faces, NaN or infinite vertices, zero-area faces, edges with more than two faces,
-/// vertices used twice in a face, coincident vertices. One message with the count and the first places of each fault.
-/// Vertices that no face uses are tolerated: they stay in the cache.
+/// Refuses what cannot be simulated: no faces, NaN or infinite vertices, zero-area faces, edges with more than two
+/// faces, vertices used twice in a face, coincident vertices. One message with the count and the first places of each
+/// fault. Vertices that no face uses are tolerated: they stay in the cache.
 Status check_garment(const Mesh& mesh);
 
 }  // namespace ft

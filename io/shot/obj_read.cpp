@@ -1,5 +1,5 @@
-// OBJ reader (Wavefront's "Advanced Visualizer" appendix B1): v, vt, f, g, o; the rest is skipped. One pass over the text,
-// numbers by std::from_chars. Caution: faces may name vertices that come later, so indices are judged at the end.
+// OBJ reader (Wavefront's "Advanced Visualizer" appendix B1): v, vt, f, g, o; the rest is skipped. One pass over the
+// text, numbers by std::from_chars. Caution: faces may name vertices that come later, so indices are judged at the end.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -16,7 +16,9 @@ namespace {
 constexpr std::uint64_t k_max_obj_bytes = std::uint64_t{1} << 30;
 constexpr std::size_t k_shown_faults = 5;  ///< messages printed in full; the rest is counted
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
 
 /// Cuts the next word off the front of `line`; empty at the end.
 std::string_view next_word(std::string_view& line) {
@@ -77,7 +79,8 @@ class ObjParser {
 
   Result<Mesh> finish() {
     if (fault_count_ == 0 && mesh_.positions.empty())
-      return input_error("holds no vertices; is it an OBJ file?", std::string(where_), "garment meshes are Wavefront OBJ");
+      return input_error("holds no vertices; is it an OBJ file?", std::string(where_),
+                         "garment meshes are Wavefront OBJ");
     judge_indices();
     if (fault_count_ > 0) return collected_faults();
     if (uv_corner_count_ != mesh_.face_vertices.size() || mesh_.face_vertices.empty()) {
@@ -112,11 +115,16 @@ class ObjParser {
 
   void parse_line(std::string_view line) {
     const std::string_view key = next_word(line);
-    if (key == "v") parse_vertex(line);
-    else if (key == "f") parse_face(line);
-    else if (key == "vt") parse_uv(line);
-    else if (key == "g") parse_names(line, group_names_);
-    else if (key == "o") parse_names(line, object_names_);
+    if (key == "v")
+      parse_vertex(line);
+    else if (key == "f")
+      parse_face(line);
+    else if (key == "vt")
+      parse_uv(line);
+    else if (key == "g")
+      parse_names(line, group_names_);
+    else if (key == "o")
+      parse_names(line, object_names_);
   }
 
   /// Up to 7 finite numbers of a line (a comment ends it); -1 after a fault.
@@ -124,8 +132,10 @@ class ObjParser {
     int count = 0;
     for (auto word = next_word(line); !word.empty() && word.front() != '#' && count < 8; word = next_word(line)) {
       double& value = values[count++];
-      if (!parse_number(word, value)) return fault(std::string(kind) + " has \"" + shown(word) + "\" for a number" + comma(word)), -1;
-      if (!std::isfinite(value)) return fault(std::string(kind) + " has the value " + shown(word) + ", which is not finite"), -1;
+      if (!parse_number(word, value))
+        return fault(std::string(kind) + " has \"" + shown(word) + "\" for a number" + comma(word)), -1;
+      if (!std::isfinite(value))
+        return fault(std::string(kind) + " has the value " + shown(word) + ", which is not finite"), -1;
     }
     return count;
   }
@@ -143,7 +153,8 @@ class ObjParser {
     double x[8] = {};
     const int count = parse_numbers(line, x, "vertex");
     if (count >= 0 && count < 3) fault("vertex has " + std::to_string(count) + " coordinates, three are needed");
-    mesh_.positions.emplace_back(x[0], x[1], x[2]);  // a faulty one keeps its number, so that later faults are not made up
+    mesh_.positions.emplace_back(x[0], x[1],
+                                 x[2]);  // a faulty one keeps its number, so that later faults are not made up
     if (count == 6 || count == 7) {
       const int first = count == 6 ? 3 : 4;
       colours_.resize(mesh_.positions.size() - 1, Vec3::Zero());
@@ -197,7 +208,8 @@ class ObjParser {
     for (const auto* names : {&group_names_, &object_names_})
       for (const std::size_t group : *names) {
         auto& vertices = groups_[group].vertices;
-        vertices.insert(vertices.end(), mesh_.face_vertices.begin() + static_cast<std::ptrdiff_t>(begin), mesh_.face_vertices.end());
+        vertices.insert(vertices.end(), mesh_.face_vertices.begin() + static_cast<std::ptrdiff_t>(begin),
+                        mesh_.face_vertices.end());
       }
   }
 
@@ -217,15 +229,18 @@ class ObjParser {
       for (int k = 0; k < mesh_.face_sizes[f]; ++k, ++corner) {
         line_number_ = face_lines_[f];
         const int v = mesh_.face_vertices[corner], uv = mesh_.face_uvs[corner];
-        if (v >= vertex_count) fault("face names vertex " + std::to_string(v + 1) + ", the file has " + std::to_string(vertex_count));
-        if (uv >= uv_count) fault("face names texture vertex " + std::to_string(uv + 1) + ", the file has " + std::to_string(uv_count));
+        if (v >= vertex_count)
+          fault("face names vertex " + std::to_string(v + 1) + ", the file has " + std::to_string(vertex_count));
+        if (uv >= uv_count)
+          fault("face names texture vertex " + std::to_string(uv + 1) + ", the file has " + std::to_string(uv_count));
       }
   }
 
   Error collected_faults() const {
     std::string what = faults_.front();
     for (std::size_t i = 1; i < faults_.size(); ++i) what.append("\n").append(where_).append(":").append(faults_[i]);
-    if (fault_count_ > faults_.size()) what.append("\nand ").append(std::to_string(fault_count_ - faults_.size())).append(" more");
+    if (fault_count_ > faults_.size())
+      what.append("\nand ").append(std::to_string(fault_count_ - faults_.size())).append(" more");
     // The line number belongs to the place: "dress.obj:12" "face has ...".
     const std::size_t colon = what.find(": ");
     return input_error(what.substr(colon + 2), std::string(where_).append(":").append(what, 0, colon),

@@ -16,14 +16,17 @@ void put(std::string& out, double value) {
   out.append(digits, end);
 }
 
-bool is_colour(const VertexGroup& group) { return group.name == "red" || group.name == "green" || group.name == "blue"; }
+bool is_colour(const VertexGroup& group) {
+  return group.name == "red" || group.name == "green" || group.name == "blue";
+}
 
 /// Weight of each vertex in the group of that name; empty when there is none.
 std::vector<double> channel(const Mesh& mesh, std::string_view name) {
   for (const VertexGroup& group : mesh.groups) {
     if (group.name != name) continue;
     std::vector<double> out(mesh.positions.size(), 0.0);
-    for (std::size_t i = 0; i < group.vertices.size(); ++i) out[static_cast<std::size_t>(group.vertices[i])] = group.weights[i];
+    for (std::size_t i = 0; i < group.vertices.size(); ++i)
+      out[static_cast<std::size_t>(group.vertices[i])] = group.weights[i];
     return out;
   }
   return {};
@@ -35,7 +38,8 @@ std::vector<std::vector<int>> memberships(const Mesh& mesh) {
   for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
     if (is_colour(mesh.groups[g])) continue;
     for (std::size_t i = 0; i < mesh.groups[g].vertices.size(); ++i)
-      if (mesh.groups[g].weights[i] == 1.0) out[static_cast<std::size_t>(mesh.groups[g].vertices[i])].push_back(static_cast<int>(g));
+      if (mesh.groups[g].weights[i] == 1.0)
+        out[static_cast<std::size_t>(mesh.groups[g].vertices[i])].push_back(static_cast<int>(g));
   }
   return out;
 }

@@ -34,7 +34,9 @@ void cut_range(std::string_view s, std::string_view& first, std::string_view& se
   if (has_second) second = s.substr(cut + (cut == dots ? 2 : 1));
 }
 
-std::string range_of(long long a, long long b) { return std::to_string(a).append("-").append(std::to_string(b)); }
+std::string range_of(long long a, long long b) {
+  return std::to_string(a).append("-").append(std::to_string(b));
+}
 
 }  // namespace
 
@@ -75,7 +77,8 @@ bool parse_vertices(std::string_view text, std::vector<int>& out, std::string& f
     cut_range(part, first, second, has_second);
     long long a = 0, b = 0;
     if (!whole(first, a) || (has_second && !whole(second, b))) {
-      fault = std::string("has \"").append(printable(part, 24)).append("\" where a vertex or a range like 0-199 belongs");
+      fault =
+          std::string("has \"").append(printable(part, 24)).append("\" where a vertex or a range like 0-199 belongs");
       return false;
     }
     if (!has_second) b = a;

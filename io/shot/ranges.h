@@ -13,7 +13,8 @@ struct FrameRange {
 };
 
 /// "1001-1121" or "1001", blanks allowed. False: `fault` says what is wrong and what was probably meant.
-/// Negative frames are refused, because file names and "A-B" could not tell them apart; a run-up is what preroll is for.
+/// Negative frames are refused, because file names and "A-B" could not tell them apart; a run-up is what preroll is
+/// for.
 bool parse_frames(std::string_view text, FrameRange& range, std::string& fault);
 
 /// "0-199, 250, 300-310"; ascending and unique in `out`. At most 20 million vertices.

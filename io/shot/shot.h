@@ -1,6 +1,6 @@
-// The shot file: what to bake, as plain structs with good defaults. shot_read.cpp reads it from TOML and reports every fault at
-// once, with line and column, the allowed range and what was probably meant. The keys, their ranges and units stand once, in
-// shot_keys.cpp; reading, messages, --set, the settings list and the reference all come from that table.
+// The shot file: what to bake, as plain structs with good defaults. shot_read.cpp reads it from TOML and reports every
+// fault at once, with line and column, the allowed range and what was probably meant. The keys, their ranges and units
+// stand once, in shot_keys.cpp; reading, messages, --set, the settings list and the reference all come from that table.
 #pragma once
 
 #include <filesystem>
@@ -19,77 +19,79 @@ namespace ft {
 /// [primary.NAME]: what drives.
 struct PrimarySpec {
   std::string name;
-  std::filesystem::path file;      ///< character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (PC2; MDD, OBJ sequence)
-  std::filesystem::path animation; ///< second file with the motion for the skeleton in `file`, matched by node name; may be empty
-  std::filesystem::path topology;  ///< geometry caches without faces (PC2): the OBJ with the same vertices; may be empty
-  std::string clip;                ///< name of the clip; empty: the only one, or the first with a note
-  double clip_start = 0;           ///< s into the clip at the shot's first frame
-  double speed = 1;                ///< playback speed [1], 0.01..100
+  std::filesystem::path file;  ///< character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (PC2; MDD, OBJ sequence)
+  std::filesystem::path
+      animation;  ///< second file with the motion for the skeleton in `file`, matched by node name; may be empty
+  std::filesystem::path
+      topology;           ///< geometry caches without faces (PC2): the OBJ with the same vertices; may be empty
+  std::string clip;       ///< name of the clip; empty: the only one, or the first with a note
+  double clip_start = 0;  ///< s into the clip at the shot's first frame
+  double speed = 1;       ///< playback speed [1], 0.01..100
   std::optional<double> unit_scale;  ///< m per file unit, overrides what the file says
-  std::string up;                  ///< "y", "z", "" = as the file says
+  std::string up;                    ///< "y", "z", "" = as the file says
   std::optional<double> source_fps;  ///< geometry caches: frames per second of the samples; default the shot's fps
-  std::string body;                ///< BVH: "blended" (default) or "capsules"
-  std::optional<double> height;    ///< BVH and others: scale so that the bind pose is this tall [m]
-  std::vector<std::string> meshes; ///< names of the meshes that make the collider; empty: all
+  std::string body;                  ///< BVH: "blended" (default) or "capsules"
+  std::optional<double> height;      ///< BVH and others: scale so that the bind pose is this tall [m]
+  std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all
 };
 
 /// One way to hold a garment to its primary.
 struct PinSpec {
   enum class Select { k_group, k_within, k_vertices };
   Select select = Select::k_group;
-  std::string group;               ///< vertex group of the garment's mesh
-  double within = 0;               ///< garment vertices nearer than this to the body in the bind pose [m]
-  std::vector<int> vertices;       ///< garment vertices, from 0, file order
-  double stiffness = 1e6;          ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
-  double max_pull = 5e3;           ///< Pa: force limit per garment area, so that contact wins over pins
+  std::string group;          ///< vertex group of the garment's mesh
+  double within = 0;          ///< garment vertices nearer than this to the body in the bind pose [m]
+  std::vector<int> vertices;  ///< garment vertices, from 0, file order
+  double stiffness = 1e6;  ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
+  double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
 };
 
 /// [cloth.NAME]: what follows.
 struct ClothSpec {
   std::string name;
-  std::filesystem::path mesh;      ///< OBJ (own reader, file's vertex order)
-  std::string fabric = "cotton";   ///< name of a measured fabric
-  std::string on;                  ///< name of the primary
+  std::filesystem::path mesh;     ///< OBJ (own reader, file's vertex order)
+  std::string fabric = "cotton";  ///< name of a measured fabric
+  std::string on;                 ///< name of the primary
   std::vector<PinSpec> pins;
   std::vector<std::pair<std::string, double>> fabric_overrides;  ///< "mass_per_area" = 0.2 ...: keys of solvers' Fabric
-  double weld = 0;                 ///< garment vertices nearer than this are joined for the simulation [m]; 0: none, see weld.h
-  double unit_scale = 1;           ///< m per mesh unit
+  double weld = 0;        ///< garment vertices nearer than this are joined for the simulation [m]; 0: none, see weld.h
+  double unit_scale = 1;  ///< m per mesh unit
   std::string up = "y";
-  Vec3 offset = Vec3::Zero();      ///< m, added after scale and axis
-  double thickness = 3e-3;         ///< m: contact begins at this distance from the body, 0.5e-3..10e-3
-  double friction = 0.4;           ///< Coulomb coefficient against the body, 0..2
-  double self_friction = 0.3;      ///< among cloths
+  Vec3 offset = Vec3::Zero();  ///< m, added after scale and axis
+  double thickness = 3e-3;     ///< m: contact begins at this distance from the body, 0.5e-3..10e-3
+  double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
+  double self_friction = 0.3;  ///< among cloths
   bool self_collision = true;
 };
 
 struct WindSpec {
-  Vec3 velocity = Vec3::Zero();    ///< m/s, world
+  Vec3 velocity = Vec3::Zero();  ///< m/s, world
 };
 
 struct SolverSpec {
   int min_substeps = 4, max_substeps = 32;  ///< a frame
   int newton_iterations = 3;
   double linear_tolerance = 3e-2;
-  std::string integrator = "bdf2";          ///< "bdf2" or "euler"
-  double gap = 6e-3;                        ///< room kept between body parts [m]
+  std::string integrator = "bdf2";  ///< "bdf2" or "euler"
+  double gap = 6e-3;                ///< room kept between body parts [m]
   bool carve = true;
-  Vec3 gravity = Vec3(0, -k_gravity, 0);    ///< m/s2
+  Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
 };
 
 struct Shot {
-  std::filesystem::path file;      ///< the shot file; other paths are resolved against its folder
+  std::filesystem::path file;  ///< the shot file; other paths are resolved against its folder
   int first_frame = 1, last_frame = 1;
   double fps = 24;
-  int preroll = 24;                ///< frames before the first
+  int preroll = 24;  ///< frames before the first
   bool write_preroll = false;
   std::vector<PrimarySpec> primaries;
   std::vector<ClothSpec> cloths;
   WindSpec wind;
   SolverSpec solver;
   std::vector<std::string> cache_formats = {"abc", "pc2"};
-  bool cache_collider = true;      ///< the feasible collider, beside the cloth
-  double gate_p99_strain = 0;      ///< quality gate: exit code 4 above it; 0 off
-  bool gate_crossings = false;     ///< exit code 4 when any frame has crossings
+  bool cache_collider = true;   ///< the feasible collider, beside the cloth
+  double gate_p99_strain = 0;   ///< quality gate: exit code 4 above it; 0 off
+  bool gate_crossings = false;  ///< exit code 4 when any frame has crossings
 };
 
 /// A fabric's key that a cloth may override. Made from a bare name it has no range.
@@ -104,8 +106,8 @@ struct FabricKeyWord {
   std::string unit;
 };
 
-/// Names that the program knows and the shot file may use; the conductor fills it from the registries above this floor. An empty
-/// list of fabrics or formats is not checked.
+/// Names that the program knows and the shot file may use; the conductor fills it from the registries above this floor.
+/// An empty list of fabrics or formats is not checked.
 struct ShotVocabulary {
   std::vector<std::string> fabrics;
   std::vector<FabricKeyWord> fabric_keys;
@@ -126,14 +128,15 @@ Result<Shot> read_shot(const std::filesystem::path& file, const ShotVocabulary& 
 Result<Shot> parse_shot(std::string_view text, const std::filesystem::path& file, const ShotVocabulary& vocabulary,
                         const std::vector<std::string>& overrides, ShotFaults& faults);
 
-/// Every setting as (key path, value text), in the order of the file's sections: ("cloth.skirt.fabric", "\"denim\""). Paths are
-/// relative to the shot file's folder, so that a moved project is the same shot.
+/// Every setting as (key path, value text), in the order of the file's sections: ("cloth.skirt.fabric", "\"denim\"").
+/// Paths are relative to the shot file's folder, so that a moved project is the same shot.
 std::vector<std::pair<std::string, std::string>> settings(const Shot& shot);
 
 /// settings() as lines "key = value": changes exactly when a value changes. For hashing.
 std::string canonical(const Shot& shot);
 
-/// What differs between two lists of settings, for "stale because ...": "cloth.skirt.fabric changed from \"cotton\" to \"denim\"".
+/// What differs between two lists of settings, for "stale because ...": "cloth.skirt.fabric changed from \"cotton\" to
+/// \"denim\"".
 std::vector<std::string> changed_settings(const std::vector<std::pair<std::string, std::string>>& before,
                                           const std::vector<std::pair<std::string, std::string>>& now);
 

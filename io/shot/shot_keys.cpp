@@ -8,10 +8,12 @@ std::span<const ShotKey<Shot>> shot_keys() {
   static const ShotKey<Shot> keys[] = {
       {"frames", FramesKey{}, 0, 9'999'999, "", "", true, "frame_range range start end first last",
        "First and last frame, `\"1001-1121\"`, or one frame"},
-      {"fps", &Shot::fps, 1, 240, "1/s", "", false, "frame_rate framerate frames_per_second", "Frames per second of the shot"},
+      {"fps", &Shot::fps, 1, 240, "1/s", "", false, "frame_rate framerate frames_per_second",
+       "Frames per second of the shot"},
       {"preroll", &Shot::preroll, 0, 1000, "frames", "", false, "warmup run_up pre_roll",
        "Frames before the first, in which the bind pose blends into the first frame and the cloth settles"},
-      {"write_preroll", &Shot::write_preroll, 0, 0, "", "", false, "", "Also write the frames of the pre-roll into the caches"},
+      {"write_preroll", &Shot::write_preroll, 0, 0, "", "", false, "",
+       "Also write the frames of the pre-roll into the caches"},
   };
   return keys;
 }
@@ -22,69 +24,91 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "Character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (PC2, MDD, OBJ sequence)"},
       {"animation", &PrimarySpec::animation, 0, 0, "", "", false, "motion anim",
        "Second file with the motion for the skeleton in `file`, matched by node name"},
-      {"topology", &PrimarySpec::topology, 0, 0, "", "", false, "faces mesh", "For caches without faces (PC2, MDD): the OBJ with the same vertices"},
-      {"clip", &PrimarySpec::clip, 0, 0, "", "", false, "take action", "Name of the clip; without it the only one, or the first"},
-      {"clip_start", &PrimarySpec::clip_start, 0, 100'000, "s", "", false, "offset start", "Time within the clip at the shot's first frame"},
+      {"topology", &PrimarySpec::topology, 0, 0, "", "", false, "faces mesh",
+       "For caches without faces (PC2, MDD): the OBJ with the same vertices"},
+      {"clip", &PrimarySpec::clip, 0, 0, "", "", false, "take action",
+       "Name of the clip; without it the only one, or the first"},
+      {"clip_start", &PrimarySpec::clip_start, 0, 100'000, "s", "", false, "offset start",
+       "Time within the clip at the shot's first frame"},
       {"speed", &PrimarySpec::speed, 0.01, 100, "1", "", false, "time_scale", "Playback speed; 2 is twice as fast"},
       {"unit_scale", &PrimarySpec::unit_scale, 1e-6, 1000, "m per file unit", "", false, "scale units unit",
        "Overrides the unit that the file states; 0.01 for centimetres"},
       {"up", &PrimarySpec::up, 0, 0, "", "y z", false, "up_axis axis", "Up axis, when the file states a wrong one"},
       {"source_fps", &PrimarySpec::source_fps, 1, 10'000, "1/s", "", false, "fps sample_rate",
        "Geometry caches: samples per second; without it the shot's fps"},
-      {"body", &PrimarySpec::body, 0, 0, "", "blended capsules", false, "", "BVH, which has no body: how one is built around the skeleton"},
-      {"height", &PrimarySpec::height, 0.05, 50, "m", "", false, "size", "Scales the character so that its bind pose is this tall"},
-      {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects", "Names of the meshes that make the collider; without it all"},
+      {"body", &PrimarySpec::body, 0, 0, "", "blended capsules", false, "",
+       "BVH, which has no body: how one is built around the skeleton"},
+      {"height", &PrimarySpec::height, 0.05, 50, "m", "", false, "size",
+       "Scales the character so that its bind pose is this tall"},
+      {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects",
+       "Names of the meshes that make the collider; without it all"},
   };
   return keys;
 }
 
 std::span<const ShotKey<ClothSpec>> cloth_keys() {
   static const ShotKey<ClothSpec> keys[] = {
-      {"mesh", &ClothSpec::mesh, 0, 0, "", "", true, "file path garment", "Garment as OBJ; caches keep its vertex order"},
-      {"fabric", &ClothSpec::fabric, 0, 0, "", "@fabrics", false, "material cloth_type preset", "Name of a measured fabric"},
+      {"mesh", &ClothSpec::mesh, 0, 0, "", "", true, "file path garment",
+       "Garment as OBJ; caches keep its vertex order"},
+      {"fabric", &ClothSpec::fabric, 0, 0, "", "@fabrics", false, "material cloth_type preset",
+       "Name of a measured fabric"},
       {"on", &ClothSpec::on, 0, 0, "", "@primaries", false, "primary body collider character wearer parent",
        "The primary that wears it; not needed when there is only one"},
       {"pins", PinsKey{}, 0, 0, "", "", false, "attach attachments constraints hold",
        "What holds it to the primary: a list of pins, see below"},
       {"pin", SinglePinKey{}, 0, 0, "", "", false, "pin_group", "Short for one pin: the name of a vertex group"},
-      {"weld", &ClothSpec::weld, 0, 0.05, "m", "", false, "merge merge_distance", "Joins vertices nearer than this (open seams); 0 joins none"},
-      {"unit_scale", &ClothSpec::unit_scale, 1e-6, 1000, "m per mesh unit", "", false, "scale units unit", "0.01 for a mesh in centimetres"},
+      {"weld", &ClothSpec::weld, 0, 0.05, "m", "", false, "merge merge_distance",
+       "Joins vertices nearer than this (open seams); 0 joins none"},
+      {"unit_scale", &ClothSpec::unit_scale, 1e-6, 1000, "m per mesh unit", "", false, "scale units unit",
+       "0.01 for a mesh in centimetres"},
       {"up", &ClothSpec::up, 0, 0, "", "y z", false, "up_axis axis", "Up axis of the mesh"},
-      {"offset", &ClothSpec::offset, -1000, 1000, "m", "", false, "translate position move", "Added after scale and axis"},
+      {"offset", &ClothSpec::offset, -1000, 1000, "m", "", false, "translate position move",
+       "Added after scale and axis"},
       {"thickness", &ClothSpec::thickness, 0.5e-3, 10e-3, "m", "", false, "contact_radius collision_distance gap",
        "Contact begins at this distance from the body"},
       {"friction", &ClothSpec::friction, 0, 2, "1", "", false, "mu", "Coulomb coefficient against the body"},
       {"self_friction", &ClothSpec::self_friction, 0, 2, "1", "", false, "", "Coulomb coefficient among cloths"},
-      {"self_collision", &ClothSpec::self_collision, 0, 0, "", "", false, "self_contact", "Cloth meets itself and other cloths"},
+      {"self_collision", &ClothSpec::self_collision, 0, 0, "", "", false, "self_contact",
+       "Cloth meets itself and other cloths"},
   };
   return keys;
 }
 
 std::span<const ShotKey<PinSpec>> pin_keys() {
   static const ShotKey<PinSpec> keys[] = {
-      {"group", &PinSpec::group, 0, 0, "", "", false, "vertex_group name", "All vertices of this group of the mesh (`g` and `o` lines, vertex colours `red`, `green`, `blue`)"},
-      {"within", &PinSpec::within, 0, 1, "m", "", false, "distance nearer_than", "Vertices nearer than this to the body in the bind pose"},
-      {"vertices", PinsKey{}, 0, 0, "", "", false, "points indices", "Vertices from 0 in the file's order: `\"0-199, 250\"` or `[0, 1, 2]`"},
-      {"stiffness", &PinSpec::stiffness, 1, 1e12, "N/m3", "", false, "strength", "Spring stiffness per area and displacement: 1e5 loose, 1e6 firm, 1e8 hard"},
-      {"max_pull", &PinSpec::max_pull, 0, 1e9, "Pa", "", false, "max_force limit", "Force limit per area, so that contact wins over pins"},
+      {"group", &PinSpec::group, 0, 0, "", "", false, "vertex_group name",
+       "All vertices of this group of the mesh (`g` and `o` lines, vertex colours `red`, `green`, `blue`)"},
+      {"within", &PinSpec::within, 0, 1, "m", "", false, "distance nearer_than",
+       "Vertices nearer than this to the body in the bind pose"},
+      {"vertices", PinsKey{}, 0, 0, "", "", false, "points indices",
+       "Vertices from 0 in the file's order: `\"0-199, 250\"` or `[0, 1, 2]`"},
+      {"stiffness", &PinSpec::stiffness, 1, 1e12, "N/m3", "", false, "strength",
+       "Spring stiffness per area and displacement: 1e5 loose, 1e6 firm, 1e8 hard"},
+      {"max_pull", &PinSpec::max_pull, 0, 1e9, "Pa", "", false, "max_force limit",
+       "Force limit per area, so that contact wins over pins"},
   };
   return keys;
 }
 
 std::span<const ShotKey<WindSpec>> wind_keys() {
   static const ShotKey<WindSpec> keys[] = {
-      {"velocity", &WindSpec::velocity, -100, 100, "m/s", "", false, "speed direction", "Steady wind, world axes, y up"},
+      {"velocity", &WindSpec::velocity, -100, 100, "m/s", "", false, "speed direction",
+       "Steady wind, world axes, y up"},
   };
   return keys;
 }
 
 std::span<const ShotKey<SolverSpec>> solver_keys() {
   static const ShotKey<SolverSpec> keys[] = {
-      {"min_substeps", &SolverSpec::min_substeps, 1, 1024, "a frame", "", false, "substeps steps", "Substeps of a quiet frame"},
+      {"min_substeps", &SolverSpec::min_substeps, 1, 1024, "a frame", "", false, "substeps steps",
+       "Substeps of a quiet frame"},
       {"max_substeps", &SolverSpec::max_substeps, 1, 4096, "a frame", "", false, "", "Substeps of the hardest frame"},
-      {"newton_iterations", &SolverSpec::newton_iterations, 1, 100, "a substep", "", false, "iterations newton", "Newton iterations"},
-      {"linear_tolerance", &SolverSpec::linear_tolerance, 1e-10, 0.5, "1", "", false, "tolerance", "Relative residual of the linear solver"},
-      {"integrator", &SolverSpec::integrator, 0, 0, "", "bdf2 euler", false, "method", "`bdf2` keeps the swing, `euler` calms it"},
+      {"newton_iterations", &SolverSpec::newton_iterations, 1, 100, "a substep", "", false, "iterations newton",
+       "Newton iterations"},
+      {"linear_tolerance", &SolverSpec::linear_tolerance, 1e-10, 0.5, "1", "", false, "tolerance",
+       "Relative residual of the linear solver"},
+      {"integrator", &SolverSpec::integrator, 0, 0, "", "bdf2 euler", false, "method",
+       "`bdf2` keeps the swing, `euler` calms it"},
       {"gap", &SolverSpec::gap, 0, 0.05, "m", "", false, "", "Room kept between overlapping parts of the body"},
       {"carve", &SolverSpec::carve, 0, 0, "", "", false, "", "Make the body free of self-overlap before it collides"},
       {"gravity", &SolverSpec::gravity, -100, 100, "m/s2", "", false, "g", "Acceleration of gravity, world axes, y up"},
@@ -95,15 +119,18 @@ std::span<const ShotKey<SolverSpec>> solver_keys() {
 std::span<const ShotKey<Shot>> cache_keys() {
   static const ShotKey<Shot> keys[] = {
       {"formats", &Shot::cache_formats, 0, 0, "", "@formats", false, "format type", "One cache per cloth and format"},
-      {"collider", &Shot::cache_collider, 0, 0, "", "", false, "body", "Also write the body that the cloth collided with"},
+      {"collider", &Shot::cache_collider, 0, 0, "", "", false, "body",
+       "Also write the body that the cloth collided with"},
   };
   return keys;
 }
 
 std::span<const ShotKey<Shot>> gate_keys() {
   static const ShotKey<Shot> keys[] = {
-      {"p99_strain", &Shot::gate_p99_strain, 0, 10, "1", "", false, "strain max_strain", "Exit code 4 when the 99th percentile of strain is above it; 0 is off"},
-      {"crossings", &Shot::gate_crossings, 0, 0, "", "", false, "no_crossings", "Exit code 4 when any frame has crossings"},
+      {"p99_strain", &Shot::gate_p99_strain, 0, 10, "1", "", false, "strain max_strain",
+       "Exit code 4 when the 99th percentile of strain is above it; 0 is off"},
+      {"crossings", &Shot::gate_crossings, 0, 0, "", "", false, "no_crossings",
+       "Exit code 4 when any frame has crossings"},
   };
   return keys;
 }
@@ -118,7 +145,9 @@ std::vector<std::string> split_words(std::string_view words) {
   return out;
 }
 
-std::vector<std::string> section_names() { return {"shot", "primary", "cloth", "wind", "solver", "cache", "gate"}; }
+std::vector<std::string> section_names() {
+  return {"shot", "primary", "cloth", "wind", "solver", "cache", "gate"};
+}
 
 std::string home_of(std::string_view key) {
   std::string home;

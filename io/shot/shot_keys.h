@@ -1,5 +1,6 @@
-// One table of all keys of the shot file: name, type (by the member it fills), range, unit, meaning. Reading, messages, --set,
-// the settings list and the printed reference walk over it. To add a key: a member in shot.h and a line in shot_keys.cpp.
+// One table of all keys of the shot file: name, type (by the member it fills), range, unit, meaning. Reading, messages,
+// --set, the settings list and the printed reference walk over it. To add a key: a member in shot.h and a line in
+// shot_keys.cpp.
 #pragma once
 
 #include <span>
@@ -17,27 +18,27 @@ struct SinglePinKey {};
 
 template <class Spec>
 struct ShotKey {
-  using Target = std::variant<int Spec::*, double Spec::*, bool Spec::*, std::string Spec::*, std::filesystem::path Spec::*,
-                              std::optional<double> Spec::*, Vec3 Spec::*, std::vector<std::string> Spec::*, FramesKey, PinsKey,
-                              SinglePinKey>;
+  using Target = std::variant<int Spec::*, double Spec::*, bool Spec::*, std::string Spec::*,
+                              std::filesystem::path Spec::*, std::optional<double> Spec::*, Vec3 Spec::*,
+                              std::vector<std::string> Spec::*, FramesKey, PinsKey, SinglePinKey>;
   std::string_view name;
   Target target;
-  double lowest = 0, highest = 0;   ///< of numbers, and of every component of vectors; both 0: no range
+  double lowest = 0, highest = 0;  ///< of numbers, and of every component of vectors; both 0: no range
   std::string_view unit;
-  std::string_view choices;         ///< "y z": the words allowed; "@fabrics", "@formats", "@primaries": a list known later
+  std::string_view choices;  ///< "y z": the words allowed; "@fabrics", "@formats", "@primaries": a list known later
   bool required = false;
-  std::string_view also;            ///< other words people write for it: "material cloth_type"
+  std::string_view also;  ///< other words people write for it: "material cloth_type"
   std::string_view meaning;
 };
 
-std::span<const ShotKey<Shot>> shot_keys();          ///< [shot]
+std::span<const ShotKey<Shot>> shot_keys();            ///< [shot]
 std::span<const ShotKey<PrimarySpec>> primary_keys();  ///< [primary.NAME]
-std::span<const ShotKey<ClothSpec>> cloth_keys();    ///< [cloth.NAME], beside the fabric's keys
-std::span<const ShotKey<PinSpec>> pin_keys();        ///< one table of pins; group, within, vertices choose
-std::span<const ShotKey<WindSpec>> wind_keys();      ///< [wind]
-std::span<const ShotKey<SolverSpec>> solver_keys();  ///< [solver]
-std::span<const ShotKey<Shot>> cache_keys();         ///< [cache]
-std::span<const ShotKey<Shot>> gate_keys();          ///< [gate]
+std::span<const ShotKey<ClothSpec>> cloth_keys();      ///< [cloth.NAME], beside the fabric's keys
+std::span<const ShotKey<PinSpec>> pin_keys();          ///< one table of pins; group, within, vertices choose
+std::span<const ShotKey<WindSpec>> wind_keys();        ///< [wind]
+std::span<const ShotKey<SolverSpec>> solver_keys();    ///< [solver]
+std::span<const ShotKey<Shot>> cache_keys();           ///< [cache]
+std::span<const ShotKey<Shot>> gate_keys();            ///< [gate]
 
 /// Calls visit(section name, keys) for the sections without a NAME, in the order of the reference.
 template <class Visit>

@@ -16,7 +16,8 @@ void apply_override(Value& root, const std::string& text, FaultList& faults) {
   const std::vector<std::string> sections = section_names();
   const bool named = path.front() == "cloth" || path.front() == "primary";
   if (std::find(sections.begin(), sections.end(), path.front()) == sections.end())
-    return faults.add(place, with_hint("unknown section " + in_quotes(path.front()), suggestion(path.front(), sections)));
+    return faults.add(place,
+                      with_hint("unknown section " + in_quotes(path.front()), suggestion(path.front(), sections)));
   if (path.size() != (named ? 3u : 2u))
     return faults.add(place, "is not of the form " + path.front() + (named ? ".NAME" : "") + ".key=value");
   Value* table = &root;
@@ -26,7 +27,8 @@ void apply_override(Value& root, const std::string& text, FaultList& faults) {
       std::vector<std::string> names;
       if (i == 1)
         for (const Member& m : table->members) names.push_back(m.key);
-      return faults.add(place, with_hint("there is no " + path.front() + " " + in_quotes(path[1]), suggestion(path[1], names)));
+      return faults.add(
+          place, with_hint("there is no " + path.front() + " " + in_quotes(path[1]), suggestion(path[1], names)));
     }
     if (member == nullptr) {
       Value empty;
@@ -37,8 +39,10 @@ void apply_override(Value& root, const std::string& text, FaultList& faults) {
     if (member->value.kind != Value::Kind::k_table) return;  // the file's own fault is reported there
     table = &member->value;
   }
-  if (Member* old = table->find(path.back())) *old = {path.back(), place, std::move(value)};
-  else table->members.push_back({path.back(), place, std::move(value)});
+  if (Member* old = table->find(path.back()))
+    *old = {path.back(), place, std::move(value)};
+  else
+    table->members.push_back({path.back(), place, std::move(value)});
 }
 
 }  // namespace ft

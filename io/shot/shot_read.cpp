@@ -1,10 +1,10 @@
-// Reads a shot: tree of values -> structs, by the key table; then what only the whole can tell (who wears what). Faults are
-// collected, never stopped at, except for TOML's own syntax: behind a syntax fault nothing can be understood.
+// Reads a shot: tree of values -> structs, by the key table; then what only the whole can tell (who wears what). Faults
+// are collected, never stopped at, except for TOML's own syntax: behind a syntax fault nothing can be understood.
 #include <algorithm>
 #include <cmath>
 
 #include "baker/core/file.h"
-#include "io/shot/ranges.h"
+#include "io/shot/shot_judge.h"
 #include "io/shot/shot_keys.h"
 #include "io/shot/shot_override.h"
 #include "io/shot/shot_values.h"
@@ -25,17 +25,24 @@ class ShotReader {
   Shot read(const Value& root) {
     for (const Member& member : root.members) {
       const auto section = [&](auto& spec, auto keys) { read_plain(member, spec, keys); };
-      if (member.key == "shot") section(shot_, shot_keys());
-      else if (member.key == "wind") section(shot_.wind, wind_keys());
-      else if (member.key == "solver") section(shot_.solver, solver_keys());
-      else if (member.key == "cache") section(shot_, cache_keys());
-      else if (member.key == "gate") section(shot_, gate_keys());
-      else if (member.key == "primary") read_named(member, shot_.primaries, primary_places_);
-      else if (member.key == "cloth") read_named(member, shot_.cloths, cloth_places_);
-      else refuse_section(member);
+      if (member.key == "shot")
+        section(shot_, shot_keys());
+      else if (member.key == "wind")
+        section(shot_.wind, wind_keys());
+      else if (member.key == "solver")
+        section(shot_.solver, solver_keys());
+      else if (member.key == "cache")
+        section(shot_, cache_keys());
+      else if (member.key == "gate")
+        section(shot_, gate_keys());
+      else if (member.key == "primary")
+        read_named(member, shot_.primaries);
+      else if (member.key == "cloth")
+        read_named(member, shot_.cloths);
+      else
+        refuse_section(member);
     }
-    if (root.find("shot") == nullptr) faults_.add({}, "has no [shot] section: frames = \"1-100\" is needed");
-    judge_whole(root);
+    judge_whole(root, shot_, faults_);
     return std::move(shot_);
   }
 
@@ -48,8 +55,9 @@ class ShotReader {
       faults_.add(member.place, with_hint("unknown section [" + printable(member.key) + "]", hint));
     } else {
       const std::string home = home_of(member.key);
-      faults_.add(member.place, with_hint("key " + in_quotes(member.key) + " stands outside of any section",
-                                          home.empty() ? suggestion(member.key, sections) : "it belongs under " + home));
+      faults_.add(member.place,
+                  with_hint("key " + in_quotes(member.key) + " stands outside of any section",
+                            home.empty() ? suggestion(member.key, sections) : "it belongs under " + home));
     }
   }
 
@@ -64,35 +72,43 @@ class ShotReader {
 
   /// [primary.NAME], [cloth.NAME].
   template <class Spec>
-  void read_named(const Member& member, std::vector<Spec>& specs, std::vector<Place>& places) {
+  void read_named(const Member& member, std::vector<Spec>& specs) {
     const std::string& kind = member.key;
     const std::string form = "write [" + kind + ".NAME], one section for each";
     if (member.value.kind != Value::Kind::k_table) {
-      faults_.add(member.place, with_hint("[" + kind + "] needs to be sections with names, not " + describe(member.value), form));
+      faults_.add(member.place,
+                  with_hint("[" + kind + "] needs to be sections with names, not " + describe(member.value), form));
       return;
     }
     for (const Member& named : member.value.members) {
       if (named.value.kind != Value::Kind::k_table) {
-        faults_.add(named.place, with_hint("key " + in_quotes(named.key) + " stands directly in [" + kind + "], which has no name", form));
+        faults_.add(
+            named.place,
+            with_hint("key " + in_quotes(named.key) + " stands directly in [" + kind + "], which has no name", form));
         continue;
       }
       Spec& spec = specs.emplace_back();
       spec.name = named.key;
-      places.push_back(named.place);
       const std::string owner = kind + " " + in_quotes(named.key);
       judge_name(named, owner);
-      if constexpr (std::is_same_v<Spec, PrimarySpec>) read_keys(owner, named.value, spec, primary_keys());
-      else read_keys(owner, named.value, spec, cloth_keys());
+      if constexpr (std::is_same_v<Spec, PrimarySpec>)
+        read_keys(owner, named.value, spec, primary_keys());
+      else
+        read_keys(owner, named.value, spec, cloth_keys());
     }
   }
 
   /// Names become file names of caches.
   void judge_name(const Member& named, const std::string& owner) {
-    const bool plain = !named.key.empty() && named.key.size() <= 100 && named.key.front() != '.' &&
-                       std::all_of(named.key.begin(), named.key.end(), [](char c) {
-                         return static_cast<unsigned char>(c) >= 32 && c != 127 && c != '/' && c != '\\' && c != ':' && c != '"';
-                       });
-    if (!plain) faults_.add(named.place, owner + ": the name becomes a file name; it may have up to 100 characters, no / \\ : \" and no dot in front");
+    const bool plain =
+        !named.key.empty() && named.key.size() <= 100 && named.key.front() != '.' &&
+        std::all_of(named.key.begin(), named.key.end(), [](char c) {
+          return static_cast<unsigned char>(c) >= 32 && c != 127 && c != '/' && c != '\\' && c != ':' && c != '"';
+        });
+    if (!plain)
+      faults_.add(
+          named.place,
+          owner + ": the name becomes a file name; it may have up to 100 characters, no / \\ : \" and no dot in front");
   }
 
   template <class Spec>
@@ -110,7 +126,8 @@ class ShotReader {
     }
     for (const auto& key : keys)
       if (key.required && table.find(key.name) == nullptr)
-        faults_.add(table.place, owner + ": " + std::string(key.name) + " is missing (" + std::string(key.meaning) + ")");
+        faults_.add(table.place,
+                    owner + ": " + std::string(key.name) + " is missing (" + std::string(key.meaning) + ")");
   }
 
   template <class Spec>
@@ -126,10 +143,14 @@ class ShotReader {
     std::string hint;
     const std::string home = home_of(member.key);
     const std::string near = nearest_word(member.key, known);
-    if (!near.empty() && edit_distance(member.key, near) <= 1) hint = suggestion(member.key, known);
-    else if (!other.empty()) hint = "did you mean \"" + other + "\"?";
-    else if (!home.empty()) hint = "it belongs under " + home;
-    else hint = suggestion(member.key, known);
+    if (!near.empty() && edit_distance(member.key, near) <= 1)
+      hint = suggestion(member.key, known);
+    else if (!other.empty())
+      hint = "did you mean \"" + other + "\"?";
+    else if (!home.empty())
+      hint = "it belongs under " + home;
+    else
+      hint = suggestion(member.key, known);
     faults_.add(member.place, with_hint(owner + ": unknown key " + in_quotes(member.key), hint));
   }
 
@@ -152,41 +173,45 @@ class ShotReader {
   }
 
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, int Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, int Spec::*target) {
     if (const auto value = reader.number(member.value, allowed(key, true))) spec.*target = static_cast<int>(*value);
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, double Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec,
+           double Spec::*target) {
     if (const auto value = reader.number(member.value, allowed(key))) spec.*target = *value;
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, std::optional<double> Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec,
+           std::optional<double> Spec::*target) {
     if (const auto value = reader.number(member.value, allowed(key))) spec.*target = *value;
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, bool Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, bool Spec::*target) {
     if (const auto value = reader.flag(member.value)) spec.*target = *value;
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, Vec3 Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, Vec3 Spec::*target) {
     if (const auto value = reader.vector(member.value, allowed(key))) spec.*target = *value;
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, std::filesystem::path Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec,
+           std::filesystem::path Spec::*target) {
     if (auto value = reader.file(member.value, folder_)) spec.*target = std::move(*value);
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, std::string Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec,
+           std::string Spec::*target) {
     const auto value = reader.text(member.value);
     if (!value) return;
     if (key.choices == "@fabrics" && !reader.is_one_of(member.value, *value, vocabulary_.fabrics)) return;
     const bool closed = !key.choices.empty() && key.choices.front() != '@';
     if (closed && !reader.is_one_of(member.value, *value, split_words(key.choices))) return;
     spec.*target = *value;
-    if (key.choices == "@primaries") on_places_.push_back({spec.*target, member.value.place});
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, std::vector<std::string> Spec::* target) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec,
+           std::vector<std::string> Spec::*target) {
     const auto value = reader.texts(member.value);
     if (!value) return;
     bool good = true;
@@ -195,47 +220,33 @@ class ShotReader {
         const Value& item = member.value.kind == Value::Kind::k_list ? member.value.items[i] : member.value;
         good = reader.is_one_of(item, (*value)[i], vocabulary_.cache_formats) && good;
       }
-    if (key.choices == "@formats" && value->empty()) reader.fault(member.value, "is empty: nothing would be written"), good = false;
+    if (key.choices == "@formats" && value->empty())
+      reader.fault(member.value, "is empty: nothing would be written"), good = false;
     if (good) spec.*target = *value;
   }
   template <class Spec>
-  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, FramesKey) {
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, FramesKey) {
     if constexpr (std::is_same_v<Spec, Shot>) {
-      const Value& value = member.value;
-      FrameRange range;
-      std::string fault;
-      if (value.kind == Value::Kind::k_integer) {
-        if (!parse_frames(std::to_string(value.integer), range, fault)) return reader.fault(value, "= " + std::to_string(value.integer) + " " + fault);
-      } else if (value.kind == Value::Kind::k_list && value.items.size() == 2 && value.items[0].kind == Value::Kind::k_integer &&
-                 value.items[1].kind == Value::Kind::k_integer) {
-        return reader.fault(value, "needs a text, not a list (write \"" + std::to_string(value.items[0].integer) + "-" +
-                                       std::to_string(value.items[1].integer) + "\")");
-      } else {
-        const auto text = reader.text(value);
-        if (!text) return;
-        if (!parse_frames(*text, range, fault)) return reader.fault(value, "= " + in_quotes(*text) + " " + fault);
-      }
-      if (range.last - range.first >= k_most_frames)
-        return reader.fault(value, "= " + frames_text(range) + " has " + std::to_string(range.last - range.first + 1) + " frames, at most " +
-                                       std::to_string(k_most_frames) + " are baked at once");
-      spec.first_frame = range.first;
-      spec.last_frame = range.last;
+      const auto range = read_frames(reader, member.value);
+      if (range) spec.first_frame = range->first, spec.last_frame = range->last;
     } else {
-      static_cast<void>(key);
       CHECK(false);
     }
   }
   template <class Spec>
   void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, SinglePinKey) {
-    if constexpr (std::is_same_v<Spec, ClothSpec>) read_pin(reader.owner + ", pin", member.value, spec);
-    else CHECK(false);
+    if constexpr (std::is_same_v<Spec, ClothSpec>)
+      read_pin(reader.owner + ", pin", member.value, spec);
+    else
+      CHECK(false);
   }
   template <class Spec>
   void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, PinsKey) {
     const Value& value = member.value;
     if constexpr (std::is_same_v<Spec, ClothSpec>) {
       if (value.kind != Value::Kind::k_list) return read_pin(reader.owner + ", pins", value, spec);
-      for (std::size_t i = 0; i < value.items.size(); ++i) read_pin(reader.owner + ", pin " + std::to_string(i + 1), value.items[i], spec);
+      for (std::size_t i = 0; i < value.items.size(); ++i)
+        read_pin(reader.owner + ", pin " + std::to_string(i + 1), value.items[i], spec);
     } else if constexpr (std::is_same_v<Spec, PinSpec>) {
       read_vertices(reader, value, spec.vertices);
     } else {
@@ -252,79 +263,27 @@ class ShotReader {
       return;
     }
     if (value.kind != Value::Kind::k_table) {
-      faults_.add(value.place, owner + " needs a table like { group = \"waist\" } or { within = 0.02 }, not " + describe(value));
+      faults_.add(value.place,
+                  owner + " needs a table like { group = \"waist\" } or { within = 0.02 }, not " + describe(value));
       return;
     }
     read_keys(owner, value, pin, pin_keys());
-    const bool group = value.find("group") != nullptr, within = value.find("within") != nullptr, vertices = value.find("vertices") != nullptr;
+    const bool group = value.find("group") != nullptr, within = value.find("within") != nullptr,
+               vertices = value.find("vertices") != nullptr;
     if (group + within + vertices != 1)
-      faults_.add(value.place, owner + ": needs one of group, within, vertices, and has " +
-                                   (group + within + vertices == 0 ? "none" : std::to_string(group + within + vertices)) +
-                                   " (several pins are written as several { } in the list)");
+      faults_.add(value.place,
+                  owner + ": needs one of group, within, vertices, and has " +
+                      (group + within + vertices == 0 ? "none" : std::to_string(group + within + vertices)) +
+                      " (several pins are written as several { } in the list)");
     if (group && pin.group.empty()) faults_.add(value.place, owner + ": the name of a vertex group is empty");
     pin.select = within ? PinSpec::Select::k_within : vertices ? PinSpec::Select::k_vertices : PinSpec::Select::k_group;
     cloth.pins.push_back(std::move(pin));
   }
 
-  void read_vertices(const ValueReader& reader, const Value& value, std::vector<int>& out) {
-    const bool list = value.kind == Value::Kind::k_list;
-    std::string text, fault;
-    for (const Value& item : list ? std::span(value.items) : std::span(&value, 1)) {
-      if (item.kind != Value::Kind::k_text && item.kind != Value::Kind::k_integer)
-        return reader.fault(item, "needs vertices like \"0-199\" or [0, 1, 2], not " + describe(item));
-      if (!text.empty()) text.append(",");
-      text.append(item.kind == Value::Kind::k_integer ? std::to_string(item.integer) : item.text);
-    }
-    if (list && value.items.empty()) return reader.fault(value, "is empty");
-    if (!parse_vertices(text, out, fault)) reader.fault(value, fault);
-  }
-
-  /// What no single key can tell.
-  void judge_whole(const Value& root) {
-    if (shot_.primaries.empty()) faults_.add({}, "has no [primary.NAME] section: the character that the cloth is worn by");
-    if (shot_.cloths.empty()) faults_.add({}, "has no [cloth.NAME] section: there is nothing to bake");
-    if (shot_.solver.min_substeps > shot_.solver.max_substeps)
-      faults_.add(place_of(root, "solver", "min_substeps", "max_substeps"),
-                  "[solver]: min_substeps = " + std::to_string(shot_.solver.min_substeps) + " is above max_substeps = " +
-                          std::to_string(shot_.solver.max_substeps));
-    std::vector<std::string> primaries;
-    for (const PrimarySpec& primary : shot_.primaries) primaries.push_back(primary.name);
-    for (std::size_t i = 0; i < shot_.cloths.size(); ++i) {
-      ClothSpec& cloth = shot_.cloths[i];
-      const std::string owner = "cloth " + in_quotes(cloth.name);
-      if (std::find(primaries.begin(), primaries.end(), cloth.name) != primaries.end())
-        faults_.add(cloth_places_[i], owner + ": a primary has the same name, their caches would overwrite each other");
-      if (cloth.on.empty() && primaries.size() == 1) cloth.on = primaries.front();
-      if (primaries.empty()) continue;
-      if (cloth.on.empty())
-        faults_.add(cloth_places_[i], owner + ": on is missing; it says who wears it (one of: " + joined(primaries) + ")");
-      else if (std::find(primaries.begin(), primaries.end(), cloth.on) == primaries.end())
-        faults_.add(place_of_on(cloth.on, cloth_places_[i]), with_hint(owner + ": on = " + in_quotes(cloth.on) + " names no primary", suggestion(cloth.on, primaries)));
-    }
-  }
-
-  /// Where the first of two keys stands that is there.
-  static Place place_of(const Value& root, std::string_view section, std::string_view first, std::string_view second) {
-    const Member* table = root.find(section);
-    if (table == nullptr) return {};
-    const Member* member = table->value.find(first);
-    if (member == nullptr) member = table->value.find(second);
-    return member != nullptr ? member->value.place : table->place;
-  }
-
-  Place place_of_on(const std::string& word, const Place& otherwise) const {
-    for (const auto& [on, place] : on_places_)
-      if (on == word) return place;
-    return otherwise;
-  }
-
-  static constexpr int k_most_frames = 100'000;
   std::filesystem::path folder_;
   const ShotVocabulary& vocabulary_;
   FaultList& faults_;
   Shot shot_;
-  std::vector<Place> primary_places_, cloth_places_;
-  std::vector<std::pair<std::string, Place>> on_places_;
 };
 
 Error error_of(const FaultList& list, const ShotFaults& faults, std::string_view file) {
@@ -334,7 +293,8 @@ Error error_of(const FaultList& list, const ShotFaults& faults, std::string_view
     const std::size_t more = faults.messages.size() - 1;
     hint = std::string("and ").append(std::to_string(more)).append(more == 1 ? " more fault" : " more faults");
   }
-  return {list.only_missing_files() ? ErrorKind::k_input : ErrorKind::k_usage, std::move(what), std::move(where), std::move(hint)};
+  return {list.only_missing_files() ? ErrorKind::k_input : ErrorKind::k_usage, std::move(what), std::move(where),
+          std::move(hint)};
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// A shot as text: the settings list (for hashing, and to say what changed) and the printed reference. Both walk the key table.
+// A shot as text: the settings list (for hashing, and to say what changed) and the printed reference. Both walk the key
+// table.
 #include <algorithm>
 #include <map>
 
@@ -13,11 +14,16 @@ namespace {
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out.append(1, '\\').append(1, c);
-    else if (c == '\n') out.append("\\n");
-    else if (c == '\t') out.append("\\t");
-    else if (c == '\r') out.append("\\r");
-    else out.append(1, c);
+    if (c == '"' || c == '\\')
+      out.append(1, '\\').append(1, c);
+    else if (c == '\n')
+      out.append("\\n");
+    else if (c == '\t')
+      out.append("\\t");
+    else if (c == '\r')
+      out.append("\\r");
+    else
+      out.append(1, c);
   }
   return out.append("\"");
 }
@@ -44,18 +50,29 @@ std::string vector_text(const Vec3& v) {
 std::string pin_text(const PinSpec& pin) {
   std::string out = "{ ";
   switch (pin.select) {
-    case PinSpec::Select::k_group: out.append("group = ").append(in_quotes(pin.group)); break;
-    case PinSpec::Select::k_within: out.append("within = ").append(number_text(pin.within)); break;
-    case PinSpec::Select::k_vertices: out.append("vertices = ").append(in_quotes(vertices_text(pin.vertices))); break;
+    case PinSpec::Select::k_group:
+      out.append("group = ").append(in_quotes(pin.group));
+      break;
+    case PinSpec::Select::k_within:
+      out.append("within = ").append(number_text(pin.within));
+      break;
+    case PinSpec::Select::k_vertices:
+      out.append("vertices = ").append(in_quotes(vertices_text(pin.vertices)));
+      break;
   }
-  out.append(", stiffness = ").append(number_text(pin.stiffness)).append(", max_pull = ").append(number_text(pin.max_pull));
+  out.append(", stiffness = ")
+      .append(number_text(pin.stiffness))
+      .append(", max_pull = ")
+      .append(number_text(pin.max_pull));
   return out.append(" }");
 }
 
 std::string relative_text(const std::filesystem::path& path, const std::filesystem::path& folder) {
   if (path.empty()) return in_quotes("");
   std::error_code ignored;  // without a current folder, absolute() gives nothing and the path stands as it is
-  const auto relative = std::filesystem::absolute(path, ignored).lexically_relative(std::filesystem::absolute(folder.empty() ? "." : folder, ignored).lexically_normal());
+  const auto relative =
+      std::filesystem::absolute(path, ignored)
+          .lexically_relative(std::filesystem::absolute(folder.empty() ? "." : folder, ignored).lexically_normal());
   return in_quotes(relative.empty() ? path.generic_string() : relative.generic_string());
 }
 
@@ -64,14 +81,16 @@ template <class Spec>
 struct ValueText {
   const Spec& spec;
   const std::filesystem::path& folder;
-  std::string operator()(int Spec::* member) const { return std::to_string(spec.*member); }
-  std::string operator()(double Spec::* member) const { return number_text(spec.*member); }
-  std::string operator()(bool Spec::* member) const { return spec.*member ? "true" : "false"; }
-  std::string operator()(std::string Spec::* member) const { return in_quotes(spec.*member); }
-  std::string operator()(std::filesystem::path Spec::* member) const { return relative_text(spec.*member, folder); }
-  std::string operator()(std::optional<double> Spec::* member) const { return spec.*member ? number_text(*(spec.*member)) : "none"; }
-  std::string operator()(Vec3 Spec::* member) const { return vector_text(spec.*member); }
-  std::string operator()(std::vector<std::string> Spec::* member) const { return list_text(spec.*member); }
+  std::string operator()(int Spec::*member) const { return std::to_string(spec.*member); }
+  std::string operator()(double Spec::*member) const { return number_text(spec.*member); }
+  std::string operator()(bool Spec::*member) const { return spec.*member ? "true" : "false"; }
+  std::string operator()(std::string Spec::*member) const { return in_quotes(spec.*member); }
+  std::string operator()(std::filesystem::path Spec::*member) const { return relative_text(spec.*member, folder); }
+  std::string operator()(std::optional<double> Spec::*member) const {
+    return spec.*member ? number_text(*(spec.*member)) : "none";
+  }
+  std::string operator()(Vec3 Spec::*member) const { return vector_text(spec.*member); }
+  std::string operator()(std::vector<std::string> Spec::*member) const { return list_text(spec.*member); }
   std::string operator()(FramesKey) const {
     if constexpr (std::is_same_v<Spec, Shot>) return in_quotes(frames_text({spec.first_frame, spec.last_frame}));
     return {};
@@ -130,22 +149,38 @@ std::string known_words(const std::vector<std::string>& words, std::string_view 
 }
 
 template <class Spec>
-void append_reference(std::string& out, std::string_view heading, std::span<const ShotKey<Spec>> keys, const ShotVocabulary& vocabulary) {
-  out.append("### `").append(heading).append("`\n\n| key | type | allowed | default | meaning |\n|---|---|---|---|---|\n");
+void append_reference(std::string& out, std::string_view heading, std::span<const ShotKey<Spec>> keys,
+                      const ShotVocabulary& vocabulary) {
+  out.append("### `").append(heading).append(
+      "`\n\n| key | type | allowed | default | meaning |\n|---|---|---|---|---|\n");
   const Spec defaults;
   const std::filesystem::path nowhere;
   for (const ShotKey<Spec>& key : keys) {
     std::string allowed = allowed_text(key.lowest, key.highest, key.unit);
-    if (key.choices == "@fabrics") allowed = known_words(vocabulary.fabrics, "a fabric's name");
-    else if (key.choices == "@formats") allowed = known_words(vocabulary.cache_formats, "cache formats");
-    else if (key.choices == "@primaries") allowed = "name of a primary";
-    else if (!key.choices.empty()) allowed = known_words(split_words(key.choices), "");
+    if (key.choices == "@fabrics")
+      allowed = known_words(vocabulary.fabrics, "a fabric's name");
+    else if (key.choices == "@formats")
+      allowed = known_words(vocabulary.cache_formats, "cache formats");
+    else if (key.choices == "@primaries")
+      allowed = "name of a primary";
+    else if (!key.choices.empty())
+      allowed = known_words(split_words(key.choices), "");
     std::string fallback = key.required ? "**required**" : std::visit(ValueText<Spec>{defaults, nowhere}, key.target);
-    const bool chooses = std::is_same_v<Spec, PinSpec> && &key < keys.data() + 3;  // one of the first three says which vertices
-    if (chooses) fallback = "one of these";
-    else if (fallback == "\"\"" || fallback == "none" || fallback == "[]" || fallback.empty()) fallback = "none";
-    else if (!key.required) fallback = std::string("`").append(fallback).append("`");
-    out.append("| `").append(key.name).append("` | ").append(type_text(key)).append(" | ").append(allowed).append(" | ");
+    const bool chooses =
+        std::is_same_v<Spec, PinSpec> && &key < keys.data() + 3;  // one of the first three says which vertices
+    if (chooses)
+      fallback = "one of these";
+    else if (fallback == "\"\"" || fallback == "none" || fallback == "[]" || fallback.empty())
+      fallback = "none";
+    else if (!key.required)
+      fallback = std::string("`").append(fallback).append("`");
+    out.append("| `")
+        .append(key.name)
+        .append("` | ")
+        .append(type_text(key))
+        .append(" | ")
+        .append(allowed)
+        .append(" | ");
     out.append(fallback).append(" | ").append(key.meaning).append(" |\n");
   }
   out.append("\n");
@@ -162,7 +197,8 @@ Settings settings(const Shot& shot) {
   for (const ClothSpec& cloth : shot.cloths) {
     const std::string section = "cloth." + key_word(cloth.name);
     append_section(out, section, cloth_keys(), cloth, folder);
-    for (const auto& [key, value] : cloth.fabric_overrides) out.emplace_back(std::string(section).append(".").append(key), number_text(value));
+    for (const auto& [key, value] : cloth.fabric_overrides)
+      out.emplace_back(std::string(section).append(".").append(key), number_text(value));
   }
   append_section(out, "wind", wind_keys(), shot.wind, folder);
   append_section(out, "solver", solver_keys(), shot.solver, folder);
@@ -182,8 +218,10 @@ std::vector<std::string> changed_settings(const Settings& before, const Settings
   std::vector<std::string> out;
   for (const auto& [key, value] : now) {
     const auto old_value = old_values.find(key);
-    if (old_value == old_values.end()) out.push_back(key + " is new (" + value + ")");
-    else if (old_value->second != value) out.push_back(key + " changed from " + old_value->second + " to " + value);
+    if (old_value == old_values.end())
+      out.push_back(key + " is new (" + value + ")");
+    else if (old_value->second != value)
+      out.push_back(key + " changed from " + old_value->second + " to " + value);
   }
   for (const auto& [key, value] : before)
     if (!new_values.contains(key)) out.push_back(key + " is gone (was " + value + ")");
@@ -198,7 +236,11 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
   append_reference(out, "[cloth.NAME]", cloth_keys(), vocabulary);
   out.append("A cloth may also override numbers of its fabric:\n\n| key | allowed |\n|---|---|\n");
   for (const FabricKeyWord& key : vocabulary.fabric_keys)
-    out.append("| `").append(key.key).append("` | ").append(allowed_text(key.lowest, key.highest, key.unit)).append(" |\n");
+    out.append("| `")
+        .append(key.key)
+        .append("` | ")
+        .append(allowed_text(key.lowest, key.highest, key.unit))
+        .append(" |\n");
   out.append("\n");
   append_reference(out, "pins = [ { ... } ]", pin_keys(), vocabulary);
   append_reference(out, "[wind]", wind_keys(), vocabulary);

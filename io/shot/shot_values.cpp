@@ -17,13 +17,15 @@ struct UnitSlip {
 };
 
 constexpr UnitSlip k_slips[] = {
-    {"kg/m2", "g/m2", 1e-3},     {"kg/m2", "gsm", 1e-3},       {"kg/m2", "oz/yd2", 0.0339057}, {"m", "mm", 1e-3},
-    {"m", "cm", 1e-2},           {"m", "inch", 0.0254},        {"m", "in", 0.0254},            {"m", "ft", 0.3048},
-    {"m", "km", 1e3},            {"1", "%", 1e-2},             {"m/s", "km/h", 1 / 3.6},       {"m/s", "kmh", 1 / 3.6},
-    {"m/s", "mph", 0.44704},     {"m/s", "cm/s", 1e-2},        {"s", "ms", 1e-3},              {"s", "min", 60},
-    {"N/m", "N/mm", 1e3},        {"N/m", "N/cm", 1e2},         {"N/m", "kN/m", 1e3},           {"N m", "uN m", 1e-6},
-    {"N m", "gf cm2/cm", 9.80665e-5}, {"N m", "N mm", 1e-3},   {"Pa", "kPa", 1e3},             {"Pa", "MPa", 1e6},
-    {"m/s2", "cm/s2", 1e-2},     {"m/s2", "g", 9.80665},
+    {"kg/m2", "g/m2", 1e-3}, {"kg/m2", "gsm", 1e-3},   {"kg/m2", "oz/yd2", 0.0339057},
+    {"m", "mm", 1e-3},       {"m", "cm", 1e-2},        {"m", "inch", 0.0254},
+    {"m", "in", 0.0254},     {"m", "ft", 0.3048},      {"m", "km", 1e3},
+    {"1", "%", 1e-2},        {"m/s", "km/h", 1 / 3.6}, {"m/s", "kmh", 1 / 3.6},
+    {"m/s", "mph", 0.44704}, {"m/s", "cm/s", 1e-2},    {"s", "ms", 1e-3},
+    {"s", "min", 60},        {"N/m", "N/mm", 1e3},     {"N/m", "N/cm", 1e2},
+    {"N/m", "kN/m", 1e3},    {"N m", "uN m", 1e-6},    {"N m", "gf cm2/cm", 9.80665e-5},
+    {"N m", "N mm", 1e-3},   {"Pa", "kPa", 1e3},       {"Pa", "MPa", 1e6},
+    {"m/s2", "cm/s2", 1e-2}, {"m/s2", "g", 9.80665},
 };
 
 bool in_range(double value, const Allowed& allowed) {
@@ -49,7 +51,8 @@ std::string folded_unit(std::string_view unit) {
   std::string out;
   for (const char c : unit)
     if (c != ' ' && c != '^' && c != '*' && c != '.' && c != '"') out.push_back(c);
-  for (const auto& [from, to] : {std::pair<std::string_view, std::string_view>{"\xc2\xb2", "2"}, {"\xc2\xb7", ""}, {"\xc2\xb5", "u"}})
+  for (const auto& [from, to] :
+       {std::pair<std::string_view, std::string_view>{"\xc2\xb2", "2"}, {"\xc2\xb7", ""}, {"\xc2\xb5", "u"}})
     for (std::size_t i = out.find(from); i != std::string::npos; i = out.find(from)) out.replace(i, from.size(), to);
   return out;
 }
@@ -61,7 +64,8 @@ std::string number_in_text(std::string_view text, const Allowed& allowed) {
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (fault != std::errc{} || !std::isfinite(value)) return {};
   const std::string unit = folded_unit({end, static_cast<std::size_t>(text.data() + text.size() - end)});
-  if (unit.empty() || unit == folded_unit(allowed.unit)) return std::string("write ").append(number_text(value)).append(" without quotes");
+  if (unit.empty() || unit == folded_unit(allowed.unit))
+    return std::string("write ").append(number_text(value)).append(" without quotes");
   for (const UnitSlip& slip : k_slips)
     if (slip.our_unit == allowed.unit && folded_unit(slip.unit) == unit)
       return printable(text).append(" is written ").append(short_number(value * slip.factor));
@@ -70,7 +74,9 @@ std::string number_in_text(std::string_view text, const Allowed& allowed) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view word) { return std::string("\"").append(printable(word)).append("\""); }
+std::string in_quotes(std::string_view word) {
+  return std::string("\"").append(printable(word)).append("\"");
+}
 
 std::string with_hint(std::string what, const std::string& hint) {
   return hint.empty() ? what : what.append(" (").append(hint).append(")");
@@ -99,7 +105,8 @@ namespace {
 std::string place_text(std::string_view file, const Place& place) {
   if (!place.command.empty()) return place.command;
   std::string out(file);
-  if (place.line > 0) out.append(":").append(std::to_string(place.line)).append(":").append(std::to_string(place.column));
+  if (place.line > 0)
+    out.append(":").append(std::to_string(place.line)).append(":").append(std::to_string(place.column));
   return out;
 }
 }  // namespace
@@ -108,7 +115,8 @@ std::vector<std::string> FaultList::texts(std::string_view file) const {
   std::vector<std::string> out;
   for (const Entry& e : sorted()) {
     if (out.size() == 200) {
-      out.push_back(std::string(file).append(": and ").append(std::to_string(entries_.size() - 200)).append(" more faults"));
+      out.push_back(
+          std::string(file).append(": and ").append(std::to_string(entries_.size() - 200)).append(" more faults"));
       break;
     }
     out.push_back(place_text(file, e.place).append(": ").append(e.text));
@@ -138,8 +146,10 @@ std::optional<double> ValueReader::number(const Value& value, const Allowed& all
     return {};
   }
   if (!in_range(value.number, allowed)) {
-    fault(value, with_hint(std::string("= ").append(number_text(value.number)).append(" is outside ").append(range_text(allowed)),
-                           unit_slip(value.number, allowed)));
+    fault(value,
+          with_hint(
+              std::string("= ").append(number_text(value.number)).append(" is outside ").append(range_text(allowed)),
+              unit_slip(value.number, allowed)));
     return {};
   }
   return value.number;
@@ -164,12 +174,15 @@ std::optional<std::string> ValueReader::text(const Value& value) const {
     if (!word) {
       const bool number_like = value.kind == Value::Kind::k_integer || value.kind == Value::Kind::k_number;
       fault(value, with_hint(std::string("needs a text, not ").append(describe(value)),
-                             number_like ? std::string("write \"").append(number_text(value.number)).append("\"") : std::string()));
+                             number_like ? std::string("write \"").append(number_text(value.number)).append("\"")
+                                         : std::string()));
       return {};
     }
   }
   if (std::any_of(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; })) {
-    fault(value, std::string("has control characters in \"").append(printable(out)).append("\" (a backslash is written \\\\ or in '...')"));
+    fault(value, std::string("has control characters in \"")
+                     .append(printable(out))
+                     .append("\" (a backslash is written \\\\ or in '...')"));
     return {};
   }
   return out;
@@ -178,7 +191,8 @@ std::optional<std::string> ValueReader::text(const Value& value) const {
 std::optional<Vec3> ValueReader::vector(const Value& value, const Allowed& allowed) const {
   if (value.kind != Value::Kind::k_list || value.items.size() != 3) {
     std::string what = "needs three numbers [x, y, z], not ";
-    what.append(value.kind == Value::Kind::k_list ? std::string("a list of ").append(std::to_string(value.items.size())) : describe(value));
+    what.append(value.kind == Value::Kind::k_list ? std::string("a list of ").append(std::to_string(value.items.size()))
+                                                  : describe(value));
     fault(value, std::move(what));
     return {};
   }
@@ -203,7 +217,8 @@ std::optional<std::vector<std::string>> ValueReader::texts(const Value& value) c
     const auto word = text(item);
     good = good && word.has_value();
     if (!word) continue;
-    if (std::find(out.begin(), out.end(), *word) != out.end()) fault(item, std::string("names ").append(in_quotes(*word)).append(" twice"));
+    if (std::find(out.begin(), out.end(), *word) != out.end())
+      fault(item, std::string("names ").append(in_quotes(*word)).append(" twice"));
     out.push_back(*word);
   }
   return good ? std::optional(out) : std::nullopt;
@@ -211,7 +226,8 @@ std::optional<std::vector<std::string>> ValueReader::texts(const Value& value) c
 
 bool ValueReader::is_one_of(const Value& value, const std::string& word, std::span<const std::string> choices) const {
   if (choices.empty() || std::find(choices.begin(), choices.end(), word) != choices.end()) return true;
-  fault(value, with_hint(std::string("= \"").append(printable(word)).append("\" is not known"), suggestion(word, choices)));
+  fault(value,
+        with_hint(std::string("= \"").append(printable(word)).append("\" is not known"), suggestion(word, choices)));
   return false;
 }
 
@@ -228,15 +244,16 @@ std::optional<std::filesystem::path> ValueReader::file(const Value& value, const
   const bool pattern = name->find_first_of("#%*") != std::string::npos;
   if (!pattern && !std::filesystem::exists(path, ignored)) {
     std::string hint = name->find('\\') != std::string::npos ? "folders are separated by /"
-                       : name->starts_with("~")               ? "~ is not expanded; write the whole path"
-                                                              : similar_file(path);
+                       : name->starts_with("~")              ? "~ is not expanded; write the whole path"
+                                                             : similar_file(path);
     fault(value, with_hint(std::string("= \"").append(printable(*name, 200)).append("\" does not exist"), hint), true);
   }
   return path;
 }
 
 std::string unit_slip(double value, const Allowed& allowed) {
-  // Where several units would do, the one that lands nearest to the middle of the range: a height of 175 is in cm, not in mm.
+  // Where several units would do, the one that lands nearest to the middle of the range: a height of 175 is in cm, not
+  // in mm.
   const UnitSlip* best = nullptr;
   double best_distance = std::numeric_limits<double>::infinity();
   for (const UnitSlip& slip : k_slips) {
@@ -247,7 +264,11 @@ std::string unit_slip(double value, const Allowed& allowed) {
     if (distance < best_distance) best = &slip, best_distance = distance;
   }
   if (best == nullptr) return {};
-  return number_text(value).append(" ").append(best->unit).append(" is written ").append(short_number(value * best->factor));
+  return number_text(value)
+      .append(" ")
+      .append(best->unit)
+      .append(" is written ")
+      .append(short_number(value * best->factor));
 }
 
 std::string similar_file(const std::filesystem::path& missing) {
@@ -257,10 +278,15 @@ std::string similar_file(const std::filesystem::path& missing) {
   if (!std::filesystem::is_directory(folder, fault)) {
     // Walk up to the first folder that exists and name what is missing from it.
     std::filesystem::path gone = folder;
-    while (gone.has_parent_path() && gone.parent_path() != gone && !std::filesystem::is_directory(gone.parent_path(), fault)) gone = gone.parent_path();
+    while (gone.has_parent_path() && gone.parent_path() != gone &&
+           !std::filesystem::is_directory(gone.parent_path(), fault))
+      gone = gone.parent_path();
     if (gone == missing || gone == ".") return {};
     const std::string near = similar_file(gone);
-    return std::string("there is no folder \"").append(printable(gone.generic_string(), 200)).append(near.empty() ? "\"" : "\", ").append(near);
+    return std::string("there is no folder \"")
+        .append(printable(gone.generic_string(), 200))
+        .append(near.empty() ? "\"" : "\", ")
+        .append(near);
   }
   std::vector<std::string> names;
   std::filesystem::directory_iterator entries(folder, fault);
@@ -274,7 +300,10 @@ std::string similar_file(const std::filesystem::path& missing) {
                [&](const std::string& n) { return std::filesystem::path(n).extension() == missing.extension(); });
   std::string near = nearest_word(wanted, same_kind);
   if (near.empty()) near = nearest_word(wanted, names);
-  if (near.empty() && !same_kind.empty()) return std::string("there is \"").append(joined(std::span(same_kind).first(std::min<std::size_t>(3, same_kind.size())), "\", \"")).append("\"");
+  if (near.empty() && !same_kind.empty())
+    return std::string("there is \"")
+        .append(joined(std::span(same_kind).first(std::min<std::size_t>(3, same_kind.size())), "\", \""))
+        .append("\"");
   return near.empty() ? near : std::string("did you mean \"").append(near).append("\"?");
 }
 

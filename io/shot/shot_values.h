@@ -1,4 +1,5 @@
-// Values of the shot file turned into typed ones; what does not fit becomes a fault that says what would. For shot_read.cpp.
+// Values of the shot file turned into typed ones; what does not fit becomes a fault that says what would. For
+// shot_read.cpp.
 #pragma once
 
 #include <filesystem>

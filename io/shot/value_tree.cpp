@@ -1,5 +1,5 @@
-// The only file that includes toml++ (without exceptions). Tables come out of toml++ sorted by name; here they get the order of
-// the file back, because the order of cloths is the order of caches.
+// The only file that includes toml++ (without exceptions). Tables come out of toml++ sorted by name; here they get the
+// order of the file back, because the order of cloths is the order of caches.
 #include "io/shot/value_tree.h"
 
 #define TOML_EXCEPTIONS 0
@@ -49,7 +49,9 @@ Value converted(const toml::node& node) {
   return out;
 }
 
-bool holds(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+bool holds(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
 
 std::string_view trimmed(std::string_view s) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -77,9 +79,14 @@ std::string line_hint(std::string_view line) {
   for (const std::string_view word : {"True", "False", "TRUE", "FALSE", "yes", "no", "on", "off"})
     if (value == word) return "write true or false";
   const std::size_t number_end = value.find_first_not_of("0123456789.+-eE");
-  const bool number_and_unit = value.front() >= '0' && value.front() <= '9' && number_end != std::string_view::npos && number_end > 0;
+  const bool number_and_unit =
+      value.front() >= '0' && value.front() <= '9' && number_end != std::string_view::npos && number_end > 0;
   if (number_and_unit) return "numbers are written without a unit, as SI";
-  return std::string("text needs quotes: ").append(printable(key, 40)).append(" = \"").append(printable(value, 40)).append("\"");
+  return std::string("text needs quotes: ")
+      .append(printable(key, 40))
+      .append(" = \"")
+      .append(printable(value, 40))
+      .append("\"");
 }
 
 /// toml++ speaks of its parser; the artist wants to know what is wrong with his file.
@@ -106,17 +113,26 @@ const Member* Value::find(std::string_view key) const {
   return nullptr;
 }
 
-Member* Value::find(std::string_view key) { return const_cast<Member*>(static_cast<const Value*>(this)->find(key)); }
+Member* Value::find(std::string_view key) {
+  return const_cast<Member*>(static_cast<const Value*>(this)->find(key));
+}
 
 std::string describe(const Value& value) {
   switch (value.kind) {
-    case Value::Kind::k_flag: return value.flag ? "true" : "false";
-    case Value::Kind::k_integer: return std::string("the number ").append(std::to_string(value.integer));
-    case Value::Kind::k_number: return std::string("the number ").append(number_text(value.number));
-    case Value::Kind::k_text: return std::string("the text \"").append(printable(value.text)).append("\"");
-    case Value::Kind::k_list: return "a list";
-    case Value::Kind::k_table: return "a table";
-    case Value::Kind::k_date: return "a date";
+    case Value::Kind::k_flag:
+      return value.flag ? "true" : "false";
+    case Value::Kind::k_integer:
+      return std::string("the number ").append(std::to_string(value.integer));
+    case Value::Kind::k_number:
+      return std::string("the number ").append(number_text(value.number));
+    case Value::Kind::k_text:
+      return std::string("the text \"").append(printable(value.text)).append("\"");
+    case Value::Kind::k_list:
+      return "a list";
+    case Value::Kind::k_table:
+      return "a table";
+    case Value::Kind::k_date:
+      return "a date";
   }
   return "something else";
 }

@@ -24,8 +24,8 @@ struct Value {
   bool flag = false;
   bool loose = false;  ///< from the command line, where quotes are lost: 12 may be meant as "12"
   std::int64_t integer = 0;
-  double number = 0;   ///< also set for integers
-  std::string text;    ///< strings; for loose values the words as typed
+  double number = 0;  ///< also set for integers
+  std::string text;   ///< strings; for loose values the words as typed
   std::vector<Value> items;
   std::vector<Member> members;  ///< in the order of the file
 

@@ -12,7 +12,9 @@ namespace {
 
 using Cell = std::array<long long, 3>;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 Cell cell_of(const Vec3& p, double size) {
   Cell cell;
@@ -37,7 +39,8 @@ WeldedMesh weld(const Mesh& mesh, double distance) {
           const auto found = kept_in.find({home[0] + dx, home[1] + dy, home[2] + dz});
           if (found == kept_in.end()) continue;
           for (const int k : found->second)
-            if ((out.mesh.positions[at(k)] - p).squaredNorm() < distance * distance && (joined < 0 || k < joined)) joined = k;
+            if ((out.mesh.positions[at(k)] - p).squaredNorm() < distance * distance && (joined < 0 || k < joined))
+              joined = k;
         }
     if (joined < 0) {
       joined = out.mesh.vertex_count();
@@ -71,7 +74,8 @@ WeldedMesh weld(const Mesh& mesh, double distance) {
       weight = std::max(weight, group.weights[i]);
     }
     VertexGroup joined_group{group.name, {}, {}};
-    for (const auto& [vertex, weight] : weights) joined_group.vertices.push_back(vertex), joined_group.weights.push_back(weight);
+    for (const auto& [vertex, weight] : weights)
+      joined_group.vertices.push_back(vertex), joined_group.weights.push_back(weight);
     out.mesh.groups.push_back(std::move(joined_group));
   }
   return out;

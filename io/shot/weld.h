@@ -1,5 +1,5 @@
-// Joins vertices that lie at one place, for garments whose seams were modelled as separate borders. The simulation runs on the
-// joined mesh; caches are written in the file's own vertex order through `joined_of`.
+// Joins vertices that lie at one place, for garments whose seams were modelled as separate borders. The simulation runs
+// on the joined mesh; caches are written in the file's own vertex order through `joined_of`.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ struct WeldedMesh {
   std::vector<int> joined_of;  ///< per vertex of the file: its vertex in `mesh`
 };
 
-/// Vertices nearer than `distance` [m, > 0] to an earlier kept one become that one, first come, first kept; their order stays.
-/// Faces that lose their area by it (fewer than three different corners) are dropped, uvs are kept per corner.
+/// Vertices nearer than `distance` [m, > 0] to an earlier kept one become that one, first come, first kept; their order
+/// stays. Faces that lose their area by it (fewer than three different corners) are dropped, uvs are kept per corner.
 WeldedMesh weld(const Mesh& mesh, double distance);
 
 /// Positions of the joined mesh, handed back to all vertices of the file.

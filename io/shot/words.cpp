@@ -28,7 +28,8 @@ int edit_distance(std::string_view a_text, std::string_view b_text) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const int same = a[i - 1] == b[j - 1] ? 0 : 1;
       now[j] = std::min({back[j] + 1, now[j - 1] + 1, back[j - 1] + same});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = std::min(now[j], two_back[j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        now[j] = std::min(now[j], two_back[j - 2] + 1);
     }
     two_back.swap(back);
     back.swap(now);
@@ -49,7 +50,8 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
   if (wanted.size() >= 3)
     for (const std::string& candidate : candidates) {
       const std::string c = folded(candidate);
-      if (c.size() >= 3 && (c.find(wanted) != std::string::npos || wanted.find(c) != std::string::npos)) return candidate;
+      if (c.size() >= 3 && (c.find(wanted) != std::string::npos || wanted.find(c) != std::string::npos))
+        return candidate;
     }
   return {};
 }

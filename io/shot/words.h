@@ -1,4 +1,5 @@
-// What was probably meant: nearest word by edit distance, for every message that refuses a name. For all readers of user text.
+// What was probably meant: nearest word by edit distance, for every message that refuses a name. For all readers of
+// user text.
 #pragma once
 
 #include <span>
@@ -8,10 +9,12 @@
 
 namespace ft {
 
-/// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment); case, '-' and '_' do not count.
+/// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment); case, '-' and '_' do not
+/// count.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The nearest candidate, when it is near enough to be a slip of the pen or one contains the other; else empty. Ties: the first.
+/// The nearest candidate, when it is near enough to be a slip of the pen or one contains the other; else empty. Ties:
+/// the first.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
 /// `did you mean "denim"?`, or `known: cotton, denim, ...` when nothing is near; empty without candidates.

@@ -21,7 +21,8 @@ struct Fabric {
   double poisson = 0.3;
   /// Bending rigidity of the warp and of the weft yarns: fold across them [N m]. 1e-6 silk, 1e-4 denim. 0 folds freely.
   double bend_warp = 1e-5, bend_weft = 1e-5;
-  /// Strain-rate damping time of the membrane and of bending [s]: stress = C (strain + time * strain rate). 0 none, 0.01 dull.
+  /// Strain-rate damping time of the membrane and of bending [s]: stress = C (strain + time * strain rate). 0 none,
+  /// 0.01 dull.
   double damping = 2e-3;
   /// Air drag: normal and tangential coefficients of the panel law [1].
   double drag_normal = 1.2, drag_tangential = 0.03;

@@ -1,37 +1,42 @@
-// The list of fabrics, in SI units, each with its source. For shot files ("fabric = "denim"") and for tests of materials.
+// The list of fabrics, in SI units, each with its source. For shot files ("fabric = "denim"") and for tests of
+// materials.
 //
-// [W] Wang, O'Brien, Ramamoorthi 2011, "Data-driven elastic models for cloth", the published ten-material database. It is nonlinear;
-//     we keep one linear constant each: stretch = mean of c11 (weft) and c22 (warp) over the strained rows, shear = c33 of the
-//     unstrained row for knits (the strained ones scatter around it), mean of the strained rows for wovens; poisson =
-//     mean c12 / sqrt(c11 c22), at most 0.45; bending = mean over the curvatures 0, 10, 20, 30 /m of the row whose fold lies along
-//     the weft (bend_warp) and along the warp (bend_weft).
-// [P] Penava, Simic Penava, Knezic 2014, "Determination of the elastic constants of plain woven fabrics by a tensile test", as
+// [W] Wang, O'Brien, Ramamoorthi 2011, "Data-driven elastic models for cloth", the published ten-material database. It
+// is nonlinear;
+//     we keep one linear constant each: stretch = mean of c11 (weft) and c22 (warp) over the strained rows, shear = c33
+//     of the unstrained row for knits (the strained ones scatter around it), mean of the strained rows for wovens;
+//     poisson = mean c12 / sqrt(c11 c22), at most 0.45; bending = mean over the curvatures 0, 10, 20, 30 /m of the row
+//     whose fold lies along the weft (bend_warp) and along the warp (bend_weft).
+// [P] Penava, Simic Penava, Knezic 2014, "Determination of the elastic constants of plain woven fabrics by a tensile
+// test", as
 //     quoted by public simulation code: areal density and Poisson's ratio.
-// [literature] Typical values of the Kawabata system (KES), recalled and not read again: 1 gf cm2/cm = 9.807e-5 N m for bending,
+// [literature] Typical values of the Kawabata system (KES), recalled and not read again: 1 gf cm2/cm = 9.807e-5 N m for
+// bending,
 //     1 gf/cm/degree = 56.2 N/m for shear. Right in size, not a measurement of one piece of cloth.
 // Damping times are ours, none of the sources has any: as small as what swings in a second and is still in a few.
-#include "solvers/energies/fabric.h"
-
 #include <algorithm>
+
+#include "solvers/energies/fabric.h"
 
 namespace ft {
 namespace {
 
-constexpr double k_gf_cm2_per_cm = 9.80665e-5;      ///< N m
-constexpr double k_gf_per_cm_degree = 56.188;       ///< N/m per radian
+constexpr double k_gf_cm2_per_cm = 9.80665e-5;  ///< N m
+constexpr double k_gf_per_cm_degree = 56.188;   ///< N/m per radian
 
 constexpr const char* k_wang = "Wang, O'Brien, Ramamoorthi 2011, ";
 
 /// drag_normal and drag_tangential: flat plates, 1.2 and 0.03 for all, as air does not know the yarn.
-Fabric measured(std::string name, double mass, double warp, double weft, double shear, double poisson, double bend_warp, double bend_weft,
-                double damping, std::string source) {
-  return {std::move(name), mass, warp, weft, shear, poisson, bend_warp, bend_weft, damping, 1.2, 0.03, std::move(source)};
+Fabric measured(std::string name, double mass, double warp, double weft, double shear, double poisson, double bend_warp,
+                double bend_weft, double damping, std::string source) {
+  return {std::move(name), mass,      warp,    weft, shear, poisson,
+          bend_warp,       bend_weft, damping, 1.2,  0.03,  std::move(source)};
 }
 
-Fabric typical(std::string name, double mass, double warp, double weft, double kes_shear, double poisson, double kes_bend_warp,
-               double kes_bend_weft, double damping, std::string source) {
-  return measured(std::move(name), mass, warp, weft, kes_shear * k_gf_per_cm_degree, poisson, kes_bend_warp * k_gf_cm2_per_cm,
-                  kes_bend_weft * k_gf_cm2_per_cm, damping, std::move(source));
+Fabric typical(std::string name, double mass, double warp, double weft, double kes_shear, double poisson,
+               double kes_bend_warp, double kes_bend_weft, double damping, std::string source) {
+  return measured(std::move(name), mass, warp, weft, kes_shear * k_gf_per_cm_degree, poisson,
+                  kes_bend_warp * k_gf_cm2_per_cm, kes_bend_weft * k_gf_cm2_per_cm, damping, std::move(source));
 }
 
 }  // namespace
@@ -41,16 +46,19 @@ std::span<const Fabric> fabrics() {
       measured("jersey", 0.187, 331, 97, 36.9, 0.45, 32.4e-6, 15.1e-6, 3e-3,
                std::string(k_wang) + "gray-interlock (tee-shirt, 60 % cotton 40 % polyester)"),
       typical("cotton", 0.150, 500, 500, 1.8, 0.243, 0.10, 0.10, 2e-3,
-              "Penava et al. 2014 (density, Poisson's ratio, plain weave); stretch between their 261 N/m at first load and Wang 2011's 2110 "
+              "Penava et al. 2014 (density, Poisson's ratio, plain weave); stretch between their 261 N/m at first load "
+              "and Wang 2011's 2110 "
               "N/m of a cotton-polyester weave; bending and shear typical KES values of shirting [literature]"),
       measured("denim", 0.324, 1055, 227, 72.6, 0.09, 62.0e-6, 109.6e-6, 3e-3,
                std::string(k_wang) + "11oz-black-denim (jeans, 99 % cotton 1 % spandex, elastic weft)"),
       typical("silk", 0.060, 400, 350, 0.32, 0.2, 0.036, 0.030, 1e-3,
               "typical KES values of silk filament weaves, 14 momme; stretch at garment loads [literature]"),
       typical("wool", 0.235, 400, 300, 0.7, 0.277, 0.13, 0.09, 3e-3,
-              "Penava et al. 2014 (density, Poisson's ratio, plain weave); the rest typical KES values of suiting [literature]"),
+              "Penava et al. 2014 (density, Poisson's ratio, plain weave); the rest typical KES values of suiting "
+              "[literature]"),
       typical("ripstop", 0.0475, 3000, 2500, 3.0, 0.15, 0.055, 0.045, 1e-3,
-              "coated nylon ripstop of kites and shells: Doyle, North Cloth (1.4 oz/yd2); stiffness typical of coated nylon [literature]"),
+              "coated nylon ripstop of kites and shells: Doyle, North Cloth (1.4 oz/yd2); stiffness typical of coated "
+              "nylon [literature]"),
       typical("linen", 0.185, 900, 800, 1.2, 0.15, 0.20, 0.16, 3e-3, "typical KES values of dress linen [literature]"),
       measured("sweater", 0.224, 221, 75, 17.6, 0.45, 42.1e-6, 34.8e-6, 5e-3,
                std::string(k_wang) + "navy-sparkle-sweat (sweater, 96 % polyester 4 % spandex)"),
@@ -78,7 +86,7 @@ namespace {
 
 struct Member {
   FabricKey key;
-  double Fabric::* member;
+  double Fabric::*member;
 };
 
 std::span<const Member> members() {

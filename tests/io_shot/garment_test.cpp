@@ -113,7 +113,8 @@ TEST(Garment, Coincidence_is_found_as_by_brute_force) {
   Mesh mesh = grid(9, 9);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     // A crumpled sheet: many vertices of nearly equal x, some in exactly one place.
-    mesh.positions[i] = Vec3(0.001 * static_cast<double>(i % 3), 0.01 * static_cast<double>((i * 37) % 89), 0.01 * static_cast<double>((i * 53) % 7));
+    mesh.positions[i] = Vec3(0.001 * static_cast<double>(i % 3), 0.01 * static_cast<double>((i * 37) % 89),
+                             0.01 * static_cast<double>((i * 53) % 7));
   }
   std::size_t twins = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
@@ -123,8 +124,10 @@ TEST(Garment, Coincidence_is_found_as_by_brute_force) {
         break;
       }
   const auto findings = inspect_garment(mesh);
-  if (twins == 0) EXPECT_FALSE(has(findings.faults, "exactly on another"));
-  else EXPECT_TRUE(has(findings.faults, std::to_string(twins) + (twins == 1 ? " vertex lies" : " vertices lie")));
+  if (twins == 0)
+    EXPECT_FALSE(has(findings.faults, "exactly on another"));
+  else
+    EXPECT_TRUE(has(findings.faults, std::to_string(twins) + (twins == 1 ? " vertex lies" : " vertices lie")));
 }
 
 TEST(Garment, Isolated_vertices_are_a_note_even_when_they_coincide) {
@@ -154,7 +157,8 @@ TEST(Garment, All_faults_come_in_one_message_that_names_the_mesh) {
   const Status status = check_garment(mesh);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().where, "mesh \"cape\"");
-  for (const char* part : {"no area", "a vertex twice", "exactly on another"}) EXPECT_NE(status.error().what.find(part), std::string::npos) << part;
+  for (const char* part : {"no area", "a vertex twice", "exactly on another"})
+    EXPECT_NE(status.error().what.find(part), std::string::npos) << part;
 }
 
 /// A tube cut open: the seam's vertices exist twice.
@@ -194,9 +198,11 @@ TEST(Weld, Kept_vertices_are_apart_and_joined_ones_near_for_any_distance) {
   for (const double distance : {1e-6, 1e-3, 5e-3, 0.02}) {
     const WeldedMesh welded = weld(mesh, distance);
     for (std::size_t i = 0; i < welded.mesh.positions.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) ASSERT_GE((welded.mesh.positions[i] - welded.mesh.positions[j]).norm(), distance);
+      for (std::size_t j = 0; j < i; ++j)
+        ASSERT_GE((welded.mesh.positions[i] - welded.mesh.positions[j]).norm(), distance);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-      ASSERT_LT((mesh.positions[i] - welded.mesh.positions[static_cast<std::size_t>(welded.joined_of[i])]).norm(), distance);
+      ASSERT_LT((mesh.positions[i] - welded.mesh.positions[static_cast<std::size_t>(welded.joined_of[i])]).norm(),
+                distance);
     for (const int size : welded.mesh.face_sizes) ASSERT_GE(size, 3);
   }
 }

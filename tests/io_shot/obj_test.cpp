@@ -101,8 +101,10 @@ TEST(Obj, Vertex_colours_become_weighted_groups) {
 
 TEST(Obj, Line_ends_blanks_comments_and_continuations_do_not_matter) {
   const auto plain = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "x");
-  for (const char* text : {"\xef\xbb\xbfv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "  v\t0  0 0 # one\nv +1 0 0\n\n\nv 0 1 0 \nf 1 2 3 # two",
-                           "v 0 \\\n 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\r\n2 \\\n3", "f 1 2 3\nv 0 0 0\nv 1e0 0 0\nv 0 1.0 -0\n", "v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1//9 2//9 3//9"}) {
+  for (const char* text :
+       {"\xef\xbb\xbfv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
+        "  v\t0  0 0 # one\nv +1 0 0\n\n\nv 0 1 0 \nf 1 2 3 # two", "v 0 \\\n 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\r\n2 \\\n3",
+        "f 1 2 3\nv 0 0 0\nv 1e0 0 0\nv 0 1.0 -0\n", "v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1//9 2//9 3//9"}) {
     const auto mesh = parse_obj(text, "x");
     ASSERT_TRUE(mesh.ok()) << mesh.error().text();
     EXPECT_EQ(mesh->positions, plain->positions) << text;
@@ -154,8 +156,10 @@ TEST(Obj, Cut_at_any_byte_is_a_sound_mesh_or_a_fault) {
   const std::string text = k_good;
   for (std::size_t n = 0; n <= text.size(); ++n) {
     const auto mesh = parse_obj(std::string_view(text).substr(0, n), "cut.obj");
-    if (mesh) expect_sound(*mesh);
-    else EXPECT_FALSE(mesh.error().what.empty());
+    if (mesh)
+      expect_sound(*mesh);
+    else
+      EXPECT_FALSE(mesh.error().what.empty());
   }
 }
 
@@ -170,11 +174,15 @@ TEST(Obj, Ten_thousand_mutations_are_sound_meshes_or_faults) {
     for (int e = 0; e < edits; ++e) {
       const std::uint64_t draw = 10 + 4 * static_cast<std::uint64_t>(e);
       const std::size_t at = static_cast<std::size_t>(random_uniform(key, draw) * static_cast<double>(text.size()));
-      const char c = alphabet[static_cast<std::size_t>(random_uniform(key, draw + 1) * static_cast<double>(alphabet.size()))];
+      const char c =
+          alphabet[static_cast<std::size_t>(random_uniform(key, draw + 1) * static_cast<double>(alphabet.size()))];
       const double kind = random_uniform(key, draw + 2);
-      if (kind < 0.5) text[at] = c;
-      else if (kind < 0.75) text.insert(text.begin() + static_cast<std::ptrdiff_t>(at), c);
-      else text.erase(at, 1 + static_cast<std::size_t>(random_uniform(key, draw + 3) * 20));
+      if (kind < 0.5)
+        text[at] = c;
+      else if (kind < 0.75)
+        text.insert(text.begin() + static_cast<std::ptrdiff_t>(at), c);
+      else
+        text.erase(at, 1 + static_cast<std::size_t>(random_uniform(key, draw + 3) * 20));
     }
     const auto mesh = parse_obj(text, "mutated.obj");
     if (mesh) expect_sound(*mesh), ++accepted;
@@ -189,7 +197,8 @@ TEST(Obj, Written_mesh_reads_back_to_the_same_bits) {
   Mesh mesh;
   for (std::uint64_t i = 0; i < 60; ++i) {
     const RandomKey key{.seed = 3, .element = i};
-    mesh.positions.emplace_back(random_uniform(key, 0) - 0.5, 1e-9 * random_uniform(key, 1), 1e6 * random_uniform(key, 2));
+    mesh.positions.emplace_back(random_uniform(key, 0) - 0.5, 1e-9 * random_uniform(key, 1),
+                                1e6 * random_uniform(key, 2));
     mesh.uvs.emplace_back(random_uniform(key, 3), random_uniform(key, 4));
   }
   for (int f = 0; f < 50; ++f) {
@@ -256,13 +265,16 @@ TEST_P(RealGarment, Reads_as_the_plain_reader_does_and_passes_or_names_its_fault
   EXPECT_EQ(mesh->face_vertices, plain.face_vertices);
   const Status status = check_garment(*mesh);
   // The end of a simulation with its seams closed by coincident vertices: 98 of them lie on others.
-  if (path.filename() == "drape.obj") EXPECT_TRUE(!status.ok() && status.error().what.find("98 vertices lie") != std::string::npos);
-  else EXPECT_TRUE(status.ok()) << status.error().text();
+  if (path.filename() == "drape.obj")
+    EXPECT_TRUE(!status.ok() && status.error().what.find("98 vertices lie") != std::string::npos);
+  else
+    EXPECT_TRUE(status.ok()) << status.error().text();
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RealGarment,
-                         testing::Values("characters/mh_adult_cmu_dressed/dress_elegantsuit01_bind.obj", "garments/cipc_dress_knife/stage.obj",
-                                         "garments/cipc_dress_knife/drape.obj", "garments/cipc_skirts/skirt4K.obj",
+                         testing::Values("characters/mh_adult_cmu_dressed/dress_elegantsuit01_bind.obj",
+                                         "garments/cipc_dress_knife/stage.obj", "garments/cipc_dress_knife/drape.obj",
+                                         "garments/cipc_skirts/skirt4K.obj",
                                          "garments/cipc_mannequin_rumba/body_frame0_yup.obj",
                                          "garments/makehuman_clothes/female_casualsuit01/female_casualsuit01.obj",
                                          "garments/makehuman_clothes/female_elegantsuit01/female_elegantsuit01.obj",

@@ -47,7 +47,8 @@ formats = ["abc", "pc2"]
 class ShotFile : public testing::Test {
  protected:
   void SetUp() override {
-    for (const char* name : {"mannequin.glb", "dress.obj", "walk.fbx"}) ASSERT_TRUE(write_text_durably(folder_ / name, "x").ok());
+    for (const char* name : {"mannequin.glb", "dress.obj", "walk.fbx"})
+      ASSERT_TRUE(write_text_durably(folder_ / name, "x").ok());
   }
   Result<Shot> parse(std::string_view text, const std::vector<std::string>& overrides = {}) {
     return parse_shot(text, folder_ / "shot.toml", words(), overrides, faults_);

@@ -23,11 +23,15 @@ TEST_F(ShotFile, Mutations_are_shots_or_faults) {
     for (int e = 0; e < edits; ++e) {
       const std::uint64_t draw = 10 + 4 * static_cast<std::uint64_t>(e);
       const std::size_t at = static_cast<std::size_t>(random_uniform(key, draw) * static_cast<double>(text.size()));
-      const char c = alphabet[static_cast<std::size_t>(random_uniform(key, draw + 1) * static_cast<double>(alphabet.size()))];
+      const char c =
+          alphabet[static_cast<std::size_t>(random_uniform(key, draw + 1) * static_cast<double>(alphabet.size()))];
       const double kind = random_uniform(key, draw + 2);
-      if (kind < 0.4) text[at] = c;
-      else if (kind < 0.7) text.insert(text.begin() + static_cast<std::ptrdiff_t>(at), c);
-      else text.erase(at, 1 + static_cast<std::size_t>(random_uniform(key, draw + 3) * 30));
+      if (kind < 0.4)
+        text[at] = c;
+      else if (kind < 0.7)
+        text.insert(text.begin() + static_cast<std::ptrdiff_t>(at), c);
+      else
+        text.erase(at, 1 + static_cast<std::size_t>(random_uniform(key, draw + 3) * 30));
     }
     const auto shot = parse(text);
     ASSERT_EQ(shot.ok(), faults_.messages.empty());
@@ -35,6 +39,30 @@ TEST_F(ShotFile, Mutations_are_shots_or_faults) {
     accepted += shot.ok() ? 1 : 0;
   }
   EXPECT_GT(accepted, 30);
+}
+
+TEST_F(ShotFile, Mutated_overrides_are_taken_or_refused) {
+  const std::string_view alphabet = "[]{}=\"'.,-019e# \\\n\x00\xff";
+  int accepted = 0;
+  for (std::uint64_t round = 0; round < 2'000; ++round) {
+    std::string text = round % 2 == 0 ? "cloth.dress.fabric=denim" : "cloth.cape.pins=[{within=0.02}]";
+    const RandomKey key{.seed = 5, .frame = round};
+    for (std::uint64_t e = 0; e < 1 + round % 3; ++e) {
+      const std::size_t at = static_cast<std::size_t>(random_uniform(key, 3 * e) * static_cast<double>(text.size()));
+      const char c =
+          alphabet[static_cast<std::size_t>(random_uniform(key, 3 * e + 1) * static_cast<double>(alphabet.size()))];
+      if (random_uniform(key, 3 * e + 2) < 0.5)
+        text[at] = c;
+      else
+        text.erase(at, 1);
+    }
+    const auto shot = parse(k_good, {text});
+    ASSERT_EQ(shot.ok(), faults_.messages.empty()) << text;
+    for (const std::string& message : faults_.messages) ASSERT_TRUE(message.starts_with("--set ")) << message;
+    accepted += shot.ok() ? 1 : 0;
+  }
+  EXPECT_GT(accepted, 20);
+  EXPECT_LT(accepted, 1'900);
 }
 
 TEST_F(ShotFile, Hostile_files_end_soon) {

@@ -8,9 +8,10 @@ namespace ft {
 namespace {
 
 TEST_F(ShotFile, Overrides_are_read_by_the_same_table) {
-  const auto shot = parse(k_good, {"cloth.dress.fabric=denim", "wind.velocity=[1, 0, 2]", "shot.frames=1-20", "primary.mannequin.clip=12",
-                                   "cloth.cape.self_collision=false", "cloth.dress.mass_per_area=0.3", "cloth.dress.bend_warp=1e-5",
-                                   "cache.formats=mdd", "cloth.cape.pins=[{within=0.01}]"});
+  const auto shot =
+      parse(k_good, {"cloth.dress.fabric=denim", "wind.velocity=[1, 0, 2]", "shot.frames=1-20",
+                     "primary.mannequin.clip=12", "cloth.cape.self_collision=false", "cloth.dress.mass_per_area=0.3",
+                     "cloth.dress.bend_warp=1e-5", "cache.formats=mdd", "cloth.cape.pins=[{within=0.01}]"});
   ASSERT_TRUE(shot.ok()) << shot.error().text();
   EXPECT_EQ(shot->cloths[0].fabric, "denim");
   EXPECT_EQ(shot->wind.velocity, Vec3(1, 0, 2));
@@ -23,18 +24,19 @@ TEST_F(ShotFile, Overrides_are_read_by_the_same_table) {
 }
 
 TEST_F(ShotFile, Faulty_overrides_name_themselves_as_their_place) {
-  EXPECT_EQ(faults_of(k_good, {"cloth.dress.fabric=denm", "cloth.drss.fabric=denim", "foo.x=1", "cloth.dress=1", "fabric", "=", "shot.fps=0", "cloth.dress.thickness=3mm",
-                               "gate.p99_strain=\n5"}),
-            (std::vector<std::string>{
-                "--set cloth.drss.fabric=denim: there is no cloth \"drss\" (did you mean \"dress\"?)",
-                "--set foo.x=1: unknown section \"foo\" (known: shot, primary, cloth, wind, solver, cache, gate)",
-                "--set cloth.dress=1: is not of the form cloth.NAME.key=value",
-                "--set fabric: is not of the form section.key=value",
-                "--set =: is not of the form section.key=value",
-                "--set gate.p99_strain=?5: is not of the form section.key=value",
-                "--set shot.fps=0: [shot]: fps = 0 is outside [1, 240] 1/s",
-                "--set cloth.dress.fabric=denm: cloth \"dress\": fabric = \"denm\" is not known (did you mean \"denim\"?)",
-                "--set cloth.dress.thickness=3mm: cloth \"dress\": thickness needs a number, not the text \"3mm\" (3mm is written 0.003)"}));
+  EXPECT_EQ(
+      faults_of(k_good, {"cloth.dress.fabric=denm", "cloth.drss.fabric=denim", "foo.x=1", "cloth.dress=1", "fabric",
+                         "=", "shot.fps=0", "cloth.dress.thickness=3mm", "gate.p99_strain=\n5"}),
+      (std::vector<std::string>{
+          "--set cloth.drss.fabric=denim: there is no cloth \"drss\" (did you mean \"dress\"?)",
+          "--set foo.x=1: unknown section \"foo\" (known: shot, primary, cloth, wind, solver, cache, gate)",
+          "--set cloth.dress=1: is not of the form cloth.NAME.key=value",
+          "--set fabric: is not of the form section.key=value", "--set =: is not of the form section.key=value",
+          "--set gate.p99_strain=?5: is not of the form section.key=value",
+          "--set shot.fps=0: [shot]: fps = 0 is outside [1, 240] 1/s",
+          "--set cloth.dress.fabric=denm: cloth \"dress\": fabric = \"denm\" is not known (did you mean \"denim\"?)",
+          "--set cloth.dress.thickness=3mm: cloth \"dress\": thickness needs a number, not the text \"3mm\" (3mm is "
+          "written 0.003)"}));
 }
 
 template <class Spec>
@@ -53,21 +55,34 @@ TEST_F(ShotFile, Every_key_of_the_table_can_be_set_and_changes_the_canonical_tex
   const auto check = [&](const std::string& section, auto keys) {
     for (const auto& key : keys) {
       std::string value;
-      if (key.name == "frames") value = "5-6";
-      else if (key.name == "pins") value = "[{within=0.5}]";
-      else if (key.name == "pin") value = "elbow";
-      else if (key.name == "formats") value = "[\"mdd\"]";
-      else if (key.choices == "@fabrics") value = "silk";
-      else if (key.choices == "@primaries") continue;  // needs a second primary, tested elsewhere
-      else if (!key.choices.empty()) value = split_words(key.choices).back();
-      else if (is_path(key)) value = "walk.fbx";
-      else if (texts.contains(key.name)) value = "other";
-      else if (key.name == "velocity" || key.name == "gravity" || key.name == "offset") value = "[0, 1, 2]";
-      else if (key.lowest == 0 && key.highest == 0) value = key.name == "collider" || key.name == "self_collision" || key.name == "carve" ? "false" : "true";
-      else value = key.highest >= 7 ? "7" : key.name == "thickness" ? "0.004" : "0.015";
+      if (key.name == "frames")
+        value = "5-6";
+      else if (key.name == "pins")
+        value = "[{within=0.5}]";
+      else if (key.name == "pin")
+        value = "elbow";
+      else if (key.name == "formats")
+        value = "[\"mdd\"]";
+      else if (key.choices == "@fabrics")
+        value = "silk";
+      else if (key.choices == "@primaries")
+        continue;  // needs a second primary, tested elsewhere
+      else if (!key.choices.empty())
+        value = split_words(key.choices).back();
+      else if (is_path(key))
+        value = "walk.fbx";
+      else if (texts.contains(key.name))
+        value = "other";
+      else if (key.name == "velocity" || key.name == "gravity" || key.name == "offset")
+        value = "[0, 1, 2]";
+      else if (key.lowest == 0 && key.highest == 0)
+        value = key.name == "collider" || key.name == "self_collision" || key.name == "carve" ? "false" : "true";
+      else
+        value = key.highest >= 7 ? "7" : key.name == "thickness" ? "0.004" : "0.015";
       const auto shot = parse(k_good, {section + "." + std::string(key.name) + "=" + value});
       ASSERT_TRUE(shot.ok()) << section << " " << key.name << ": " << shot.error().text();
-      EXPECT_TRUE(seen.insert(canonical(*shot)).second) << section << "." << key.name << " = " << value << " changes nothing";
+      EXPECT_TRUE(seen.insert(canonical(*shot)).second)
+          << section << "." << key.name << " = " << value << " changes nothing";
       ++count;
     }
   };
@@ -98,9 +113,11 @@ TEST_F(ShotFile, Changed_settings_are_told_by_key_and_both_values) {
   const auto now = parse(k_good, {"cloth.cape.fabric=denim", "cloth.cape.shear=50"});
   ASSERT_TRUE(before.ok() && now.ok());
   EXPECT_EQ(changed_settings(settings(*before), settings(*now)),
-            (std::vector<std::string>{"cloth.cape.fabric changed from \"cotton\" to \"denim\"", "cloth.cape.shear is new (50)"}));
+            (std::vector<std::string>{"cloth.cape.fabric changed from \"cotton\" to \"denim\"",
+                                      "cloth.cape.shear is new (50)"}));
   EXPECT_EQ(changed_settings(settings(*now), settings(*before)),
-            (std::vector<std::string>{"cloth.cape.fabric changed from \"denim\" to \"cotton\"", "cloth.cape.shear is gone (was 50)"}));
+            (std::vector<std::string>{"cloth.cape.fabric changed from \"denim\" to \"cotton\"",
+                                      "cloth.cape.shear is gone (was 50)"}));
   EXPECT_TRUE(changed_settings(settings(*now), settings(*now)).empty());
 }
 

@@ -35,7 +35,8 @@ TEST_F(ShotFile, Good_file_gives_what_it_says) {
 
 TEST_F(ShotFile, Cloths_keep_the_order_of_the_file) {
   std::string text = "[shot]\nframes = 1\n[primary.m]\nfile = \"walk.fbx\"\n";
-  for (const char* name : {"zebra", "apple", "mango"}) text += std::string("[cloth.") + name + "]\nmesh = \"dress.obj\"\n";
+  for (const char* name : {"zebra", "apple", "mango"})
+    text += std::string("[cloth.") + name + "]\nmesh = \"dress.obj\"\n";
   const auto shot = parse(text);
   ASSERT_TRUE(shot.ok()) << shot.error().text();
   EXPECT_EQ(shot->cloths[0].name, "zebra");
@@ -103,10 +104,13 @@ crossings = 1
       "shot.toml:21:1: cloth \"cape\": unknown key \"shaer\" (did you mean \"shear\"?)",
       "shot.toml:22:18: cloth \"cape\": self_collision needs true or false, not the text \"yes\" (write true)",
       "shot.toml:23:10: cloth \"cape\": offset needs three numbers [x, y, z], not a list of 2",
-      "shot.toml:24:10: cloth \"cape\", pin 1: needs one of group, within, vertices, and has 2 (several pins are written as several { } in the list)",
-      "shot.toml:24:46: cloth \"cape\", pin 2: needs one of group, within, vertices, and has none (several pins are written as several { } in the list)",
+      "shot.toml:24:10: cloth \"cape\", pin 1: needs one of group, within, vertices, and has 2 (several pins are "
+      "written as several { } in the list)",
+      "shot.toml:24:46: cloth \"cape\", pin 2: needs one of group, within, vertices, and has none (several pins are "
+      "written as several { } in the list)",
       "shot.toml:24:48: cloth \"cape\", pin 2: unknown key \"wihtin\" (did you mean \"within\"?)",
-      "shot.toml:24:65: cloth \"cape\", pin 3 needs a table like { group = \"waist\" } or { within = 0.02 }, not the number 5",
+      "shot.toml:24:65: cloth \"cape\", pin 3 needs a table like { group = \"waist\" } or { within = 0.02 }, not the "
+      "number 5",
       "shot.toml:24:81: cloth \"cape\", pin 4: vertices has \"0-x\" where a vertex or a range like 0-199 belongs",
       "shot.toml:25:1: cloth \"cape\": unknown key \"velocity\" (it belongs under [wind])",
       "shot.toml:28:12: [wind]: velocity needs three numbers [x, y, z], not the number 5",
@@ -124,19 +128,26 @@ crossings = 1
 }
 
 TEST_F(ShotFile, What_is_missing_from_the_file_is_named) {
-  EXPECT_EQ(faults_of(""), (std::vector<std::string>{"shot.toml: has no [shot] section: frames = \"1-100\" is needed",
-                                                     "shot.toml: has no [primary.NAME] section: the character that the cloth is worn by",
-                                                     "shot.toml: has no [cloth.NAME] section: there is nothing to bake"}));
-  EXPECT_NE(fault_with("frames = \"1001-1121\"\n", "").find("shot.toml:1:1: [shot]: frames is missing"), std::string::npos);
-  EXPECT_NE(fault_with("file = \"mannequin.glb\"\n", "").find("primary \"mannequin\": file is missing"), std::string::npos);
-  EXPECT_NE(fault_with("mesh = \"dress.obj\"\nfabric", "fabric").find("cloth \"dress\": mesh is missing"), std::string::npos);
+  EXPECT_EQ(faults_of(""), (std::vector<std::string>{
+                               "shot.toml: has no [shot] section: frames = \"1-100\" is needed",
+                               "shot.toml: has no [primary.NAME] section: the character that the cloth is worn by",
+                               "shot.toml: has no [cloth.NAME] section: there is nothing to bake"}));
+  EXPECT_NE(fault_with("frames = \"1001-1121\"\n", "").find("shot.toml:1:1: [shot]: frames is missing"),
+            std::string::npos);
+  EXPECT_NE(fault_with("file = \"mannequin.glb\"\n", "").find("primary \"mannequin\": file is missing"),
+            std::string::npos);
+  EXPECT_NE(fault_with("mesh = \"dress.obj\"\nfabric", "fabric").find("cloth \"dress\": mesh is missing"),
+            std::string::npos);
 }
 
 TEST_F(ShotFile, Frames_are_read_and_their_slips_explained) {
   const auto frames = [&](const std::string& value) {
     return fault_with("frames = \"1001-1121\"", "frames = " + value);
   };
-  EXPECT_NE(frames("\"-10-20\"").find("has a negative frame; frames count from 0, a run-up before the first frame is written preroll = 10"), std::string::npos);
+  EXPECT_NE(
+      frames("\"-10-20\"")
+          .find("has a negative frame; frames count from 0, a run-up before the first frame is written preroll = 10"),
+      std::string::npos);
   EXPECT_NE(frames("-5").find("negative frame"), std::string::npos);
   EXPECT_NE(frames("\"abc\"").find("is not a frame range"), std::string::npos);
   EXPECT_NE(frames("\"1-2-3\"").find("is not a frame range"), std::string::npos);
@@ -156,8 +167,10 @@ TEST_F(ShotFile, Frames_are_read_and_their_slips_explained) {
 }
 
 TEST_F(ShotFile, Syntax_faults_say_what_to_write) {
-  EXPECT_NE(fault_with("\"1001-1121\"", "1001-1121").find("(text needs quotes: frames = \"1001-1121\")"), std::string::npos);
-  EXPECT_NE(fault_with("fabric = \"cotton\"", "fabric = cotton").find("(text needs quotes: fabric = \"cotton\")"), std::string::npos);
+  EXPECT_NE(fault_with("\"1001-1121\"", "1001-1121").find("(text needs quotes: frames = \"1001-1121\")"),
+            std::string::npos);
+  EXPECT_NE(fault_with("fabric = \"cotton\"", "fabric = cotton").find("(text needs quotes: fabric = \"cotton\")"),
+            std::string::npos);
   EXPECT_NE(fault_with("fps = 25", "fps: 25").find("(a key is written name = value"), std::string::npos);
   EXPECT_NE(fault_with("fps = 25", "fps = 23,976").find("numbers are written with a point"), std::string::npos);
   EXPECT_NE(fault_with("fps = 25", "write_preroll = True").find("(write true or false)"), std::string::npos);
@@ -171,14 +184,21 @@ TEST_F(ShotFile, Syntax_faults_say_what_to_write) {
 }
 
 TEST_F(ShotFile, Sections_without_a_name_say_how_to_give_one) {
-  EXPECT_NE(faults_of("[shot]\nframes = 1\n[primary.m]\nfile = \"walk.fbx\"\n[cloth]\nmesh = \"dress.obj\"\n")[0].find("write [cloth.NAME], one section for each"), std::string::npos);
-  EXPECT_NE(faults_of("[shot]\nframes = 1\n[primary.m]\nfile = \"walk.fbx\"\n[[cloth]]\nmesh = \"dress.obj\"\n")[0].find("write [cloth.NAME], one section for each"), std::string::npos);
+  EXPECT_NE(faults_of("[shot]\nframes = 1\n[primary.m]\nfile = \"walk.fbx\"\n[cloth]\nmesh = \"dress.obj\"\n")[0].find(
+                "write [cloth.NAME], one section for each"),
+            std::string::npos);
+  EXPECT_NE(
+      faults_of("[shot]\nframes = 1\n[primary.m]\nfile = \"walk.fbx\"\n[[cloth]]\nmesh = \"dress.obj\"\n")[0].find(
+          "write [cloth.NAME], one section for each"),
+      std::string::npos);
   EXPECT_NE(fault_with("[cloth.cape]", "[cloth.\"a/b\"]").find("the name becomes a file name"), std::string::npos);
   EXPECT_NE(fault_with("[cloth.cape]", "[cloth.mannequin]").find("a primary has the same name"), std::string::npos);
 }
 
 TEST_F(ShotFile, Cloth_with_several_primaries_needs_to_say_on_which) {
-  const std::string two = "[shot]\nframes = 1\n[primary.anna]\nfile = \"walk.fbx\"\n[primary.bert]\nfile = \"walk.fbx\"\n[cloth.c]\nmesh = \"dress.obj\"\n";
+  const std::string two =
+      "[shot]\nframes = 1\n[primary.anna]\nfile = \"walk.fbx\"\n[primary.bert]\nfile = \"walk.fbx\"\n[cloth.c]\nmesh = "
+      "\"dress.obj\"\n";
   EXPECT_NE(faults_of(two)[0].find("on is missing; it says who wears it (one of: anna, bert)"), std::string::npos);
   EXPECT_NE(faults_of(two + "on = \"berta\"\n")[0].find("did you mean \"bert\"?"), std::string::npos);
   EXPECT_TRUE(faults_of(two + "on = \"bert\"\n").empty());

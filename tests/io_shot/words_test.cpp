@@ -46,7 +46,8 @@ TEST(Words, Numbers_print_short_and_read_back_to_the_same_bits) {
   EXPECT_EQ(number_text(-2.5e-10), "-2.5e-10");
   EXPECT_EQ(number_text(0), "0");
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    const double value = (random_uniform({.element = i}) - 0.5) * std::pow(10.0, 40 * random_uniform({.element = i}, 1) - 20);
+    const double value =
+        (random_uniform({.element = i}) - 0.5) * std::pow(10.0, 40 * random_uniform({.element = i}, 1) - 20);
     EXPECT_EQ(std::strtod(number_text(value).c_str(), nullptr), value);
   }
 }
@@ -58,7 +59,8 @@ TEST(Words, Text_from_outside_is_printed_without_control_characters) {
 
 TEST(Ranges, Text_of_a_range_reads_back) {
   std::string fault;
-  for (const FrameRange range : {FrameRange{0, 0}, FrameRange{1, 1}, FrameRange{1001, 1121}, FrameRange{0, 9'999'999}}) {
+  for (const FrameRange range :
+       {FrameRange{0, 0}, FrameRange{1, 1}, FrameRange{1001, 1121}, FrameRange{0, 9'999'999}}) {
     FrameRange back;
     ASSERT_TRUE(parse_frames(frames_text(range), back, fault)) << fault;
     EXPECT_EQ(back, range);
@@ -78,7 +80,8 @@ TEST(Ranges, Vertices_come_out_sorted_and_once) {
   std::string fault;
   ASSERT_TRUE(parse_vertices(" 7, 3-5 ,4,0 ", out, fault));
   EXPECT_EQ(out, (std::vector<int>{0, 3, 4, 5, 7}));
-  for (const char* bad : {"", ",", "1,", "5-3", "-1", "1-", "a", "1 2", "0x5", "99999999999"}) EXPECT_FALSE(parse_vertices(bad, out, fault)) << bad;
+  for (const char* bad : {"", ",", "1,", "5-3", "-1", "1-", "a", "1 2", "0x5", "99999999999"})
+    EXPECT_FALSE(parse_vertices(bad, out, fault)) << bad;
 }
 
 }  // namespace

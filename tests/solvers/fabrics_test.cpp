@@ -1,17 +1,17 @@
-#include "solvers/energies/fabric.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
 #include "baker/core/types.h"
+#include "solvers/energies/fabric.h"
 
 namespace ft {
 namespace {
 
 TEST(Fabrics, Promised_fabrics_are_listed) {
-  for (const char* name : {"jersey", "cotton", "denim", "silk", "wool", "ripstop"}) EXPECT_NE(find_fabric(name), nullptr) << name;
+  for (const char* name : {"jersey", "cotton", "denim", "silk", "wool", "ripstop"})
+    EXPECT_NE(find_fabric(name), nullptr) << name;
   EXPECT_EQ(find_fabric("unobtainium"), nullptr);
   EXPECT_EQ(find_fabric(""), nullptr);
 }
@@ -35,7 +35,8 @@ TEST(Fabrics, Every_value_lies_in_its_allowed_range) {
     }
 }
 
-// Textile books give cantilever bending lengths of 1 cm (limp silk) to 6 cm (canvas); a value outside is a slip of a unit.
+// Textile books give cantilever bending lengths of 1 cm (limp silk) to 6 cm (canvas); a value outside is a slip of a
+// unit.
 TEST(Fabrics, Bending_length_is_between_1_and_6_centimetres) {
   for (const Fabric& f : fabrics())
     for (const double rigidity : {f.bend_warp, f.bend_weft}) {
@@ -69,7 +70,8 @@ TEST(Fabrics, Every_key_sets_its_own_value_and_no_other) {
     Fabric f = *find_fabric("cotton");
     ASSERT_TRUE(set_fabric_value(f, key.key, 0.123));
     for (const FabricKey& other : fabric_keys())
-      EXPECT_EQ(*fabric_value(f, other.key), other.key == key.key ? 0.123 : *fabric_value(*find_fabric("cotton"), other.key));
+      EXPECT_EQ(*fabric_value(f, other.key),
+                other.key == key.key ? 0.123 : *fabric_value(*find_fabric("cotton"), other.key));
   }
   Fabric f;
   EXPECT_FALSE(set_fabric_value(f, "colour", 1));
