@@ -89,10 +89,11 @@ NetSurface surface_nets(const FieldGrid& grid) {
         out.positions.push_back(grid.point(x, y, z) + grid.spacing * sum / count);
       }
   // A quad across every grid edge that the surface crosses, between the four cells around it.
-  for (int z = 1; z < cz; ++z)
-    for (int y = 1; y < cy; ++y)
-      for (int x = 1; x < cx; ++x)
+  for (int z = 0; z < cz; ++z)
+    for (int y = 0; y < cy; ++y)
+      for (int x = 0; x < cx; ++x)
         for (int axis = 0; axis < 3; ++axis) {
+          if ((axis != 0 && x == 0) || (axis != 1 && y == 0) || (axis != 2 && z == 0)) continue;  // on the border
           const int to[3] = {x + (axis == 0), y + (axis == 1), z + (axis == 2)};
           const bool here = grid.values[grid.index(x, y, z)] < 0, there = grid.values[grid.index(to[0], to[1], to[2])] < 0;
           if (here == there) continue;
