@@ -1,6 +1,7 @@
 // Carries benchmark cases to our program and back, and sums up. For tests/bench/run.sh:
 //   case_tool to-shot CASE FOLDER [--pins 0-199]     body.obj, body.pc2, cloth.obj and shot.toml from Blender's case
 //   case_tool from-bake CASE BAKE OUT drawn|feasible our cloth beside the drawn body or the feasible collider, as a case
+//   case_tool obj CACHE FRAME OUT.obj                one frame of any cache that knows its faces, to look at
 //   case_tool result ...                             the table and the RESULT line, see result_line()
 #include <fmt/format.h>
 
@@ -79,6 +80,16 @@ Status from_bake(const fs::path& case_folder, const fs::path& bake, const fs::pa
   return write_case(out, *data);
 }
 
+Status one_frame(const fs::path& cache, int frame, const fs::path& out) {
+  auto reader = open_cache(cache);
+  if (!reader) return reader.error();
+  Mesh mesh = (*reader)->info().mesh;
+  std::vector<Vec3f> points;
+  if (Status status = (*reader)->read_frame(frame - (*reader)->info().first_frame, points); !status) return status;
+  mesh.positions = to_double(points);
+  return write_obj(out, mesh);
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
@@ -145,9 +156,10 @@ Status result_line(const std::vector<std::string>& a) {
 }
 
 int run(const std::vector<std::string>& a) {
-  Status status = usage_error("case_tool to-shot CASE FOLDER [--pins LIST] | from-bake CASE BAKE OUT drawn|feasible | result ...");
+  Status status = usage_error("case_tool to-shot CASE FOLDER [--pins LIST] | from-bake CASE BAKE OUT drawn|feasible | obj CACHE FRAME OUT | result ...");
   if (a.size() >= 3 && a[0] == "to-shot") status = to_shot(a[1], a[2], a.size() >= 5 && a[3] == "--pins" ? a[4] : "");
   if (a.size() == 5 && a[0] == "from-bake") status = from_bake(a[1], a[2], a[3], a[4]);
+  if (a.size() == 4 && a[0] == "obj") status = one_frame(a[1], std::atoi(a[2].c_str()), a[3]);
   if (a.size() == 9 && a[0] == "result") status = result_line({a.begin() + 1, a.end()});
   if (status) return 0;
   fmt::print(stderr, "case_tool: {}\n", status.error().text());
