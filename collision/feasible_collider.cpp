@@ -21,6 +21,7 @@ constexpr int k_smooth_sweeps = 8;      ///< Laplacian sweeps of the displacemen
 constexpr double k_smooth_move = 20e-3; ///< move from which on a vertex is smoothed fully [m]
 constexpr int k_groove_rounds = 6;      ///< rounds for one point between several parts
 constexpr double k_facing = -0.9;       ///< cosine of two parts' normals below which they make a slot, not a groove
+constexpr int k_membrane_sweeps = 40;   ///< sweeps that draw a part over a slot
 constexpr double k_content = 1e-9;      ///< missing distance that is not worth a push [m]
 constexpr int k_sag_rounds = 3;         ///< rounds of lifting edges
 constexpr double k_sag_share = 0.85;    ///< share of the gap that edges' middles must keep [1]
@@ -50,6 +51,7 @@ struct FeasibleCollider::Impl {
   struct Contact {
     Vec3 normal = Vec3::Zero();
     double distance = std::numeric_limits<double>::infinity();  ///< to the nearest opponent [m]
+    bool squeezed = false;            ///< in a slot between two opponents that is too narrow for both distances
   };
   /// One part's work in one evaluation.
   struct Carving {
@@ -75,6 +77,7 @@ struct FeasibleCollider::Impl {
                 std::span<int> hints) const;
   bool lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle, std::span<int> hints) const;
   void push_out_all(Carving& carving, Scratch& scratch) const;
+  void span_slots(Carving& carving, Scratch& scratch) const;
   void smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch& scratch) const;
   void lift_edges(const Carving& carving, Scratch& scratch) const;
   void give_way(int part, Scratch& scratch) const;
@@ -235,6 +238,7 @@ bool FeasibleCollider::Impl::push(const Carving& carving, const Scratch& scratch
       point += u * worst[0].normal;
     } else if (cosine < k_facing) {  // a slot: its middle
       point += 0.5 * (u - v) * worst[0].normal;
+      if (contact != nullptr) contact->squeezed = true;
     } else {
       const double sine2 = 1 - cosine * cosine;
       point += ((u - cosine * v) * worst[0].normal + (v - cosine * u) * worst[1].normal) / sine2;
@@ -247,7 +251,7 @@ bool FeasibleCollider::Impl::push(const Carving& carving, const Scratch& scratch
 bool FeasibleCollider::Impl::push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point,
                                       Contact& contact, std::span<int> hints) const {
   const bool deep = carving.inside[at(local)] != 0 || carving.moved[at(local)] != 0;
-  contact.distance = std::numeric_limits<double>::infinity();
+  contact = {};
   return push(
       carving, scratch, point, hints, [&](int other) { return plan.keep(carving.part, local, other); },
       [&](int other, double d2) {
@@ -291,6 +295,25 @@ void FeasibleCollider::Impl::smooth(const Carving& carving, std::span<const Vec3
     for (std::size_t i = 0; i < next.size(); ++i)
       scratch.x[at(part.vertices[at(carving.active[i])])] = drawn[at(carving.active[i])] + next[i];
   }
+}
+
+/// Vertices in slots are drawn out by their neighbours until the part spans the slot like a membrane: there is no room in it for
+/// the part, and an edge from its depth to the outside would cut its lip.
+void FeasibleCollider::Impl::span_slots(Carving& carving, Scratch& scratch) const {
+  const Yielding& part = carving.part;
+  std::vector<int> squeezed;
+  for (const int v : carving.active)
+    if (carving.contacts[at(v)].squeezed && !part.neighbours.row(v).empty()) squeezed.push_back(v);
+  std::vector<Vec3> next(squeezed.size());
+  for (int sweep = 0; !squeezed.empty() && sweep < k_membrane_sweeps; ++sweep) {
+    for (std::size_t i = 0; i < squeezed.size(); ++i) {
+      const auto row = part.neighbours.row(squeezed[i]);
+      next[i].setZero();
+      for (const int w : row) next[i] += scratch.x[at(part.vertices[at(w)])] / static_cast<double>(row.size());
+    }
+    for (std::size_t i = 0; i < squeezed.size(); ++i) scratch.x[at(part.vertices[at(squeezed[i])])] = next[i];
+  }
+  for (const int v : squeezed) carving.contacts[at(v)] = {Vec3::Zero(), 0, true};  // lift_edges() must look for itself
 }
 
 /// The middle of an edge, moved to where it keeps its share of the gap; only where both ends have to keep the whole gap.
@@ -354,6 +377,7 @@ void FeasibleCollider::Impl::give_way(int p, Scratch& scratch) const {
       push_out_all(carving, scratch);
     }
   }
+  span_slots(carving, scratch);
   lift_edges(carving, scratch);
   scratch.boxes[at(p)] = box_of(p, scratch.x);
 }
