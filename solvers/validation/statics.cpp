@@ -86,11 +86,14 @@ std::vector<ValidationCase> validate_catenary() {
   // Sags for a span of 1: y = a cosh(x / a), 2 a sinh(1 / 2a) = length.
   std::vector<ValidationCase> out;
   const double sags[][2] = {{1.05, 0.13930}, {1.2, 0.29234}, {1.5, 0.50263}, {2.0, 0.79639}};
-  for (const auto& [length, sag] : sags) {
+  for (const auto& row : sags) {
+    const double length = row[0], sag = row[1];
     const int cells = 60;
     const double width = 2 * length / cells;
     const Mesh mesh = rectangle_mesh(cells, 2, [&](double s, double t) { return Vec3(length * (s - 0.5), 0, width * (t - 0.5)); });
-    ClothSetup setup = settling(accurate_setup(mesh, plain_fabric(0.15, 1e4, 1e-8), 24, 4));
+    // A taut strip needs more stiffness to count as inextensible: its sag grows with the root of the strain.
+    const double stretch = length < 1.1 ? 1e4 : 1e3;
+    ClothSetup setup = settling(accurate_setup(mesh, plain_fabric(0.15, stretch, 1e-8), 24, 4));
     // Two posts far above the ends carry the pins, and move together in the first second.
     const double closing = 0.5 * (length - 1);
     setup.primary = make_boxes({{Vec3(-0.5 * length - 0.01, 1, -0.02), Vec3(-0.5 * length + 0.01, 1.02, 0.02)},
@@ -104,7 +107,7 @@ std::vector<ValidationCase> validate_catenary() {
     pin_stiffly(setup, ends, 1e8);
     ClothRun run(std::move(setup));
     run.advance(24);
-    settle(run, 1e-5, 480);
+    settle(run, 1e-5, 240);
     const auto x = run.positions();
     const Vec3 &left = x[at(cells + 1)], &right = x[at(2 * cells + 1)], &middle = x[at(cells + 1 + cells / 2)];
     const double value = (0.5 * (left + right) - middle).y();
