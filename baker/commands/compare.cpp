@@ -44,7 +44,8 @@ std::string mismatch(const CacheInfo& a, const CacheInfo& b) {
       return "another topology: the faces connect other vertices";
   }
   const auto range = [](const CacheInfo& i) {
-    return i.frame_count == 0 ? std::string("no frames") : fmt::format("frames {}-{}", i.first_frame, i.first_frame + i.frame_count - 1);
+    return i.frame_count == 0 ? std::string("no frames")
+                              : fmt::format("frames {}-{}", i.first_frame, i.first_frame + i.frame_count - 1);
   };
   if (a.first_frame != b.first_frame || a.frame_count != b.frame_count)
     return fmt::format("another frame range: {} against {}", range(a), range(b));
@@ -53,7 +54,8 @@ std::string mismatch(const CacheInfo& a, const CacheInfo& b) {
   return {};
 }
 
-CompareReport incomparable(std::string system, const std::filesystem::path& a, const std::filesystem::path& b, std::string reason) {
+CompareReport incomparable(std::string system, const std::filesystem::path& a, const std::filesystem::path& b,
+                           std::string reason) {
   CompareReport r;
   r.system = std::move(system);
   r.a = a.string();
@@ -88,7 +90,8 @@ std::map<std::string, std::vector<std::filesystem::path>> caches_in(const std::f
   return out;
 }
 
-std::vector<CompareReport> compare_folders(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance) {
+std::vector<CompareReport> compare_folders(const std::filesystem::path& a, const std::filesystem::path& b,
+                                           double tolerance) {
   std::vector<CompareReport> reports;
   const auto in_a = caches_in(a), in_b = caches_in(b);
   for (const auto& [system, files] : in_a) {
@@ -104,7 +107,8 @@ std::vector<CompareReport> compare_folders(const std::filesystem::path& a, const
     }
   }
   for (const auto& [system, files] : in_b)
-    if (!in_a.contains(system)) reports.push_back(incomparable(system, a, files.front(), "no cache of this name in " + a.string()));
+    if (!in_a.contains(system))
+      reports.push_back(incomparable(system, a, files.front(), "no cache of this name in " + a.string()));
   if (reports.empty()) reports.push_back(incomparable(a.filename().string(), a, b, "no caches in either folder"));
   std::stable_sort(reports.begin(), reports.end(), [](const auto& x, const auto& y) { return x.system < y.system; });
   return reports;
@@ -113,7 +117,8 @@ std::vector<CompareReport> compare_folders(const std::filesystem::path& a, const
 }  // namespace
 
 int CompareReport::diverging_count() const {
-  return static_cast<int>(std::count_if(frames.begin(), frames.end(), [&](const FrameDifference& f) { return diverges(f); }));
+  return static_cast<int>(
+      std::count_if(frames.begin(), frames.end(), [&](const FrameDifference& f) { return diverges(f); }));
 }
 
 CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
@@ -139,7 +144,9 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
     if (const Status s = a.read_frame(i, x_a); !s) return give_up(s.error().text());
     if (const Status s = b.read_frame(i, x_b); !s) return give_up(s.error().text());
     const Difference d = difference(x_a, x_b, &distances);
-    FrameDifference f{r.first_frame + i, d.max, x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size())), d.vertex, 0, -1};
+    FrameDifference f{
+        r.first_frame + i, d.max, x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size())),
+        d.vertex,          0,     -1};
     square_sum += d.square_sum;
     if (d.max > worst) r.worst = i;
     if (d.max > worst || (r.worst < 0 && i + 1 == info_a.frame_count)) {
@@ -163,7 +170,8 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
   return r;
 }
 
-std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance) {
+std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b,
+                                         double tolerance) {
   std::error_code ignored;
   const bool folder_a = std::filesystem::is_directory(a, ignored), folder_b = std::filesystem::is_directory(b, ignored);
   if (folder_a && folder_b) return compare_folders(a, b, tolerance);
@@ -179,7 +187,9 @@ CompareVerdict overall_verdict(const std::vector<CompareReport>& reports) {
 }
 
 int exit_code(CompareVerdict verdict) {
-  return verdict == CompareVerdict::k_equal ? 0 : verdict == CompareVerdict::k_different ? 1 : exit_code(ErrorKind::k_input);
+  return verdict == CompareVerdict::k_equal       ? 0
+         : verdict == CompareVerdict::k_different ? 1
+                                                  : exit_code(ErrorKind::k_input);
 }
 
 int run_compare(const CompareOptions& options) {

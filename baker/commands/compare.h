@@ -1,6 +1,7 @@
-// compare: are two caches, or the caches of two bake folders, the same within a tolerance? For regression suites and for artists who
-// changed "nothing". Any two formats: what only one of them holds (topology, frame rate, velocities) is not compared.
-// compare_caches is pure: readers in, report out; compare_report.h turns reports into text, JSON, HTML and JUnit.
+// compare: are two caches, or the caches of two bake folders, the same within a tolerance? For regression suites and
+// for artists who changed "nothing". Any two formats: what only one of them holds (topology, frame rate, velocities) is
+// not compared. compare_caches is pure: readers in, report out; compare_report.h turns reports into text, JSON, HTML
+// and JUnit.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +15,8 @@
 namespace ft {
 
 struct CompareOptions {
-  std::filesystem::path a, b;        ///< two caches or two folders with caches
-  double tolerance = 0;              ///< m, >= 0: distance of a vertex from its twin that still counts as equal
+  std::filesystem::path a, b;               ///< two caches or two folders with caches
+  double tolerance = 0;                     ///< m, >= 0: distance of a vertex from its twin that still counts as equal
   std::filesystem::path json, html, junit;  ///< reports to write; empty: none
 };
 
@@ -27,26 +28,27 @@ enum class CompareVerdict {
 
 struct FrameDifference {
   int frame = 0;
-  double max = 0, rms = 0;   ///< over the vertices [m]
-  int vertex = -1;           ///< where max is; -1: all are bit-equal
-  double max_speed = 0;      ///< largest difference of velocities [m/s]; 0 where one cache has none
+  double max = 0, rms = 0;  ///< over the vertices [m]
+  int vertex = -1;          ///< where max is; -1: all are bit-equal
+  double max_speed = 0;     ///< largest difference of velocities [m/s]; 0 where one cache has none
   int speed_vertex = -1;
 };
 
 struct CompareReport {
-  std::string system;        ///< name of the garment
-  std::string a, b;          ///< the files, as given
+  std::string system;  ///< name of the garment
+  std::string a, b;    ///< the files, as given
   CompareVerdict verdict = CompareVerdict::k_equal;
-  std::string reason;        ///< of k_incomparable, in one sentence
-  double tolerance = 0;      ///< m
+  std::string reason;          ///< of k_incomparable, in one sentence
+  double tolerance = 0;        ///< m
   double speed_tolerance = 0;  ///< m/s: the tolerance within one frame
   int vertex_count = 0, first_frame = 0;
-  bool velocities = false;   ///< both have them
+  bool velocities = false;  ///< both have them
   std::vector<FrameDifference> frames;
   int first_diverging = -1;  ///< index into frames of the first one beyond the tolerance, -1: none
   int worst = -1;            ///< index into frames of the largest difference of positions, -1: no difference at all
   double rms = 0;            ///< over all frames and vertices [m]
-  // The picture of where: vertices of b in the worst frame (the last one where nothing differs), and how far each is from a.
+  // The picture of where: vertices of b in the worst frame (the last one where nothing differs), and how far each is
+  // from a.
   std::vector<Vec3f> picture_positions;
   std::vector<float> picture_distances;  ///< m
 
@@ -57,7 +59,8 @@ struct CompareReport {
 CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance);
 
 /// Pairs up files or folders and compares all; one report per pair, sorted by name. Never empty.
-std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance);
+std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b,
+                                         double tolerance);
 
 /// The worst of all.
 CompareVerdict overall_verdict(const std::vector<CompareReport>& reports);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <nlohmann/json.hpp>
 
 namespace ft {
@@ -12,7 +11,9 @@ namespace {
 
 constexpr int k_most_lines = 20;  // frames listed as text; JSON has all
 
-const FrameDifference& at(const CompareReport& r, int index) { return r.frames[static_cast<std::size_t>(index)]; }
+const FrameDifference& at(const CompareReport& r, int index) {
+  return r.frames[static_cast<std::size_t>(index)];
+}
 
 nlohmann::ordered_json to_json(const FrameDifference& f) {
   nlohmann::ordered_json j = {{"frame", f.frame}, {"max", f.max}, {"rms", f.rms}};
@@ -24,7 +25,9 @@ nlohmann::ordered_json to_json(const FrameDifference& f) {
 }  // namespace
 
 std::string_view verdict_name(CompareVerdict verdict) {
-  return verdict == CompareVerdict::k_equal ? "equal" : verdict == CompareVerdict::k_different ? "different" : "incomparable";
+  return verdict == CompareVerdict::k_equal       ? "equal"
+         : verdict == CompareVerdict::k_different ? "different"
+                                                  : "incomparable";
 }
 
 std::string length_text(double metres) {
@@ -35,13 +38,20 @@ std::string length_text(double metres) {
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else if (c == '\'') out += "&#39;";
-    else if (static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\t') out += '?';
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (c == '\'')
+      out += "&#39;";
+    else if (static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\t')
+      out += '?';
+    else
+      out += c;
   }
   return out;
 }
@@ -49,22 +59,24 @@ std::string escaped(std::string_view text) {
 std::string summary(const CompareReport& r) {
   if (r.verdict == CompareVerdict::k_incomparable) return r.reason;
   if (r.verdict == CompareVerdict::k_equal) {
-    const bool speeds_equal = std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) { return f.max_speed == 0; });
+    const bool speeds_equal =
+        std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) { return f.max_speed == 0; });
     if (r.worst < 0 && speeds_equal) return "no difference at all";
     if (r.worst < 0) return "positions do not differ, velocities within the tolerance";
     const FrameDifference& w = at(r, r.worst);
-    return fmt::format("largest difference {} in frame {}, vertex {}; RMS {}; tolerance {}", length_text(w.max), w.frame, w.vertex,
-                       length_text(r.rms), length_text(r.tolerance));
+    return fmt::format("largest difference {} in frame {}, vertex {}; RMS {}; tolerance {}", length_text(w.max),
+                       w.frame, w.vertex, length_text(r.rms), length_text(r.tolerance));
   }
   const FrameDifference& f = at(r, r.first_diverging);
-  std::string text = f.max > r.tolerance
-                         ? fmt::format("first beyond the tolerance of {} in frame {}, vertex {} ({})", length_text(r.tolerance), f.frame,
-                                       f.vertex, length_text(f.max))
-                         : fmt::format("velocities first beyond the tolerance of {:.4g} m/s in frame {}, vertex {} ({:.4g} m/s)",
-                                       r.speed_tolerance, f.frame, f.speed_vertex, f.max_speed);
+  std::string text =
+      f.max > r.tolerance
+          ? fmt::format("first beyond the tolerance of {} in frame {}, vertex {} ({})", length_text(r.tolerance),
+                        f.frame, f.vertex, length_text(f.max))
+          : fmt::format("velocities first beyond the tolerance of {:.4g} m/s in frame {}, vertex {} ({:.4g} m/s)",
+                        r.speed_tolerance, f.frame, f.speed_vertex, f.max_speed);
   if (r.worst >= 0)
-    text += fmt::format("; largest {} in frame {}, vertex {}; RMS {}", length_text(at(r, r.worst).max), at(r, r.worst).frame,
-                        at(r, r.worst).vertex, length_text(r.rms));
+    text += fmt::format("; largest {} in frame {}, vertex {}; RMS {}", length_text(at(r, r.worst).max),
+                        at(r, r.worst).frame, at(r, r.worst).vertex, length_text(r.rms));
   return text + fmt::format("; {} of {} frames differ", r.diverging_count(), r.frames.size());
 }
 
@@ -77,7 +89,8 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
     int lines = 0;
     for (const FrameDifference& f : r.frames)
       if (r.diverges(f) && ++lines <= k_most_lines)
-        out += fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>8} {:>12.4g}\n", f.frame, 1000 * f.max, 1000 * f.rms, f.vertex, f.max_speed);
+        out += fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>8} {:>12}\n", f.frame, 1000 * f.max, 1000 * f.rms, f.vertex,
+                           r.velocities ? fmt::format("{:.4g}", f.max_speed) : "-");
     if (lines > k_most_lines) out += fmt::format("  and {} more frames\n", lines - k_most_lines);
   }
   return out;
@@ -86,9 +99,13 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
 std::string compare_json(const std::vector<CompareReport>& reports) {
   using Json = nlohmann::ordered_json;
   const CompareVerdict verdict = overall_verdict(reports);
-  Json all = {{"verdict", verdict_name(verdict)}, {"exit_code", exit_code(verdict)}, {"units", "m, m/s"}, {"caches", Json::array()}};
+  Json all = {{"verdict", verdict_name(verdict)},
+              {"exit_code", exit_code(verdict)},
+              {"units", "m, m/s"},
+              {"caches", Json::array()}};
   for (const CompareReport& r : reports) {
-    Json j = {{"system", r.system}, {"a", r.a}, {"b", r.b}, {"verdict", verdict_name(r.verdict)}, {"summary", summary(r)}};
+    Json j = {
+        {"system", r.system}, {"a", r.a}, {"b", r.b}, {"verdict", verdict_name(r.verdict)}, {"summary", summary(r)}};
     if (r.verdict != CompareVerdict::k_incomparable) {
       j["tolerance"] = r.tolerance;
       j["vertex_count"] = r.vertex_count;
@@ -109,17 +126,19 @@ std::string compare_junit(const std::vector<CompareReport>& reports) {
   int failures = 0, errors = 0;
   std::string cases;
   for (const CompareReport& r : reports) {
-    cases += fmt::format("  <testcase classname=\"followthrough.compare\" name=\"{}\">", escaped(std::filesystem::path(r.a).filename().string()));
+    cases += fmt::format("  <testcase classname=\"followthrough.compare\" name=\"{}\">",
+                         escaped(std::filesystem::path(r.a).filename().string()));
     const bool different = r.verdict == CompareVerdict::k_different;
     if (r.verdict != CompareVerdict::k_equal) {
       ++(different ? failures : errors);
-      cases += fmt::format("\n    <{0} message=\"{1}\">{2} against {3}</{0}>\n  ", different ? "failure" : "error", escaped(summary(r)),
-                           escaped(r.a), escaped(r.b));
+      cases += fmt::format("\n    <{0} message=\"{1}\">{2} against {3}</{0}>\n  ", different ? "failure" : "error",
+                           escaped(summary(r)), escaped(r.a), escaped(r.b));
     }
     cases += "</testcase>\n";
   }
   return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"followthrough compare\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n{}</testsuite>\n",
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"followthrough compare\" tests=\"{}\" "
+      "failures=\"{}\" errors=\"{}\">\n{}</testsuite>\n",
       reports.size(), failures, errors, cases);
 }
 

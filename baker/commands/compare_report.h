@@ -1,5 +1,5 @@
-// Reports of compare as text for people, JSON for scripts, JUnit XML for build servers and one self-contained HTML page with plots
-// and a picture of where the difference is.
+// Reports of compare as text for people, JSON for scripts, JUnit XML for build servers and one self-contained HTML page
+// with plots and a picture of where the difference is.
 #pragma once
 
 #include <string>

@@ -9,18 +9,23 @@ std::size_t pod_size(Pod pod) {
   switch (pod) {
     case Pod::k_bool:
     case Pod::k_u8:
-    case Pod::k_i8: return 1;
+    case Pod::k_i8:
+      return 1;
     case Pod::k_u16:
     case Pod::k_i16:
-    case Pod::k_f16: return 2;
+    case Pod::k_f16:
+      return 2;
     case Pod::k_u32:
     case Pod::k_i32:
-    case Pod::k_f32: return 4;
+    case Pod::k_f32:
+      return 4;
     case Pod::k_u64:
     case Pod::k_i64:
-    case Pod::k_f64: return 8;
+    case Pod::k_f64:
+      return 8;
     case Pod::k_string:
-    case Pod::k_wstring: return 0;
+    case Pod::k_wstring:
+      return 0;
   }
   return 0;
 }
@@ -54,8 +59,8 @@ Property compound(std::string name, std::string metadata, std::vector<Property> 
   return p;
 }
 
-Property animated(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent, std::uint32_t time_sampling,
-                  std::span<const Sample> all) {
+Property animated(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent,
+                  std::uint32_t time_sampling, std::span<const Sample> all) {
   Property p;
   p.kind = kind;
   p.name = std::move(name);
@@ -74,12 +79,13 @@ Property animated(PropertyKind kind, std::string name, std::string metadata, Pod
   if (!p.constant())
     for (std::uint32_t i = p.first_changed; i <= p.last_changed; ++i) p.samples.push_back(all[i]);
   const std::size_t element_size = pod_size(pod) * static_cast<std::size_t>(extent);
-  p.single_element = kind == PropertyKind::k_array && p.homogeneous && element_size > 0 && all[0].size == 16 + element_size;
+  p.single_element =
+      kind == PropertyKind::k_array && p.homogeneous && element_size > 0 && all[0].size == 16 + element_size;
   return p;
 }
 
-Property constant(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent, std::uint32_t time_sampling,
-                  const Sample& sample, std::uint32_t sample_count) {
+Property constant(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent,
+                  std::uint32_t time_sampling, const Sample& sample, std::uint32_t sample_count) {
   Property p = animated(kind, std::move(name), std::move(metadata), pod, extent, time_sampling, std::span(&sample, 1));
   p.sample_count = sample_count;
   return p;

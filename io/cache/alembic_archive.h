@@ -1,6 +1,7 @@
-// An Alembic archive as a tree of objects and properties, and the two ways between tree and bytes: emit() writes all groups, headers
-// and tables (the sample data stand in the file already), parse() reads them. Knows nothing of meshes: that is alembic_mesh.
-// Careful: a property stores fewer samples than it has when some do not change; slot_of() maps one to the other.
+// An Alembic archive as a tree of objects and properties, and the two ways between tree and bytes: emit() writes all
+// groups, headers and tables (the sample data stand in the file already), parse() reads them. Knows nothing of meshes:
+// that is alembic_mesh. Careful: a property stores fewer samples than it has when some do not change; slot_of() maps
+// one to the other.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,22 @@
 
 namespace ft::alembic {
 
-enum class Pod : std::uint8_t { k_bool, k_u8, k_i8, k_u16, k_i16, k_u32, k_i32, k_u64, k_i64, k_f16, k_f32, k_f64, k_string, k_wstring };
+enum class Pod : std::uint8_t {
+  k_bool,
+  k_u8,
+  k_i8,
+  k_u16,
+  k_i16,
+  k_u32,
+  k_i32,
+  k_u64,
+  k_i64,
+  k_f16,
+  k_f32,
+  k_f64,
+  k_string,
+  k_wstring
+};
 
 /// Bytes per value; 0 for strings.
 std::size_t pod_size(Pod pod);
@@ -59,11 +75,11 @@ struct Property {
 
 Property compound(std::string name, std::string metadata, std::vector<Property> children);
 /// From all samples in turn: finds what changes and keeps what must be stored.
-Property animated(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent, std::uint32_t time_sampling,
-                  std::span<const Sample> all);
+Property animated(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent,
+                  std::uint32_t time_sampling, std::span<const Sample> all);
 /// The same sample sample_count times.
-Property constant(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent, std::uint32_t time_sampling,
-                  const Sample& sample, std::uint32_t sample_count);
+Property constant(PropertyKind kind, std::string name, std::string metadata, Pod pod, int extent,
+                  std::uint32_t time_sampling, const Sample& sample, std::uint32_t sample_count);
 
 struct Object {
   std::string name;
@@ -74,7 +90,7 @@ struct Object {
 
 struct TimeSampling {
   std::uint32_t max_samples = 1;
-  double time_per_cycle = 1;           ///< s
+  double time_per_cycle = 1;          ///< s
   std::vector<double> times = {0.0};  ///< within one cycle [s]
 };
 
@@ -91,14 +107,16 @@ Hash128 hash_children(const Object& object, std::span<const TimeSampling> time_s
 /// Everything but the sample data, for the place base in the file; root is where the header must point.
 Bytes emit(const Archive& archive, std::uint64_t base, ogawa::Reference& root);
 
-/// What an object says about its content. Every program hashes in its own way: only one's own files can be judged by it.
+/// What an object says about its content. Every program hashes in its own way: only one's own files can be judged by
+/// it.
 struct StoredHashes {
   Hash128 properties, children;
 };
 
-/// Reads the tree and the key of every stored sample; every reference is inside the file afterwards. stored_hashes receives the
-/// hashes of all objects, the top object first; root receives what the header points to.
-Result<Archive> parse(const InputFile& file, std::vector<StoredHashes>* stored_hashes = nullptr, ogawa::Reference* root = nullptr);
+/// Reads the tree and the key of every stored sample; every reference is inside the file afterwards. stored_hashes
+/// receives the hashes of all objects, the top object first; root receives what the header points to.
+Result<Archive> parse(const InputFile& file, std::vector<StoredHashes>* stored_hashes = nullptr,
+                      ogawa::Reference* root = nullptr);
 
 /// The raw values of a sample after a look at its key; an error when the file was damaged.
 Result<Bytes> read_values(const InputFile& file, const Sample& sample);

@@ -1,5 +1,5 @@
-// Tree to bytes: groups bottom-up, so that every reference is known when it is written. Layout as the public Alembic library reads it
-// (AbcCoreOgawa): see the names of the children at each group below.
+// Tree to bytes: groups bottom-up, so that every reference is known when it is written. Layout as the public Alembic
+// library reads it (AbcCoreOgawa): see the names of the children at each group below.
 #include <algorithm>
 
 #include "io/cache/alembic_archive.h"
@@ -10,7 +10,9 @@ namespace {
 constexpr std::uint8_t k_inline_metadata = 255;
 constexpr std::int32_t k_library_version = 10800;  // MMmmpp; readers accept what is at least 9999
 
-std::span<const std::byte> bytes_of(const std::string& s) { return std::as_bytes(std::span(s.data(), s.size())); }
+std::span<const std::byte> bytes_of(const std::string& s) {
+  return std::as_bytes(std::span(s.data(), s.size()));
+}
 
 /// Metadata strings are written once, in a table of at most 254 strings shorter than 256 bytes.
 class MetadataTable {
@@ -89,7 +91,9 @@ ogawa::Reference write_compound(ogawa::Builder& builder, std::span<const Propert
   return builder.group(children);
 }
 
-void write_hash(ByteWriter& out, const Hash128& hash) { out.write(hash.low).write(hash.high); }
+void write_hash(ByteWriter& out, const Hash128& hash) {
+  out.write(hash.low).write(hash.high);
+}
 
 /// Children: the properties, one group per child object, then their headers and this object's two hashes.
 ogawa::Reference write_object(ogawa::Builder& builder, const Object& object, std::span<const TimeSampling> times,

@@ -1,4 +1,5 @@
-// Archive to cache: the first PolyMesh of an archive of any origin, checked so that nothing in it can be out of range later.
+// Archive to cache: the first PolyMesh of an archive of any origin, checked so that nothing in it can be out of range
+// later.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +21,8 @@ const Property* property_of(const Object& object, std::string_view name) {
 }
 
 bool find_first(const Object& object, Found& found) {
-  const bool mesh = object.metadata.find("schema=AbcGeom_PolyMesh_v1") != std::string::npos && property_of(object, ".geom") != nullptr;
+  const bool mesh = object.metadata.find("schema=AbcGeom_PolyMesh_v1") != std::string::npos &&
+                    property_of(object, ".geom") != nullptr;
   if (mesh) {
     found.mesh = &object;
     return true;
@@ -40,7 +42,8 @@ std::uint64_t element_count(const Property& p, const Sample& s) {
 }
 
 bool is_array(const Property* p, Pod pod, int extent) {
-  return p != nullptr && p->kind == PropertyKind::k_array && p->pod == pod && p->extent == extent && !p->samples.empty();
+  return p != nullptr && p->kind == PropertyKind::k_array && p->pod == pod && p->extent == extent &&
+         !p->samples.empty();
 }
 
 template <class T>
@@ -80,7 +83,8 @@ class Reader {
 
   Status read_animation(const Property& geom) {
     const Property* p = geom.find("P");
-    if (p == nullptr || p->kind != PropertyKind::k_array || p->pod != Pod::k_f32 || p->extent != 3) return fault("has a mesh without positions");
+    if (p == nullptr || p->kind != PropertyKind::k_array || p->pod != Pod::k_f32 || p->extent != 3)
+      return fault("has a mesh without positions");
     if (p->sample_count > std::numeric_limits<int>::max()) return fault("is damaged: too many frames");
     view_.positions = *p;
     view_.info.frame_count = static_cast<int>(p->sample_count);
@@ -91,7 +95,8 @@ class Reader {
     if (first == nullptr) return {};
     const Sample& sample = first->samples.front();
     const std::uint64_t count = element_count(*first, sample);
-    if (count > std::numeric_limits<int>::max() || (sample.size > 0 && sample.size != 16 + 12 * count)) return fault("is damaged: a part of a position");
+    if (count > std::numeric_limits<int>::max() || (sample.size > 0 && sample.size != 16 + 12 * count))
+      return fault("is damaged: a part of a position");
     view_.info.vertex_count = static_cast<int>(count);
     for (const Sample& s : p->samples)
       if (s.size != sample.size) return fault("has a mesh whose topology changes");
@@ -165,7 +170,8 @@ class Reader {
       return {};
     }
     for (const int i : corners)
-      if (i < 0 || static_cast<std::size_t>(i) >= floats.value().size() / 2) return fault("is damaged: a face uses a missing uv");
+      if (i < 0 || static_cast<std::size_t>(i) >= floats.value().size() / 2)
+        return fault("is damaged: a face uses a missing uv");
     for (std::size_t i = 0; i + 1 < floats.value().size(); i += 2) {
       const Vec2 value(floats.value()[i], floats.value()[i + 1]);
       if (!value.allFinite()) return fault("is damaged: uvs that are not finite");
@@ -183,7 +189,8 @@ class Reader {
       const auto text = values_of<char>(file_, p.samples.front());
       if (!text) return text.error();
       const auto& characters = text.value();
-      view_.info.metadata.emplace_back(p.name, std::string(characters.begin(), std::find(characters.begin(), characters.end(), '\0')));
+      view_.info.metadata.emplace_back(
+          p.name, std::string(characters.begin(), std::find(characters.begin(), characters.end(), '\0')));
     }
     std::sort(view_.info.metadata.begin(), view_.info.metadata.end());
     return {};
@@ -192,7 +199,8 @@ class Reader {
   void read_times() {
     const TimeSampling& t = view_.times = archive_.time_samplings[view_.positions.time_sampling];
     double step = t.time_per_cycle / static_cast<double>(t.times.size());
-    if (t.times.size() > 1) step = t.times[1] - t.times[0];  // unevenly spaced times have no frame rate; this is the best guess
+    if (t.times.size() > 1)
+      step = t.times[1] - t.times[0];  // unevenly spaced times have no frame rate; this is the best guess
     view_.info.has_fps = t.times.size() == 1 && view_.positions.time_sampling != 0;
     double fps = step > 0 ? 1 / step : 24;
     for (const double rate : {std::round(fps), std::round(fps * 1.001) / 1.001})  // undo the rounding of 1/fps
@@ -209,6 +217,8 @@ class Reader {
 
 }  // namespace
 
-Result<MeshView> find_mesh(const InputFile& file, const Archive& archive) { return Reader(file, archive).run(); }
+Result<MeshView> find_mesh(const InputFile& file, const Archive& archive) {
+  return Reader(file, archive).run();
+}
 
 }  // namespace ft::alembic

@@ -1,4 +1,5 @@
-// Cache to archive: see alembic_mesh.h. Names, scopes and interpretations are those of AbcGeom's PolyMesh schema, version 1.
+// Cache to archive: see alembic_mesh.h. Names, scopes and interpretations are those of AbcGeom's PolyMesh schema,
+// version 1.
 #include "io/cache/alembic_mesh.h"
 
 #include <fmt/format.h>
@@ -84,24 +85,29 @@ Archive MeshTree::archive(const FrameSamples& frames, std::uint32_t count) const
   const auto first = [&](const std::vector<Sample>& all) { return std::span(all).first(count); };
   const std::uint32_t static_count = std::max(count, 1u);  // so that a cache without frames still has its topology
   std::vector<Property> geom;
-  geom.push_back(animated(k_scalar, ".selfBnds", "interpretation=box", Pod::k_f64, 6, k_shot_times, first(frames.bounds)));
-  geom.push_back(animated(k_array, "P", "geoScope=vtx;interpretation=point", Pod::k_f32, 3, k_shot_times, first(frames.positions)));
+  geom.push_back(
+      animated(k_scalar, ".selfBnds", "interpretation=box", Pod::k_f64, 6, k_shot_times, first(frames.bounds)));
+  geom.push_back(animated(k_array, "P", "geoScope=vtx;interpretation=point", Pod::k_f32, 3, k_shot_times,
+                          first(frames.positions)));
   geom.push_back(constant(k_array, ".faceIndices", "", Pod::k_i32, 1, k_shot_times, face_indices_, static_count));
   geom.push_back(constant(k_array, ".faceCounts", "", Pod::k_i32, 1, k_shot_times, face_sizes_, static_count));
   if (count > 0 && !frames.velocities.empty())
-    geom.push_back(animated(k_array, ".velocities", "interpretation=vector", Pod::k_f32, 3, k_shot_times, first(frames.velocities)));
+    geom.push_back(animated(k_array, ".velocities", "interpretation=vector", Pod::k_f32, 3, k_shot_times,
+                            first(frames.velocities)));
   if (has_uvs_)
     geom.push_back(compound("uv", k_uv_metadata,
                             {constant(k_array, ".vals", k_uv_metadata, Pod::k_f32, 2, 0, uv_values_, 1),
                              constant(k_array, ".indices", "", Pod::k_u32, 1, 0, uv_indices_, 1)}));
-  geom.push_back(compound(".arbGeomParams", "", {constant(k_array, "Pref", k_rest_metadata, Pod::k_f32, 3, 0, rest_, 1)}));
+  geom.push_back(
+      compound(".arbGeomParams", "", {constant(k_array, "Pref", k_rest_metadata, Pod::k_f32, 3, 0, rest_, 1)}));
   std::vector<Property> provenance;
   for (const auto& [key, sample] : provenance_)
     provenance.push_back(constant(k_scalar, key, "", Pod::k_string, 1, 0, sample, 1));
   geom.push_back(compound(".userProperties", "", std::move(provenance)));
 
   Archive archive;
-  archive.metadata = fmt::format("_ai_Application={};_ai_DCC_FPS={:.6f};_ai_Description={}", k_application, fps_, plain(system_, ";="));
+  archive.metadata = fmt::format("_ai_Application={};_ai_DCC_FPS={:.6f};_ai_Description={}", k_application, fps_,
+                                 plain(system_, ";="));
   archive.time_samplings.push_back({static_count, 1.0 / fps_, {first_frame_ / fps_}});
   Object mesh{system_, k_object_metadata, {compound(".geom", k_geom_metadata, std::move(geom))}, {}};
   archive.top.children.push_back(std::move(mesh));
@@ -123,6 +129,8 @@ std::uint64_t MeshTree::tail_bound(std::uint32_t capacity) const {
   return (emit(archive(fake, capacity), 0, root).size() + k_ranges + k_sector - 1) / k_sector * k_sector;
 }
 
-bool is_own(const Archive& archive) { return archive.metadata.starts_with(std::string("_ai_Application=") + k_application + ";"); }
+bool is_own(const Archive& archive) {
+  return archive.metadata.starts_with(std::string("_ai_Application=") + k_application + ";");
+}
 
 }  // namespace ft::alembic

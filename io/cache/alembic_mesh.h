@@ -1,6 +1,7 @@
-// A cache as an Alembic archive: one PolyMesh with positions, velocities, bounds, UVs, rest positions and provenance. MeshTree holds
-// what never changes and makes the archive for any number of frames, as a pure function of the samples so far; MeshView finds the
-// same things in any archive. Careful: Alembic winds faces clockwise seen from outside (RenderMan), our meshes counter-clockwise.
+// A cache as an Alembic archive: one PolyMesh with positions, velocities, bounds, UVs, rest positions and provenance.
+// MeshTree holds what never changes and makes the archive for any number of frames, as a pure function of the samples
+// so far; MeshView finds the same things in any archive. Careful: Alembic winds faces clockwise seen from outside
+// (RenderMan), our meshes counter-clockwise.
 #pragma once
 
 #include <span>
@@ -50,9 +51,9 @@ bool is_own(const Archive& archive);
 struct MeshView {
   CacheInfo info;  ///< mesh.positions: the first frame, or the rest positions of a cache without frames, in the world
   Property positions;
-  Property velocities;                   ///< no samples where there are none
-  TransformChain transforms;             ///< of the objects around the mesh
-  TimeSampling times;                    ///< of positions
+  Property velocities;        ///< no samples where there are none
+  TransformChain transforms;  ///< of the objects around the mesh
+  TimeSampling times;         ///< of positions
 };
 Result<MeshView> find_mesh(const InputFile& file, const Archive& archive);
 

@@ -1,5 +1,6 @@
-// Bytes to tree, believing nothing: every reference, count, width and index is checked before it is used, nothing is allocated
-// that the file is too small to hold, and groups that contain each other run out of a budget instead of out of memory.
+// Bytes to tree, believing nothing: every reference, count, width and index is checked before it is used, nothing is
+// allocated that the file is too small to hold, and groups that contain each other run out of a budget instead of out
+// of memory.
 #include <cmath>
 
 #include "io/cache/alembic_archive.h"
@@ -11,7 +12,9 @@ constexpr int k_max_depth = 64;
 constexpr std::uint64_t k_max_text_bytes = std::uint64_t{64} << 20;  // headers of one compound or object
 constexpr std::uint8_t k_inline_metadata = 255;
 
-std::string text_of(const Bytes& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string text_of(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 class Parser {
  public:
@@ -173,11 +176,12 @@ class Parser {
   void read_samples(ogawa::Reference reference, Property& p) {
     const auto slots = source_.group(reference);
     const std::size_t step = p.kind == PropertyKind::k_array ? 2 : 1;
-    const std::uint64_t expected =
-        p.sample_count == 0 ? 0 : p.constant() ? 1 : std::uint64_t{p.last_changed} - p.first_changed + 2;
+    const std::uint64_t expected = p.sample_count == 0 ? 0
+                                   : p.constant()      ? 1
+                                                       : std::uint64_t{p.last_changed} - p.first_changed + 2;
     if (source_.ok() && slots.size() != expected * step)
-      return fail("is damaged: property \"" + p.name + "\" has " + std::to_string(slots.size() / step) + " samples instead of " +
-                  std::to_string(expected));
+      return fail("is damaged: property \"" + p.name + "\" has " + std::to_string(slots.size() / step) +
+                  " samples instead of " + std::to_string(expected));
     for (std::size_t i = 0; i < slots.size() && source_.ok(); i += step) {
       Sample s;
       s.data = slots[i];

@@ -1,5 +1,6 @@
-// The Alembic reader: any Ogawa archive with a polygon mesh of constant topology. The tree is read once, when the file is opened;
-// a frame is one read, checked against its key. Own files are checked against their hashes as well, so that no flipped bit passes.
+// The Alembic reader: any Ogawa archive with a polygon mesh of constant topology. The tree is read once, when the file
+// is opened; a frame is one read, checked against its key. Own files are checked against their hashes as well, so that
+// no flipped bit passes.
 #include "io/cache/alembic_mesh.h"
 #include "io/cache/formats.h"
 
@@ -48,7 +49,8 @@ class AlembicReader final : public CacheReader {
   Status finite(int index, const std::vector<Vec3f>& points) const {
     for (const Vec3f& p : points)
       if (!p.allFinite())
-        return input_error("is damaged: frame " + std::to_string(view_.info.first_frame + index) + " holds numbers that are not finite",
+        return input_error("is damaged: frame " + std::to_string(view_.info.first_frame + index) +
+                               " holds numbers that are not finite",
                            file_.path().string());
     return {};
   }

@@ -1,5 +1,5 @@
-// Transform chains: see alembic_transform.h. An operation is one byte, kind in the upper half; angles are degrees; matrices are stored
-// row by row for row vectors, so that they are transposed here.
+// Transform chains: see alembic_transform.h. An operation is one byte, kind in the upper half; angles are degrees;
+// matrices are stored row by row for row vectors, so that they are transposed here.
 #include "io/cache/alembic_transform.h"
 
 #include <algorithm>
@@ -19,12 +19,18 @@ Eigen::Affine3d matrix_of(int operation, const double* v) {
     return Eigen::Affine3d(Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180, axis / length));
   };
   switch (operation) {
-    case k_scale: return Eigen::Affine3d(Eigen::Scaling(v[0], v[1], v[2]));
-    case k_translate: return Eigen::Affine3d(Eigen::Translation3d(v[0], v[1], v[2]));
-    case k_rotate: return rotation({v[0], v[1], v[2]}, v[3]);
-    case k_rotate_x: return rotation(Vec3::UnitX(), v[0]);
-    case k_rotate_y: return rotation(Vec3::UnitY(), v[0]);
-    case k_rotate_z: return rotation(Vec3::UnitZ(), v[0]);
+    case k_scale:
+      return Eigen::Affine3d(Eigen::Scaling(v[0], v[1], v[2]));
+    case k_translate:
+      return Eigen::Affine3d(Eigen::Translation3d(v[0], v[1], v[2]));
+    case k_rotate:
+      return rotation({v[0], v[1], v[2]}, v[3]);
+    case k_rotate_x:
+      return rotation(Vec3::UnitX(), v[0]);
+    case k_rotate_y:
+      return rotation(Vec3::UnitY(), v[0]);
+    case k_rotate_z:
+      return rotation(Vec3::UnitZ(), v[0]);
     default: {
       Eigen::Affine3d m = Eigen::Affine3d::Identity();
       for (int row = 0; row < 3; ++row)
@@ -48,9 +54,12 @@ double sample_time(const TimeSampling& times, std::uint32_t index) {
   return times.times[index % count] + times.time_per_cycle * (index / count);
 }
 
-Result<TransformChain> TransformChain::read(const InputFile& file, const Archive& archive, const std::vector<Property>& xforms) {
+Result<TransformChain> TransformChain::read(const InputFile& file, const Archive& archive,
+                                            const std::vector<Property>& xforms) {
   TransformChain chain;
-  const auto fault = [&](const char* what) { return input_error(std::string("is damaged: ") + what, file.path().string()); };
+  const auto fault = [&](const char* what) {
+    return input_error(std::string("is damaged: ") + what, file.path().string());
+  };
   for (const Property& xform : xforms) {
     if (const Property* inherits = samples_of(xform, ".inherits")) {
       const auto value = read_values(file, inherits->samples.front());
@@ -76,7 +85,8 @@ Result<TransformChain> TransformChain::read(const InputFile& file, const Archive
       ByteReader in(raw.value());
       link.values.push_back(in.read_array<double>(raw.value().size() / sizeof(double)));
       const auto& numbers = link.values.back();
-      if (numbers.size() < channels || !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
+      if (numbers.size() < channels ||
+          !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
         return fault("a transform lacks numbers");
     }
     link.times = archive.time_samplings[values->time_sampling];
@@ -98,7 +108,9 @@ Eigen::Affine3d TransformChain::at(double time) const {
 Eigen::Affine3d TransformChain::Link::matrix(double time) const {
   std::size_t nearest = 0;
   for (std::size_t i = 1; i < values.size(); ++i)
-    if (std::abs(sample_time(times, static_cast<std::uint32_t>(i)) - time) < std::abs(sample_time(times, static_cast<std::uint32_t>(nearest)) - time)) nearest = i;
+    if (std::abs(sample_time(times, static_cast<std::uint32_t>(i)) - time) <
+        std::abs(sample_time(times, static_cast<std::uint32_t>(nearest)) - time))
+      nearest = i;
   Eigen::Affine3d total = Eigen::Affine3d::Identity();
   const double* channel = values[nearest].data();
   for (const std::uint8_t operation : operations) {

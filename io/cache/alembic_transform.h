@@ -1,5 +1,5 @@
-// Transforms above a mesh in archives of other programs (AbcGeom's Xform schema): chains of operations whose numbers may be animated.
-// Our own files have none: they hold world space.
+// Transforms above a mesh in archives of other programs (AbcGeom's Xform schema): chains of operations whose numbers
+// may be animated. Our own files have none: they hold world space.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ double sample_time(const TimeSampling& times, std::uint32_t index);
 class TransformChain {
  public:
   /// xforms: .xform compounds.
-  static Result<TransformChain> read(const InputFile& file, const Archive& archive, const std::vector<Property>& xforms);
+  static Result<TransformChain> read(const InputFile& file, const Archive& archive,
+                                     const std::vector<Property>& xforms);
 
   bool identity() const { return links_.empty(); }
   bool constant() const;

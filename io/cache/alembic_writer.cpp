@@ -3,12 +3,13 @@
 //   | header 16 B | static data | slot 0 | slot 1 | frame 1 | frame 2 | ... | slot 0' | slot 1' | frame c+1 | ...
 //        `--> root: in the slot of the last whole frame
 //
-// The tail (all groups and headers, what a reader starts from) after n frames stands in slot n mod 2, padded to the size of the slot:
-// the tail of n - 1 frames stays whole beside it. A frame is: its data, its tail, sync, the 8 bytes of the root, sync. A process
-// killed at any instant leaves the root on a whole tail. Slots hold as many frames as were announced; when more come, two slots of
-// twice that capacity follow the frames. So the overhead stays proportional to the frames (about 80 B each), where appending a tail
-// per frame would be quadratic, and nothing has to be copied when the file is closed.
-// Resume rebuilds the place of everything from the samples that the last tail lists, and refuses a file that is laid out otherwise.
+// The tail (all groups and headers, what a reader starts from) after n frames stands in slot n mod 2, padded to the
+// size of the slot: the tail of n - 1 frames stays whole beside it. A frame is: its data, its tail, sync, the 8 bytes
+// of the root, sync. A process killed at any instant leaves the root on a whole tail. Slots hold as many frames as were
+// announced; when more come, two slots of twice that capacity follow the frames. So the overhead stays proportional to
+// the frames (about 80 B each), where appending a tail per frame would be quadratic, and nothing has to be copied when
+// the file is closed. Resume rebuilds the place of everything from the samples that the last tail lists, and refuses a
+// file that is laid out otherwise.
 #include <algorithm>
 #include <array>
 
@@ -32,7 +33,9 @@ struct Region {
   std::uint64_t end() const { return base + 2 * slot_size; }
 };
 
-std::uint64_t node_end(const Sample& s) { return (s.data & ~ogawa::k_data_bit) + sizeof(std::uint64_t) + s.size; }
+std::uint64_t node_end(const Sample& s) {
+  return (s.data & ~ogawa::k_data_bit) + sizeof(std::uint64_t) + s.size;
+}
 
 class AlembicWriter final : public CacheWriter {
  public:
@@ -65,7 +68,8 @@ class AlembicWriter final : public CacheWriter {
     const auto points = frame_floats(positions, vertex_count_, names_, frame_count(), "position");
     if (!points) return points.error();
     const bool with_velocities = frame_count() == 0 ? !velocities.empty() : !frames_.velocities.empty();
-    const auto speeds = frame_floats(velocities, with_velocities ? vertex_count_ : 0, names_, frame_count(), "velocity");
+    const auto speeds =
+        frame_floats(velocities, with_velocities ? vertex_count_ : 0, names_, frame_count(), "velocity");
     if (!speeds) return speeds.error();
     const Status status = append_frame(points.value(), speeds.value(), with_velocities);
     broken_ = !status;
@@ -146,7 +150,7 @@ class AlembicWriter final : public CacheWriter {
   MeshTree tree_;
   std::filesystem::path path_;
   std::size_t vertex_count_;
-  CacheInfo names_;  // system and first frame, for messages
+  CacheInfo names_;               // system and first frame, for messages
   std::vector<OutputFile> file_;  // none or one
   FrameSamples frames_;
   Region region_;
@@ -179,7 +183,8 @@ Status AlembicWriter::adopt(const Archive& archive, std::uint32_t keep_frames) {
   const Property* bounds = geom == nullptr ? nullptr : geom->find(".selfBnds");
   if (positions == nullptr || bounds == nullptr) return cannot_continue(path_, "it was written by another program");
   if (positions->sample_count < keep_frames || bounds->sample_count != positions->sample_count)
-    return cannot_continue(path_, "it has " + std::to_string(positions->sample_count) + " frames of " + std::to_string(keep_frames));
+    return cannot_continue(
+        path_, "it has " + std::to_string(positions->sample_count) + " frames of " + std::to_string(keep_frames));
   const Property* velocities = geom->find(".velocities");
   if (velocities != nullptr && velocities->sample_count != positions->sample_count)
     return cannot_continue(path_, "its velocities do not match its positions");
@@ -202,8 +207,9 @@ Status AlembicWriter::adopt(const Archive& archive, std::uint32_t keep_frames) {
   return sound ? Status{} : cannot_continue(path_, "its frames are not where this program puts them");
 }
 
-/// Both slots as they were after the last kept frame, though the process that wrote the file went on and died at any point. The root
-/// never leaves a whole tail: where the slot that must change is the live one, the same frames are committed in the other first.
+/// Both slots as they were after the last kept frame, though the process that wrote the file went on and died at any
+/// point. The root never leaves a whole tail: where the slot that must change is the live one, the same frames are
+/// committed in the other first.
 Status AlembicWriter::restore_slots(ogawa::Reference live_root) {
   const std::uint32_t count = frames_.count();
   const std::uint64_t slot = region_.slot(count), other = region_.slot(count + 1);
@@ -223,15 +229,18 @@ Status AlembicWriter::restore_slots(ogawa::Reference live_root) {
     status = commit(count, slot, region_.slot_size);
   }
   ogawa::Reference unused = 0;
-  const Bytes before = count > region_.first ? tail_at(other, count - 1, region_.slot_size, unused) : Bytes(region_.slot_size);
+  const Bytes before =
+      count > region_.first ? tail_at(other, count - 1, region_.slot_size, unused) : Bytes(region_.slot_size);
   return status ? file().write_at(other, before) : status;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<CacheWriter>> open_alembic_writer(const std::filesystem::path& path, const CacheInfo& info, int keep_frames) {
+Result<std::unique_ptr<CacheWriter>> open_alembic_writer(const std::filesystem::path& path, const CacheInfo& info,
+                                                         int keep_frames) {
   auto writer = std::make_unique<AlembicWriter>(info, path);
-  const Status status = keep_frames == 0 ? writer->start_new() : writer->continue_after(static_cast<std::uint32_t>(keep_frames));
+  const Status status =
+      keep_frames == 0 ? writer->start_new() : writer->continue_after(static_cast<std::uint32_t>(keep_frames));
   if (!status) return status.error();
   return std::unique_ptr<CacheWriter>(std::move(writer));
 }

@@ -1,6 +1,7 @@
-// Caches: a mesh with constant topology and a position per vertex and frame. Every format has a writer and a reader; both are
-// listed in registry.cpp and the contract tests run over the list. A cache carries no times of day and no host names: the same
-// bake gives the same bytes. It is valid after every frame: open the file at any moment and all finished frames are there.
+// Caches: a mesh with constant topology and a position per vertex and frame. Every format has a writer and a reader;
+// both are listed in registry.cpp and the contract tests run over the list. A cache carries no times of day and no host
+// names: the same bake gives the same bytes. It is valid after every frame: open the file at any moment and all
+// finished frames are there.
 #pragma once
 
 #include <filesystem>
@@ -18,12 +19,12 @@
 namespace ft {
 
 struct CacheInfo {
-  std::string system;     ///< name of the garment; object name in the cache
-  Mesh mesh;              ///< topology, uvs, rest positions; file order. Reader: positions of the first frame
+  std::string system;  ///< name of the garment; object name in the cache
+  Mesh mesh;           ///< topology, uvs, rest positions; file order. Reader: positions of the first frame
   double fps = 24;
-  int first_frame = 1;    ///< frame number of the first sample
-  int vertex_count = 0;   ///< reader: points per frame, known even where mesh is empty; writers take mesh.vertex_count()
-  int frame_count = 0;    ///< writer: frames that will come; reader: frames there are
+  int first_frame = 1;   ///< frame number of the first sample
+  int vertex_count = 0;  ///< reader: points per frame, known even where mesh is empty; writers take mesh.vertex_count()
+  int frame_count = 0;   ///< writer: frames that will come; reader: frames there are
   std::vector<std::pair<std::string, std::string>> metadata;  ///< sorted by key; units, version, hash of the inputs
   bool has_topology = true;   ///< reader: false for formats that hold points only (PC2, MDD)
   bool has_velocity = false;  ///< reader
@@ -54,9 +55,10 @@ struct CacheFormat {
   std::string_view name;       ///< as in [cache] formats: "abc", "pc2"
   std::string_view extension;  ///< ".abc"
   std::string_view description;
-  /// keep_frames = 0: a new file; n > 0: continue a file after its first n frames, cutting what follows. A resumed file is
-  /// byte-identical to one written without interruption.
-  std::function<Result<std::unique_ptr<CacheWriter>>(const std::filesystem::path&, const CacheInfo&, int keep_frames)> open_writer;
+  /// keep_frames = 0: a new file; n > 0: continue a file after its first n frames, cutting what follows. A resumed file
+  /// is byte-identical to one written without interruption.
+  std::function<Result<std::unique_ptr<CacheWriter>>(const std::filesystem::path&, const CacheInfo&, int keep_frames)>
+      open_writer;
   std::function<Result<std::unique_ptr<CacheReader>>(const std::filesystem::path&)> open_reader;
   std::string_view magic;  ///< first bytes of every file of the format
 };

@@ -1,5 +1,5 @@
-// A file opened for reading at given offsets, for caches that are too large to be read whole and that may still be growing.
-// Not memory-mapped on purpose: a mapped file that is cut while it is read ends the process.
+// A file opened for reading at given offsets, for caches that are too large to be read whole and that may still be
+// growing. Not memory-mapped on purpose: a mapped file that is cut while it is read ends the process.
 #pragma once
 
 #include <cstddef>

@@ -14,8 +14,12 @@ std::uint64_t finish(std::uint64_t k) {
   return k ^ (k >> 33);
 }
 
-std::uint64_t mix1(std::uint64_t k) { return std::rotl(k * k_c1, 31) * k_c2; }
-std::uint64_t mix2(std::uint64_t k) { return std::rotl(k * k_c2, 33) * k_c1; }
+std::uint64_t mix1(std::uint64_t k) {
+  return std::rotl(k * k_c1, 31) * k_c2;
+}
+std::uint64_t mix2(std::uint64_t k) {
+  return std::rotl(k * k_c2, 33) * k_c1;
+}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
-// Ogawa, the container of Alembic files: data nodes (u64 size, payload) and group nodes (u64 count, references), anywhere in the
-// file, found through references from one root group. Builder lays nodes out in memory for a given place in the file; Source reads
-// them back. After the first fault every read of Source gives nothing and fault() says what, so that a parser looks once.
+// Ogawa, the container of Alembic files: data nodes (u64 size, payload) and group nodes (u64 count, references),
+// anywhere in the file, found through references from one root group. Builder lays nodes out in memory for a given
+// place in the file; Source reads them back. After the first fault every read of Source gives nothing and fault() says
+// what, so that a parser looks once.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +41,8 @@ class Builder {
 
 class Source {
  public:
-  /// Checks the header. What all groups and all data together may hold is capped by the size of the file, against groups
-  /// that contain each other and data that is referred to again and again.
+  /// Checks the header. What all groups and all data together may hold is capped by the size of the file, against
+  /// groups that contain each other and data that is referred to again and again.
   explicit Source(const InputFile& file);
 
   bool ok() const { return fault_.empty(); }

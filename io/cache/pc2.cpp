@@ -1,7 +1,8 @@
-// PointCache2: 32 bytes of header, then float32 x y z per vertex and frame. For Blender's Mesh Cache modifier, 3ds Max and whatever
-// else takes points without topology. A frame counts when the header says so: its floats are written and synced first, the number of
-// samples after them, so that the file is whole at every moment and its bytes depend on nothing but the frames.
-// Careful: the format stores no frame rate, no velocity and no checksum; a flipped bit in a coordinate cannot be seen.
+// PointCache2: 32 bytes of header, then float32 x y z per vertex and frame. For Blender's Mesh Cache modifier, 3ds Max
+// and whatever else takes points without topology. A frame counts when the header says so: its floats are written and
+// synced first, the number of samples after them, so that the file is whole at every moment and its bytes depend on
+// nothing but the frames. Careful: the format stores no frame rate, no velocity and no checksum; a flipped bit in a
+// coordinate cannot be seen.
 #include <cmath>
 
 #include "baker/core/file.h"
@@ -30,20 +31,24 @@ static_assert(sizeof(Header) == k_header_size);
 Result<Header> read_header(const InputFile& file) {
   const std::string where = file.path().string();
   Header h{};
-  if (!file.read_at(0, std::as_writable_bytes(std::span(&h, 1)))) return input_error("is too short for a PC2 file", where);
+  if (!file.read_at(0, std::as_writable_bytes(std::span(&h, 1))))
+    return input_error("is too short for a PC2 file", where);
   if (std::memcmp(h.magic, k_magic, sizeof k_magic) != 0) return input_error("is not a PC2 file", where);
   if (h.version != 1) return input_error("has the unknown PC2 version " + std::to_string(h.version), where);
   if (h.point_count < 0 || h.sample_count < 0) return input_error("is damaged: negative counts", where);
-  if (!std::isfinite(h.start_frame) || std::abs(h.start_frame) > 1e9f || !(h.frames_per_sample > 0 && h.frames_per_sample < 1e9f))
+  if (!std::isfinite(h.start_frame) || std::abs(h.start_frame) > 1e9f ||
+      !(h.frames_per_sample > 0 && h.frames_per_sample < 1e9f))
     return input_error("is damaged: the start frame or the sample rate makes no sense", where);
   if (h.point_count == 0 && file.size() != k_header_size) return input_error("is damaged: no points, but data", where);
   const std::uint64_t data = file.size() - k_header_size, samples = static_cast<std::uint64_t>(h.sample_count);
   if (h.frame_size() > 0 && data / h.frame_size() < samples)
-    return input_error("is cut: " + std::to_string(samples) + " frames announced, " + std::to_string(data / h.frame_size()) + " are there",
+    return input_error("is cut: " + std::to_string(samples) + " frames announced, " +
+                           std::to_string(data / h.frame_size()) + " are there",
                        where);
   // A file that grows holds at most the frame that is being written on top of what it announces.
   if (h.frame_size() > 0 && data - samples * h.frame_size() > h.frame_size())
-    return input_error("is damaged: more data than " + std::to_string(samples) + " frames of " + std::to_string(h.point_count) + " points",
+    return input_error("is damaged: more data than " + std::to_string(samples) + " frames of " +
+                           std::to_string(h.point_count) + " points",
                        where);
   return h;
 }
@@ -60,7 +65,8 @@ class Pc2Writer final : public CacheWriter {
     CacheInfo info;
     info.system = system_;
     info.first_frame = first_frame_;
-    const auto floats = frame_floats(positions, static_cast<std::size_t>(header_.point_count), info, frame_count(), "position");
+    const auto floats =
+        frame_floats(positions, static_cast<std::size_t>(header_.point_count), info, frame_count(), "position");
     if (!floats) return floats.error();
     Status status = file_.write_at(header_.end(header_.sample_count), std::as_bytes(std::span(floats.value())));
     if (status) status = file_.sync();
@@ -115,8 +121,9 @@ class Pc2Reader final : public CacheReader {
     Bytes raw(static_cast<std::size_t>(header_.frame_size()));
     if (!file_.read_at(header_.end(index), raw)) return input_error("cannot be read to its end", file_.path().string());
     if (!points_from_bytes(raw, positions))
-      return input_error("is damaged: frame " + std::to_string(info_.first_frame + index) + " holds numbers that are not finite",
-                         file_.path().string());
+      return input_error(
+          "is damaged: frame " + std::to_string(info_.first_frame + index) + " holds numbers that are not finite",
+          file_.path().string());
     return {};
   }
 
@@ -136,7 +143,8 @@ class Pc2Reader final : public CacheReader {
 
 }  // namespace
 
-Result<std::unique_ptr<CacheWriter>> open_pc2_writer(const std::filesystem::path& path, const CacheInfo& info, int keep_frames) {
+Result<std::unique_ptr<CacheWriter>> open_pc2_writer(const std::filesystem::path& path, const CacheInfo& info,
+                                                     int keep_frames) {
   Header header{};
   std::memcpy(header.magic, k_magic, sizeof k_magic);
   header.version = 1;
@@ -152,9 +160,11 @@ Result<std::unique_ptr<CacheWriter>> open_pc2_writer(const std::filesystem::path
     const auto old_header = read_header(*old_file);
     if (!old_header) return cannot_continue(path, old_header.error().what);
     header.sample_count = old_header.value().sample_count;
-    if (std::memcmp(&header, &old_header.value(), sizeof header) != 0) return cannot_continue(path, "it was written for another mesh or frame range");
+    if (std::memcmp(&header, &old_header.value(), sizeof header) != 0)
+      return cannot_continue(path, "it was written for another mesh or frame range");
     if (header.sample_count < keep_frames)
-      return cannot_continue(path, "it has " + std::to_string(header.sample_count) + " frames of " + std::to_string(keep_frames));
+      return cannot_continue(
+          path, "it has " + std::to_string(header.sample_count) + " frames of " + std::to_string(keep_frames));
   }
   auto file = OutputFile::open_existing(path);
   if (!file) return file.error();

@@ -1,5 +1,5 @@
-// The list of cache formats. A new one: a file with a writer and a reader, their names in formats.h, a line here; the contract tests
-// (tests/io_cache/contract_test.cpp) then run over it.
+// The list of cache formats. A new one: a file with a writer and a reader, their names in formats.h, a line here; the
+// contract tests (tests/io_cache/contract_test.cpp) then run over it.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -12,13 +12,16 @@ namespace ft {
 namespace {
 
 const std::array k_formats = {
-    CacheFormat{"abc", ".abc", "Alembic (Ogawa), mesh with velocities", open_alembic_writer, open_alembic_reader, "Ogawa"},
+    CacheFormat{"abc", ".abc", "Alembic (Ogawa), mesh with velocities", open_alembic_writer, open_alembic_reader,
+                "Ogawa"},
     CacheFormat{"pc2", ".pc2", "PointCache2, points only", open_pc2_writer, open_pc2_reader, "POINTCACHE2"},
 };
 
 }  // namespace
 
-std::span<const CacheFormat> cache_formats() { return k_formats; }
+std::span<const CacheFormat> cache_formats() {
+  return k_formats;
+}
 
 const CacheFormat* find_cache_format(std::string_view name) {
   for (const CacheFormat& f : k_formats)
@@ -34,7 +37,8 @@ Result<std::unique_ptr<CacheReader>> open_cache(const std::filesystem::path& pat
     if (file->read_at(0, std::as_writable_bytes(std::span(start))) && start == f.magic) return f.open_reader(path);
   }
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   for (const CacheFormat& f : k_formats)
     if (extension == f.extension) return f.open_reader(path);
   std::string names;
@@ -46,18 +50,22 @@ Status CacheReader::read_velocities(int, std::vector<Vec3f>&) {
   return input_error("this cache format holds no velocities");
 }
 
-Result<std::vector<float>> frame_floats(std::span<const Vec3> values, std::size_t expected_count, const CacheInfo& info, int frame_index,
-                                        std::string_view what) {
+Result<std::vector<float>> frame_floats(std::span<const Vec3> values, std::size_t expected_count, const CacheInfo& info,
+                                        int frame_index, std::string_view what) {
   const std::string where = "frame " + std::to_string(info.first_frame + frame_index) + ", " + info.system;
   if (values.size() != expected_count)
-    return Error{ErrorKind::k_bug, std::to_string(values.size()) + " values for " + std::to_string(expected_count) + " vertices", where, {}};
+    return Error{ErrorKind::k_bug,
+                 std::to_string(values.size()) + " values for " + std::to_string(expected_count) + " vertices",
+                 where,
+                 {}};
   std::vector<float> out;
   out.reserve(3 * values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     for (int c = 0; c < 3; ++c) {
       const float x = static_cast<float>(values[i][c]);
       if (!std::isfinite(x))
-        return Error{ErrorKind::k_diverged, std::string(what) + " is not finite", where + ", vertex " + std::to_string(i), {}};
+        return Error{
+            ErrorKind::k_diverged, std::string(what) + " is not finite", where + ", vertex " + std::to_string(i), {}};
       out.push_back(x);
     }
   return out;

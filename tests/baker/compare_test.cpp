@@ -1,4 +1,5 @@
-// compare: verdicts and exit codes, the first frame and vertex, all four reports, and Alembic against PC2 of the same bake.
+// compare: verdicts and exit codes, the first frame and vertex, all four reports, and Alembic against PC2 of the same
+// bake.
 #include "baker/commands/compare.h"
 
 #include <gtest/gtest.h>
@@ -176,8 +177,10 @@ TEST_F(Compare, Reports_say_the_same_as_the_exit_code) {
   EXPECT_EQ(cache["worst"]["max"], 0.25);
   EXPECT_EQ(cache["frames"].size(), 6u);
   const std::string html = read("r.html"), xml = read("r.xml");
-  for (const char* part : {"<polyline", "<circle", "different", "a &amp; &lt;b&gt;", "vertex 7"}) EXPECT_NE(html.find(part), std::string::npos) << part;
-  for (const char* outside : {"http", "src=", "<script", "<b>.abc"}) EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  for (const char* part : {"<polyline", "<circle", "different", "a &amp; &lt;b&gt;", "vertex 7"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  for (const char* outside : {"http", "src=", "<script", "<b>.abc"})
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
   EXPECT_NE(xml.find("failures=\"1\" errors=\"0\""), std::string::npos) << xml;
   ASSERT_EQ(run(a, a), 0);
   EXPECT_NE(read("r.xml").find("failures=\"0\" errors=\"0\""), std::string::npos);

@@ -1,4 +1,5 @@
-// The Alembic writer and reader beyond the contract of all formats: no silent damage, size, sharing, archives of other programs.
+// The Alembic writer and reader beyond the contract of all formats: no silent damage, size, sharing, archives of other
+// programs.
 #include <gtest/gtest.h>
 
 #include "baker/core/file.h"
@@ -12,15 +13,20 @@ namespace {
 
 using namespace alembic;
 
-const CacheFormat& abc() { return *find_cache_format("abc"); }
+const CacheFormat& abc() {
+  return *find_cache_format("abc");
+}
 
-std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
 
 TEST(Murmur3, Gives_the_published_digests) {
   EXPECT_EQ(murmur3({}), (Key{0, 0}));
   EXPECT_EQ(murmur3(bytes_of("hello")), (Key{0xcbd8a7b341bd9b02, 0x5b1e906a48ae1d19}));
   EXPECT_EQ(murmur3(bytes_of("hello, world")), (Key{0x342fac623a5ebc8e, 0x4cdcbc079642414d}));
-  EXPECT_EQ(murmur3(bytes_of("The quick brown fox jumps over the lazy dog.")), (Key{0xcd99481f9ee902c9, 0x695da1a38987b6e7}));
+  EXPECT_EQ(murmur3(bytes_of("The quick brown fox jumps over the lazy dog.")),
+            (Key{0xcd99481f9ee902c9, 0x695da1a38987b6e7}));
 }
 
 TEST(Alembic, Reversing_faces_twice_changes_nothing) {
@@ -33,8 +39,8 @@ TEST(Alembic, Reversing_faces_twice_changes_nothing) {
   EXPECT_EQ(corners, mesh.face_vertices);
 }
 
-// The public Alembic library (1.8.12) reads the file behind this hash: every sample, key, time, bound, uv and property, with the
-// values written. When the bytes change on purpose, let it read the new ones before changing the hash.
+// The public Alembic library (1.8.12) reads the file behind this hash: every sample, key, time, bound, uv and property,
+// with the values written. When the bytes change on purpose, let it read the new ones before changing the hash.
 TEST(Alembic, Writes_the_bytes_that_the_public_library_was_seen_to_read) {
   ScratchFolder scratch{ScratchFolder::k_in_memory};
   const CacheSample sample = waving_patch(4, 3, 7);
@@ -50,7 +56,8 @@ std::string content(const std::filesystem::path& path) {
   Hasher hasher;
   hasher.text(i.system).number(i.fps).number(i.first_frame).number(i.frame_count);
   for (const auto& [key, value] : i.metadata) hasher.text(key).text(value);
-  for (const auto* list : {&i.mesh.face_sizes, &i.mesh.face_vertices, &i.mesh.face_uvs}) hasher.bytes(list->data(), list->size() * sizeof(int));
+  for (const auto* list : {&i.mesh.face_sizes, &i.mesh.face_vertices, &i.mesh.face_uvs})
+    hasher.bytes(list->data(), list->size() * sizeof(int));
   for (const Vec2& uv : i.mesh.uvs) hasher.number(uv.x()).number(uv.y());
   std::vector<Vec3f> points;
   for (int f = 0; f < i.frame_count; ++f)
@@ -91,10 +98,11 @@ TEST(Alembic, The_file_costs_little_more_than_its_floats) {
     sample.info.frame_count = announced;
     auto writer = abc().open_writer(scratch / "a.abc", sample.info, 0);
     ASSERT_TRUE(writer);
-    for (std::size_t f = 0; f < 500; ++f) ASSERT_TRUE((*writer)->write_frame(sample.positions[f % 2], sample.velocities[f % 2]));
+    for (std::size_t f = 0; f < 500; ++f)
+      ASSERT_TRUE((*writer)->write_frame(sample.positions[f % 2], sample.velocities[f % 2]));
     ASSERT_TRUE((*writer)->close());
-    // Per frame: sizes and keys 3 x 24 B, the box 48 B, two tails of 40 B; twice as many tails and more when the frames were not
-    // announced. Once: the mesh, and what is not samples in each tail.
+    // Per frame: sizes and keys 3 x 24 B, the box 48 B, two tails of 40 B; twice as many tails and more when the frames
+    // were not announced. Once: the mesh, and what is not samples in each tail.
     const std::size_t floats = 500 * 100 * 6 * sizeof(float), mesh = 100 * 12 + 81 * 4 + 324 * 4 * 2 + 101 * 8;
     const std::size_t per_frame = announced > 0 ? 200 : 360, tails = announced > 0 ? 2 : 8;
     EXPECT_LT(std::filesystem::file_size(scratch / "a.abc"), floats + mesh + 500 * per_frame + tails * 2048 + 512);
@@ -123,7 +131,9 @@ TEST(Alembic, Velocities_come_with_every_frame_or_with_none) {
   for (const bool first : {true, false}) {
     auto writer = abc().open_writer(scratch / "a.abc", sample.info, 0);
     ASSERT_TRUE(writer);
-    const auto velocities = [&](bool with) { return with ? std::span<const Vec3>(sample.velocities[1]) : std::span<const Vec3>(); };
+    const auto velocities = [&](bool with) {
+      return with ? std::span<const Vec3>(sample.velocities[1]) : std::span<const Vec3>();
+    };
     ASSERT_TRUE((*writer)->write_frame(sample.positions[0], velocities(first)));
     EXPECT_FALSE((*writer)->write_frame(sample.positions[1], velocities(!first)));
     ASSERT_TRUE((*writer)->write_frame(sample.positions[1], velocities(first)));
@@ -184,17 +194,22 @@ TEST(Alembic, Meshes_under_transforms_are_read_in_the_world) {
   const Object mesh{"mesh", "schema=AbcGeom_PolyMesh_v1", {compound(".geom", "", geom)}, {}};
   // Inner: scale by 2, then 90 degrees around z (point -> rotate * scale). Outer: moves by 1 per frame along x.
   const std::vector<double> inner_values = {0, 0, 1, 90, 2, 2, 2};
-  const Property inner = compound(".xform", "", {constant(k_scalar, ".ops", "", Pod::k_u8, 2, 0, foreign.add(std::vector<std::uint8_t>{2 << 4, 0}), 1),
-                                                 constant(k_scalar, ".vals", "", Pod::k_f64, 7, 0, foreign.add(inner_values), 1)});
+  const Property inner =
+      compound(".xform", "",
+               {constant(k_scalar, ".ops", "", Pod::k_u8, 2, 0, foreign.add(std::vector<std::uint8_t>{2 << 4, 0}), 1),
+                constant(k_scalar, ".vals", "", Pod::k_f64, 7, 0, foreign.add(inner_values), 1)});
   const auto outer = [&](bool moves) {
-    const Sample samples[] = {foreign.add(std::vector<double>{10, 0, 0}), foreign.add(std::vector<double>{moves ? 11.0 : 10.0, 0, 0})};
-    return compound(".xform", "", {constant(k_scalar, ".ops", "", Pod::k_u8, 1, 0, foreign.add(std::vector<std::uint8_t>{1 << 4}), 1),
-                                   animated(k_scalar, ".vals", "", Pod::k_f64, 3, 1, samples)});
+    const Sample samples[] = {foreign.add(std::vector<double>{10, 0, 0}),
+                              foreign.add(std::vector<double>{moves ? 11.0 : 10.0, 0, 0})};
+    return compound(".xform", "",
+                    {constant(k_scalar, ".ops", "", Pod::k_u8, 1, 0, foreign.add(std::vector<std::uint8_t>{1 << 4}), 1),
+                     animated(k_scalar, ".vals", "", Pod::k_f64, 3, 1, samples)});
   };
   for (const bool moves : {false, true}) {
     Archive archive;
     archive.time_samplings.push_back({2, 1 / 25.0, {1.0}});
-    archive.top.children = {{"outer", "schema=AbcGeom_Xform_v3", {outer(moves)}, {{"inner", "schema=AbcGeom_Xform_v3", {inner}, {mesh}}}}};
+    archive.top.children = {
+        {"outer", "schema=AbcGeom_Xform_v3", {outer(moves)}, {{"inner", "schema=AbcGeom_Xform_v3", {inner}, {mesh}}}}};
     Foreign again = foreign;
     auto reader = open_cache(again.save(archive, scratch / "foreign.abc"));
     ASSERT_TRUE(reader) << reader.error().text();
@@ -205,7 +220,8 @@ TEST(Alembic, Meshes_under_transforms_are_read_in_the_world) {
     for (int f = 0; f < 2; ++f) {
       ASSERT_TRUE((*reader)->read_frame(f, x));
       const float along = moves && f == 1 ? 11 : 10;
-      EXPECT_TRUE(x[0].isApprox(Vec3f(along, 0, 0)) && x[1].isApprox(Vec3f(along, 2, 0)) && x[2].isApprox(Vec3f(along - 2, 0, 0)));
+      EXPECT_TRUE(x[0].isApprox(Vec3f(along, 0, 0)) && x[1].isApprox(Vec3f(along, 2, 0)) &&
+                  x[2].isApprox(Vec3f(along - 2, 0, 0)));
     }
     if (!moves) {
       ASSERT_TRUE((*reader)->read_velocities(0, x));
@@ -237,7 +253,8 @@ TEST(Alembic, What_is_no_mesh_of_constant_topology_is_refused_by_name) {
   EXPECT_EQ(refusal(good, {0, 1}, {2}), "has a face with 2 corners");
   EXPECT_EQ(refusal(good, {0, 1, 2}, {-3}), "has a face with -3 corners");
   EXPECT_EQ(refusal(good, {0, 1, 2}, {3, 2147483647, 2147483647}), "is damaged: face sizes do not add up");
-  EXPECT_EQ(refusal(std::vector<float>(9, std::numeric_limits<float>::infinity()), {0, 1, 2}, {3}), "read");  // refused per frame
+  EXPECT_EQ(refusal(std::vector<float>(9, std::numeric_limits<float>::infinity()), {0, 1, 2}, {3}),
+            "read");  // refused per frame
 }
 
 TEST(Alembic, Any_number_of_samples_survives_tree_to_bytes_to_tree) {

@@ -1,5 +1,5 @@
-// An independent reader: Blender has a PC2 reader of its own and, where it is built with it, the public Alembic library. Debian's is not;
-// a Blender from elsewhere that stands first in PATH is asked for both.
+// An independent reader: Blender has a PC2 reader of its own and, where it is built with it, the public Alembic
+// library. Debian's is not; a Blender from elsewhere that stands first in PATH is asked for both.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,12 +14,15 @@
 namespace ft::test {
 namespace {
 
-std::filesystem::path script(const char* name) { return std::filesystem::path(FT_SOURCE_DIR) / "tests/io_cache" / name; }
+std::filesystem::path script(const char* name) {
+  return std::filesystem::path(FT_SOURCE_DIR) / "tests/io_cache" / name;
+}
 
 /// What lines "BLENDER name value" say.
 std::map<std::string, std::string> run_blender(const std::string& arguments) {
   std::map<std::string, std::string> out;
-  FILE* pipe = ::popen(("blender -b --factory-startup -t 1 --python-exit-code 1 --python " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe =
+      ::popen(("blender -b --factory-startup -t 1 --python-exit-code 1 --python " + arguments + " 2>&1").c_str(), "r");
   std::array<char, 4096> line;
   std::string all;
   while (pipe != nullptr && std::fgets(line.data(), line.size(), pipe) != nullptr) {
@@ -38,7 +41,8 @@ nlohmann::json points_json(const std::vector<std::vector<Vec3>>& frames) {
   nlohmann::json out = nlohmann::json::array();
   for (const auto& frame : frames) {
     nlohmann::json points = nlohmann::json::array();
-    for (const Vec3& p : frame) points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+    for (const Vec3& p : frame)
+      points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
     out.push_back(std::move(points));
   }
   return out;
@@ -78,7 +82,8 @@ TEST(Blender, Sees_in_alembic_and_pc2_what_was_baked_slow) {
     ASSERT_TRUE(write_cache(format, path, sample, 12, 5));
   }
   ASSERT_TRUE(write_text_durably(scratch / "expected.json", expectation(sample).dump()));
-  auto seen = run_blender(script("blender_check.py").string() + " -- " + (scratch / "expected.json").string() + " " + abc.string() + " " + pc2.string());
+  auto seen = run_blender(script("blender_check.py").string() + " -- " + (scratch / "expected.json").string() + " " +
+                          abc.string() + " " + pc2.string());
   ASSERT_FALSE(seen["pc2"].empty());
   EXPECT_LE(std::stod(seen["pc2"]), 0);  // axes change places, nothing is rounded
   if (seen["has_alembic"] != "1") {

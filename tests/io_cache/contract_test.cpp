@@ -1,5 +1,5 @@
-// What every cache format promises, run over the list of formats: what is written is read, after every frame, after every resume;
-// what is cut, flipped or lying is refused or read without harm.
+// What every cache format promises, run over the list of formats: what is written is read, after every frame, after
+// every resume; what is cut, flipped or lying is refused or read without harm.
 #include <gtest/gtest.h>
 
 #include "baker/core/file.h"
@@ -11,7 +11,9 @@ namespace {
 
 class CacheFormats : public testing::TestWithParam<CacheFormat> {
  protected:
-  std::filesystem::path path(const std::string& name = "cache") const { return scratch_ / (name + std::string(GetParam().extension)); }
+  std::filesystem::path path(const std::string& name = "cache") const {
+    return scratch_ / (name + std::string(GetParam().extension));
+  }
   Bytes bytes_of(const std::filesystem::path& p) const {
     auto data = read_file(p);
     EXPECT_TRUE(data) << p;
@@ -126,7 +128,8 @@ TEST_P(CacheFormats, Resume_at_every_frame_gives_the_same_bytes) {
         ASSERT_TRUE(status) << status.error().text();
         expect_holds(s, kept, path("cut"));
         ASSERT_TRUE(write_cache(GetParam(), path("cut"), s, 12, kept));
-        ASSERT_EQ(bytes_of(path("cut")), whole) << "announced " << announced << ", written " << written << ", kept " << kept;
+        ASSERT_EQ(bytes_of(path("cut")), whole)
+            << "announced " << announced << ", written " << written << ", kept " << kept;
       }
   }
 }

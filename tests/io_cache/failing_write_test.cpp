@@ -1,5 +1,6 @@
-// A full disk, a failed write, a killed process loses no finished frame: every call of a ten-frame write that changes a file fails in
-// turn, alone, for good, after half of its bytes, or is the moment at which the process is killed; the same while a cache is continued.
+// A full disk, a failed write, a killed process loses no finished frame: every call of a ten-frame write that changes a
+// file fails in turn, alone, for good, after half of its bytes, or is the moment at which the process is killed; the
+// same while a cache is continued.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -36,9 +37,9 @@ class FailingWrites : public testing::TestWithParam<CacheFormat> {
   }
 
   struct Run {
-    int code = -1;      ///< exit code; 128 + signal
-    int finished = 0;   ///< frames that were durable
-    long calls = 0;     ///< that changed files
+    int code = -1;     ///< exit code; 128 + signal
+    int finished = 0;  ///< frames that were durable
+    long calls = 0;    ///< that changed files
   };
 
   Run run(int frames, int keep, std::vector<std::string> environment) const {
@@ -48,7 +49,8 @@ class FailingWrites : public testing::TestWithParam<CacheFormat> {
     environment.push_back("FT_FAIL_FOLDER=" + folder_.string());
     environment.push_back("FT_COUNT_FILE=" + count.string());
     environment.push_back("ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0");
-    std::vector<std::string> arguments = {FT_BINARY_DIR "/bin/write_cache", path_.string(), std::to_string(frames), std::to_string(keep)};
+    std::vector<std::string> arguments = {FT_BINARY_DIR "/bin/write_cache", path_.string(), std::to_string(frames),
+                                          std::to_string(keep)};
     std::vector<char*> argv, envp;
     for (auto& a : arguments) argv.push_back(a.data());
     for (auto& e : environment) envp.push_back(e.data());
@@ -72,7 +74,8 @@ class FailingWrites : public testing::TestWithParam<CacheFormat> {
     return r;
   }
 
-  /// All finished frames and at most one more are there, and going on from the finished ones gives the undisturbed bytes.
+  /// All finished frames and at most one more are there, and going on from the finished ones gives the undisturbed
+  /// bytes.
   void expect_nothing_lost(int finished) const {
     const CacheSample sample = waving_patch(3, 2, k_frames);
     const bool exists = std::filesystem::exists(path_);
@@ -97,7 +100,8 @@ class FailingWrites : public testing::TestWithParam<CacheFormat> {
   Bytes whole_;
 };
 
-const std::vector<std::vector<std::string>> k_modes = {{"FT_FAIL_ONCE=1"}, {"FT_FAIL_SHORT=1", "FT_FAIL_KEEP=1"}, {"FT_FAIL_KILL=1"}};
+const std::vector<std::vector<std::string>> k_modes = {
+    {"FT_FAIL_ONCE=1"}, {"FT_FAIL_SHORT=1", "FT_FAIL_KEEP=1"}, {"FT_FAIL_KILL=1"}};
 
 std::vector<std::string> failing(std::vector<std::string> mode, long call) {
   mode.push_back("FT_FAIL_AT=" + std::to_string(call));

@@ -53,7 +53,8 @@ Status write_frames(CacheWriter& writer, const CacheSample& sample, int end) {
   return writer.close();
 }
 
-Status write_cache(const CacheFormat& format, const std::filesystem::path& path, const CacheSample& sample, int end, int keep_frames) {
+Status write_cache(const CacheFormat& format, const std::filesystem::path& path, const CacheSample& sample, int end,
+                   int keep_frames) {
   auto writer = format.open_writer(path, sample.info, keep_frames);
   if (!writer) return writer.error();
   return write_frames(**writer, sample, end);

@@ -14,13 +14,14 @@ struct CacheSample {
   std::vector<std::vector<Vec3>> positions, velocities;  ///< per frame
 };
 
-/// A waving patch of columns x rows quads (the last one split into two triangles), uvs with a seam, quarter-exact coordinates, so that
-/// float holds them exactly. Some frames repeat the one before, as a resting cloth does.
+/// A waving patch of columns x rows quads (the last one split into two triangles), uvs with a seam, quarter-exact
+/// coordinates, so that float holds them exactly. Some frames repeat the one before, as a resting cloth does.
 CacheSample waving_patch(int columns, int rows, int frame_count);
 
 /// Writes frames [writer->frame_count(), end) and closes.
 Status write_frames(CacheWriter& writer, const CacheSample& sample, int end);
 /// Opens, writes the first end frames (of info.frame_count announced ones), closes.
-Status write_cache(const CacheFormat& format, const std::filesystem::path& path, const CacheSample& sample, int end, int keep_frames = 0);
+Status write_cache(const CacheFormat& format, const std::filesystem::path& path, const CacheSample& sample, int end,
+                   int keep_frames = 0);
 
 }  // namespace ft::test

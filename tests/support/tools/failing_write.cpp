@@ -1,6 +1,6 @@
-// Preloaded into a program (LD_PRELOAD), makes one of its calls that change files fail as on a full disk, so that every such call of a
-// run can be made to fail in turn. Counted are open for writing, write, pwrite, ftruncate, fsync, fdatasync and rename of files below
-// one folder.
+// Preloaded into a program (LD_PRELOAD), makes one of its calls that change files fail as on a full disk, so that every
+// such call of a run can be made to fail in turn. Counted are open for writing, write, pwrite, ftruncate, fsync,
+// fdatasync and rename of files below one folder.
 //   FT_FAIL_FOLDER=DIR    count calls on files below DIR (absolute, without symbolic links)
 //   FT_FAIL_AT=N          the Nth such call, from 1, fails with ENOSPC; without it none fails
 //   FT_FAIL_KEEP=1        and so do all that follow: the disk stays full
@@ -82,9 +82,13 @@ Integer full() {
   return -1;
 }
 
-std::size_t short_size(std::size_t size) { return std::getenv("FT_FAIL_SHORT") != nullptr ? size / 2 : 0; }
+std::size_t short_size(std::size_t size) {
+  return std::getenv("FT_FAIL_SHORT") != nullptr ? size / 2 : 0;
+}
 
-bool opens_for_writing(int flags) { return (flags & O_ACCMODE) != O_RDONLY || (flags & (O_CREAT | O_TRUNC)) != 0; }
+bool opens_for_writing(int flags) {
+  return (flags & O_ACCMODE) != O_RDONLY || (flags & (O_CREAT | O_TRUNC)) != 0;
+}
 
 int open_mode(int flags, va_list arguments) {
   return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, int) : 0;
