@@ -44,11 +44,13 @@ Status add_file(BakeInputs& inputs, const std::string& role, const std::filesyst
   return {};
 }
 
-/// A path is no setting: what counts is the bytes behind it, and they are in `files`.
-bool is_path_key(const std::string& key) {
+/// A path is no setting: what counts is the bytes behind it, and they are in `files`. Nor is a gate: it judges a bake and changes
+/// nothing of it.
+bool shapes_the_bake(const std::string& key) {
+  if (key.starts_with("gate.")) return false;
   for (const char* end : {".file", ".mesh", ".animation", ".topology"})
-    if (key.ends_with(end)) return true;
-  return false;
+    if (key.ends_with(end)) return false;
+  return true;
 }
 
 }  // namespace
@@ -96,7 +98,7 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
                            shot_file.string(), "give it another name");
   }
   for (auto& [key, value] : settings(s))
-    if (!is_path_key(key)) inputs.settings.emplace_back(key, value);
+    if (shapes_the_bake(key)) inputs.settings.emplace_back(key, value);
   inputs.fingerprint = fingerprint(inputs);
   return inputs;
 }

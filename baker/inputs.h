@@ -23,8 +23,8 @@ struct InputFile {
 
 struct BakeInputs {
   Shot shot;
-  std::vector<InputFile> files;                                  ///< in the order of the shot file
-  std::vector<std::pair<std::string, std::string>> settings;     ///< "cloth.dress.fabric" -> "cotton"; no paths
+  std::vector<InputFile> files;                               ///< in the order of the shot file
+  std::vector<std::pair<std::string, std::string>> settings;  ///< "cloth.dress.fabric" -> "\"cotton\""; neither paths nor gates
   Hash128 fingerprint;
 };
 

@@ -1,6 +1,7 @@
 #include "baker/manifest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "baker/core/file.h"
@@ -51,7 +52,7 @@ Json certificate(const Manifest& manifest) {
     any = true;
   }
   return Json{{"frames", written}, {"frames_with_crossings", crossing_frames}, {"crossings_body", worst.crossings_body},
-              {"crossings_self", worst.crossings_self}, {"smallest_gap", worst.smallest_gap}, {"deepest_drawn", worst.deepest_drawn},
+              {"crossings_self", worst.crossings_self}, {"smallest_gap", std::isfinite(worst.smallest_gap) ? Json(worst.smallest_gap) : Json(nullptr)}, {"deepest_drawn", worst.deepest_drawn},
               {"strain_p99", worst.strain_p99}, {"strain_max", worst.strain_max}, {"rewinds", worst.rewinds}, {"finite", worst.finite}};
 }
 

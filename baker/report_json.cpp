@@ -43,7 +43,7 @@ void for_each_time(Profile& p, Visit&& visit) {
   visit("total", p.total);
 }
 
-/// JSON has no infinity; null comes back as the default.
+/// JSON has no infinity: null stands for it, both ways.
 Json value_of(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 Json value_of(int v) { return v; }
 Json value_of(bool v) { return v; }
@@ -72,7 +72,14 @@ void take(const Json& from, const char* name, std::string& out) {
 template <class T>
 void take_field(const Json& from, const char* name, T& out) {
   const auto it = from.find(name);
-  if (it != from.end() && !it->is_null()) take(*it, name, out);
+  if (it == from.end()) return;
+  if constexpr (std::is_same_v<T, double>) {
+    if (it->is_null()) {
+      out = std::numeric_limits<double>::infinity();
+      return;
+    }
+  }
+  take(*it, name, out);
 }
 
 Incident incident_from(const Json& json) {

@@ -17,7 +17,7 @@ Json to_json(const Incident& incident);
 /// Wall times [s].
 Json to_json(const FrameProfile& profile);
 
-/// Absent fields keep their defaults; a field of another type is an error.
+/// Absent fields keep their defaults, null is infinity; a field of another type is an error.
 Result<FrameReport> frame_report_from_json(const Json& json);
 Result<FrameProfile> frame_profile_from_json(const Json& json);
 

@@ -65,7 +65,7 @@ class Walk {
     if (const Status written = writer_.finish(); status && !written) status = written;
     manifest_.systems = caches_.systems();
     if (status) status = complete();
-    else if (status.error().kind == ErrorKind::k_interrupted) {
+    else if (status.error().kind != ErrorKind::k_output) {
       if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) status = written;
     }
     return {std::move(manifest_), status, since(clock)};
@@ -160,7 +160,8 @@ Status Walk::frames() {
       return Error{ErrorKind::k_interrupted, fmt::format("interrupted after frame {}", states_[0].frame), {}, "run again with --resume to go on"};
     }
     const auto clock = Clock::now();
-    const FrameReport report = advance();
+    FrameReport report = advance();
+    if (report.profile.total <= 0) report.profile.total = since(clock);
     manifest_.frames.push_back(report);
     Snapshot now = caches_.take(states_, &*before);
     const bool checkpoint = report.frame - newest_checkpoint >= interval || report.frame == shot.last_frame;
@@ -189,6 +190,7 @@ Status Walk::complete() {
 FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states) {
   FrameReport report;
   report.frame = states[0].frame;
+  report.smallest_gap = std::numeric_limits<double>::infinity();  // not measured
   for (std::size_t g = 0; g < solvers.size(); ++g) {
     std::vector<Vec3> collider;
     solvers[g]->collider_positions(states[g], collider);

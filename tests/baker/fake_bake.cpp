@@ -1,0 +1,148 @@
+#include "tests/baker/fake_bake.h"
+
+#include <cmath>
+#include <fstream>
+
+#include "baker/core/file.h"
+#include "io/shot/mesh_file.h"
+
+namespace ft::test {
+namespace {
+
+/// A box of 1 m that bobs.
+class BoxTrajectory final : public Trajectory {
+ public:
+  explicit BoxTrajectory(double preroll) : preroll_(preroll) {
+    for (int i = 0; i < 8; ++i) corners_.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
+    surface_.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    surface_.part_of_vertex.assign(8, 0);
+    surface_.parts = {{"box", -1, 1.0}};
+  }
+  const Surface& surface() const override { return surface_; }
+  void bind_pose(std::span<Vec3> x) const override { std::copy(corners_.begin(), corners_.end(), x.begin()); }
+  void sample(double time, std::span<Vec3> x) const override {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = corners_[i] + Vec3(0, 0.1 * std::sin(3 * time), 0);
+  }
+  Eigen::Isometry3d bind_to_start() const override { return Eigen::Isometry3d::Identity(); }
+  double preroll() const override { return preroll_; }
+
+ private:
+  Surface surface_;
+  std::vector<Vec3> corners_;
+  double preroll_;
+};
+
+class FakeSolver final : public Solver {
+ public:
+  FakeSolver(ClothSetup setup, FakeBehaviour behaviour) : setup_(std::move(setup)), behaviour_(std::move(behaviour)) {}
+
+  int system_count() const override { return static_cast<int>(setup_.garments.size()); }
+  const Mesh& system_mesh(int s) const override { return setup_.garments[static_cast<std::size_t>(s)].mesh; }
+  void system_positions(const State& state, int s, std::span<Vec3> out) const override {
+    const auto x = as_points(*state.find(std::string("x").append(std::to_string(s))));
+    std::copy(x.begin(), x.end(), out.begin());
+  }
+  void system_health(const State&, int, std::span<double>, std::span<double>) const override {}
+  std::span<const Triangle> collider_triangles() const override { return setup_.primary->surface().triangles; }
+  void collider_positions(const State& state, std::vector<Vec3>& out) const override {
+    out.resize(8);
+    setup_.primary->sample(state.time, out);
+  }
+  State initial_state() const override {
+    State state;
+    state.frame = setup_.first_frame - setup_.preroll_frames;
+    state.time = -setup_.preroll_frames / setup_.fps;
+    for (int s = 0; s < system_count(); ++s)
+      for (const Vec3& p : system_mesh(s).positions)
+        for (int k = 0; k < 3; ++k) state.block(std::string("x").append(std::to_string(s))).push_back(p[k]);
+    return state;
+  }
+  FrameReport advance_frame(State& state) const override {
+    if (behaviour_.on_frame) behaviour_.on_frame(state.frame + 1);
+    ++state.frame;
+    state.time = (state.frame - setup_.first_frame) / setup_.fps;
+    double scale = 1;
+    for (const ClothGarment& g : setup_.garments) scale += g.fabric.mass_per_area;
+    for (StateBlock& block : state.blocks)
+      for (double& v : block.values) v += 1e-3 * std::sin(10 * v + scale * state.frame);  // depends on all that went before
+    FrameReport report;
+    report.frame = state.frame;
+    report.substeps = 4;
+    report.smallest_gap = 1e-3 * (1 + std::abs(std::sin(state.frame)));
+    report.strain_p99 = 0.01;
+    if (behaviour_.after_frame) behaviour_.after_frame(state.frame, report, state);
+    return report;
+  }
+
+ private:
+  ClothSetup setup_;
+  FakeBehaviour behaviour_;
+};
+
+void write_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+}  // namespace
+
+FakeScene::FakeScene() {
+  write_file(file("box.glb"), "not looked into by the fake importer");
+  write_garment(sheet());
+  write_shot();
+}
+
+Mesh FakeScene::sheet() {
+  std::vector<Vec3> x;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) x.emplace_back(1.5, 0.5 * j, 0.5 * i);
+  const std::vector<Triangle> t = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
+  return make_triangle_mesh("sheet", x, t);
+}
+
+void FakeScene::write_garment(const Mesh& mesh) { EXPECT_TRUE(write_obj(file("sheet.obj"), mesh).ok()); }
+
+void FakeScene::write_shot(int last_frame, const std::string& cloth_lines, const std::string& extra) {
+  write_file(file("shot.toml"), "[shot]\nframes = \"1-" + std::to_string(last_frame) +
+                                    "\"\nfps = 24\npreroll = 3\n\n[primary.box]\nfile = \"box.glb\"\n\n[cloth.sheet]\nmesh = \"sheet.obj\"\n"
+                                    "fabric = \"cotton\"\non = \"box\"\n" + cloth_lines + "\n" + extra);
+}
+
+BakeOptions FakeScene::options() const {
+  BakeOptions out;
+  out.shot_file = file("shot.toml");
+  out.folder = folder().path;
+  return out;
+}
+
+BakeServices FakeScene::services(FakeBehaviour behaviour) const {
+  return {[](const ImportRequest& request) -> Result<ImportedPrimary> {
+            ImportedPrimary out;
+            out.trajectory = std::make_unique<BoxTrajectory>(request.preroll);
+            out.info.bind_bounds.include(Vec3::Zero());
+            out.info.bind_bounds.include(Vec3::Ones());
+            return out;
+          },
+          [behaviour](ClothSetup setup) -> Result<std::unique_ptr<Solver>> {
+            return std::unique_ptr<Solver>(std::make_unique<FakeSolver>(std::move(setup), behaviour));
+          }};
+}
+
+BakeResult FakeScene::run(const BakeOptions& options, FakeBehaviour behaviour) const {
+  Progress silent;
+  return bake(options, services(std::move(behaviour)), silent);
+}
+
+std::map<std::string, std::string> FakeScene::products(const std::filesystem::path& folder) const {
+  std::map<std::string, std::string> out;
+  if (!std::filesystem::exists(folder)) return out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().filename() != "report.json") out[entry.path().filename().string()] = read_text(entry.path()).value();
+  return out;
+}
+
+std::string text(const BakeResult& result) {
+  std::string out;
+  for (const std::string& fault : result.faults) out += fault + "\n";
+  for (const std::string& line : result.lines) out += line + "\n";
+  return out;
+}
+
+}  // namespace ft::test

@@ -1,0 +1,67 @@
+// A bake without import and without physics, for everything that the conductor does around them: a box as primary, a sheet whose
+// next position depends on its last one (so that a resume from the wrong state shows), and services that misbehave on demand.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "baker/bake.h"
+#include "baker/bake_folder.h"
+#include "tests/support/assets.h"
+
+namespace ft::test {
+
+struct FakeBehaviour {
+  std::function<void(int frame)> on_frame;   ///< called before each frame is solved
+  std::function<void(int frame, FrameReport&, State&)> after_frame;  ///< may spoil the answer
+};
+
+/// 3 x 3 x 3 sheet beside a box of 1 m; groups "top" (3 vertices) and "none" (weights 0).
+class FakeScene {
+ public:
+  FakeScene();
+
+  /// frames "1-N"; extra: lines of TOML at the end.
+  void write_shot(int last_frame = 10, const std::string& cloth_lines = "", const std::string& extra = "");
+  void write_garment(const Mesh& mesh);
+  static Mesh sheet();
+
+  BakeOptions options() const;
+  BakeServices services(FakeBehaviour behaviour = {}) const;
+  BakeResult run(const BakeOptions& options, FakeBehaviour behaviour = {}) const;
+  BakeResult run() const { return run(options()); }
+
+  std::filesystem::path file(const std::string& name) const { return scratch_ / name; }
+  BakeFolder folder() const { return {scratch_ / "out"}; }
+  /// Name -> bytes of everything that a user takes: caches, OBJ, manifest; not report.json, not .state.
+  std::map<std::string, std::string> products(const std::filesystem::path& folder) const;
+  std::map<std::string, std::string> products() const { return products(folder().path); }
+
+ private:
+  ScratchFolder scratch_;
+};
+
+/// All faults in one string.
+std::string text(const BakeResult& result);
+
+/// Remembers what it was told; sends itself a signal after a frame if asked to.
+class RecordedProgress : public Progress {
+ public:
+  void begin(const ProgressStart& s) override { start = s; }
+  void note(const std::string& t) override { notes += t + "\n"; }
+  void frame(const ProgressFrame& f) override {
+    frames.push_back(f.report.frame);
+    if (on_frame) on_frame(f.report.frame);
+  }
+  void end(const ProgressEnd& e) override { last = e; }
+
+  ProgressStart start;
+  std::string notes;
+  std::vector<int> frames;
+  ProgressEnd last;
+  std::function<void(int)> on_frame;
+};
+
+}  // namespace ft::test

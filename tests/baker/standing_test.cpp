@@ -1,0 +1,148 @@
+// Up to date, stale and why: a second bake costs nothing, and nothing stale is taken for new.
+#include <fstream>
+
+#include "baker/core/file.h"
+#include "tests/baker/fake_bake.h"
+
+namespace ft::test {
+namespace {
+
+/// Bakes, does something, asks why the bake is stale.
+std::string reason_after(const FakeScene& scene, const std::function<void()>& change, BakeOptions options) {
+  EXPECT_EQ(scene.run().exit_code, 0);
+  change();
+  options.explain = true;
+  const BakeResult result = scene.run(options);
+  EXPECT_EQ(result.exit_code, 0);
+  return text(result);
+}
+
+TEST(Standing, Second_bake_is_skipped_and_says_so) {
+  FakeScene scene;
+  ASSERT_EQ(scene.run().exit_code, 0) << text(scene.run());
+  const auto before = scene.products();
+  int solved = 0;
+  const BakeResult again = scene.run(scene.options(), {[&](int) { ++solved; }, {}});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(solved, 0);
+  ASSERT_EQ(again.lines.size(), 1u);
+  EXPECT_EQ(again.lines[0].rfind("up to date: shot.toml, 10 frames in ", 0), 0u) << again.lines[0];
+  EXPECT_EQ(scene.products(), before);
+}
+
+TEST(Standing, Same_inputs_give_the_same_bytes_in_another_folder) {
+  FakeScene scene;
+  ASSERT_EQ(scene.run().exit_code, 0);
+  BakeOptions other = scene.options();
+  other.folder = scene.file("elsewhere");
+  ASSERT_EQ(scene.run(other).exit_code, 0);
+  EXPECT_EQ(scene.products(), scene.products(other.folder));
+  EXPECT_EQ(scene.products().size(), 8u);  // sheet.abc .pc2 .obj, box.abc .obj, box.collider.abc .obj, manifest.json
+}
+
+TEST(Standing, Force_bakes_again_to_the_same_bytes) {
+  FakeScene scene;
+  ASSERT_EQ(scene.run().exit_code, 0);
+  const auto before = scene.products();
+  BakeOptions options = scene.options();
+  options.force = true;
+  int solved = 0;
+  EXPECT_EQ(scene.run(options, {[&](int) { ++solved; }, {}}).exit_code, 0);
+  EXPECT_EQ(solved, 12);  // 3 of pre-roll, then 2..10
+  EXPECT_EQ(scene.products(), before);
+}
+
+TEST(Standing, Changed_fabric_is_named) {
+  FakeScene scene;
+  BakeOptions options = scene.options();
+  options.overrides = {"cloth.sheet.fabric=denim"};
+  const std::string why = reason_after(scene, [] {}, options);
+  EXPECT_NE(why.find("stale: cloth.sheet.fabric changed from \"cotton\" to \"denim\""), std::string::npos) << why;
+  EXPECT_EQ(scene.run(options).exit_code, 0);
+  EXPECT_NE(text(scene.run()).find("up to date"), 0u);  // without the override: stale again, baked again
+}
+
+TEST(Standing, Changed_mesh_is_named_and_touching_it_is_not_a_change) {
+  FakeScene scene;
+  Mesh moved = FakeScene::sheet();
+  EXPECT_NE(reason_after(scene, [&] { scene.write_garment(moved); }, scene.options()).find("up to date"), std::string::npos);
+  moved.positions[0].x() += 1e-3;
+  EXPECT_NE(reason_after(scene, [&] { scene.write_garment(moved); }, scene.options()).find("stale: sheet.obj changed"), std::string::npos);
+}
+
+TEST(Standing, Damaged_or_lost_cache_is_noticed) {
+  FakeScene scene;
+  EXPECT_NE(reason_after(scene, [&] { std::filesystem::remove(scene.folder().path / "sheet.pc2"); }, scene.options()).find("sheet.pc2 is gone"),
+            std::string::npos);
+  const auto flip = [&] {
+    std::fstream file(scene.folder().path / "sheet.pc2", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(100);
+    file.put('\x55');
+  };
+  EXPECT_NE(reason_after(scene, flip, scene.options()).find("sheet.pc2 was changed after the bake"), std::string::npos);
+  ASSERT_EQ(scene.run().exit_code, 0);
+  EXPECT_NE(text(scene.run()).find("up to date"), std::string::npos);
+}
+
+TEST(Standing, Manifest_that_cannot_be_read_is_stale_and_not_fatal) {
+  FakeScene scene;
+  const auto spoil = [&] { std::ofstream(scene.folder().manifest()) << "{\"program\": 3}"; };
+  EXPECT_NE(reason_after(scene, spoil, scene.options()).find("stale: the manifest cannot be read"), std::string::npos);
+  EXPECT_EQ(scene.run().exit_code, 0);
+}
+
+TEST(Standing, Caches_that_are_no_longer_asked_for_disappear) {
+  FakeScene scene;
+  scene.write_shot(10, "", "[cache]\nformats = [\"abc\", \"pc2\"]\ncollider = true\n");
+  ASSERT_EQ(scene.run().exit_code, 0);
+  std::ofstream(scene.folder().path / "notes.txt") << "the artist's own";
+  scene.write_shot(10, "", "[cache]\nformats = [\"pc2\"]\ncollider = false\n");
+  ASSERT_EQ(scene.run().exit_code, 0);
+  std::string names;
+  for (const auto& [name, bytes] : scene.products()) names += name + " ";
+  EXPECT_EQ(names, "manifest.json notes.txt sheet.obj sheet.pc2 ");
+}
+
+TEST(Standing, Gate_judges_a_finished_bake_without_baking_again) {
+  FakeScene scene;
+  ASSERT_EQ(scene.run().exit_code, 0);
+  scene.write_shot(10, "", "[gate]\np99_strain = 0.005\n");
+  int solved = 0;
+  const BakeResult judged = scene.run(scene.options(), {[&](int) { ++solved; }, {}});
+  EXPECT_EQ(judged.exit_code, 4);
+  EXPECT_EQ(solved, 0);
+  EXPECT_NE(text(judged).find("frame 2: quality gate: p99 strain 0.01 is above 0.005"), std::string::npos) << text(judged);
+}
+
+TEST(Standing, Range_of_frames_has_its_own_preroll_and_place_in_the_clip) {
+  FakeScene scene;
+  BakeOptions options = scene.options();
+  options.frames = FrameRange{5, 7};
+  ASSERT_EQ(scene.run(options).exit_code, 0);
+  auto services = scene.services();
+  const auto import = services.importer;
+  double clip_start = -1, duration = -1;
+  services.importer = [&](const ImportRequest& request) {
+    clip_start = request.clip_start, duration = request.duration;
+    return import(request);
+  };
+  options.force = true;
+  Progress silent;
+  ASSERT_EQ(bake(options, services, silent).exit_code, 0);
+  EXPECT_DOUBLE_EQ(clip_start, 4 / 24.0);
+  EXPECT_DOUBLE_EQ(duration, 2 / 24.0);
+}
+
+TEST(Standing, Dry_run_writes_nothing) {
+  FakeScene scene;
+  BakeOptions options = scene.options();
+  options.dry_run = true;
+  const BakeResult plan = scene.run(options);
+  EXPECT_EQ(plan.exit_code, 0) << text(plan);
+  EXPECT_NE(text(plan).find("cloth \"sheet\" on \"box\": 9 vertices, 8 faces"), std::string::npos) << text(plan);
+  EXPECT_NE(text(plan).find("not baked"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(scene.folder().path));
+}
+
+}  // namespace
+}  // namespace ft::test
