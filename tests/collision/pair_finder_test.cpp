@@ -260,6 +260,20 @@ TEST(PairFinder, A_search_does_not_depend_on_the_searches_before_it) {
   expect_same(a, b);
 }
 
+TEST(PairFinder, A_search_without_edges_finds_the_same_vertices_and_faces) {
+  const Scene scene = two_sheets(20, 0.02, 4);
+  PairFinder finder = finder_of(scene);
+  ContactPairs all, some;
+  for (const bool self : {true, false}) {
+    finder.find_vertex_face(scene.boxes, self, some);
+    finder.find(scene.boxes, self, all);
+    EXPECT_TRUE(some.vertex_face == all.vertex_face);
+    EXPECT_TRUE(some.edge_edge.empty());
+    finder.find_vertex_face(scene.boxes, self, all);
+    expect_same(some, all);
+  }
+}
+
 TEST(PairFinder, Edges_of_a_face_with_a_vertex_that_is_nowhere_still_count) {
   // Two collider triangles share the edge 3-4; vertex 5 of the first is nowhere.
   Scene scene{3, 4, {{0, 1, 2}}, {{3, 4, 5}, {4, 3, 6}}, {}};
