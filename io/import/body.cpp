@@ -21,6 +21,14 @@ constexpr int k_relaxations = 12;
 constexpr int k_diffusions = 18;          ///< spreads weights over about 4 cm to each side of a joint
 constexpr std::size_t k_most_influences = 6;
 
+/// Bones whose term in the field can matter within `reach` of a point.
+std::vector<BodyBone> bones_near(const std::vector<BodyBone>& bones, const Vec3& p, double reach) {
+  std::vector<BodyBone> out;
+  for (const BodyBone& bone : bones)
+    if (capsule_distance(bone, p) < 8 * k_blend + 2 * reach) out.push_back(bone);
+  return out;
+}
+
 /// -k log sum exp(-d / k): below the smallest distance, smooth where several are near.
 double field(const std::vector<BodyBone>& bones, const Vec3& p) {
   double sum = 0;
@@ -82,6 +90,10 @@ std::vector<std::vector<int>> neighbours(std::size_t count, const std::vector<st
 /// Moves vertices along the surface towards their neighbours' middle, and back onto the surface.
 void relax(const std::vector<BodyBone>& bones, const std::vector<std::vector<int>>& around, std::vector<Vec3>& positions) {
   std::vector<Vec3> next(positions.size());
+  std::vector<std::vector<BodyBone>> near(positions.size());  // vertices wander by less than three cells
+  parallel_for(positions.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) near[i] = bones_near(bones, positions[i], 3 * k_spacing);
+  });
   for (int round = 0; round < k_relaxations; ++round) {
     parallel_for(positions.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -89,9 +101,9 @@ void relax(const std::vector<BodyBone>& bones, const std::vector<std::vector<int
         for (const int n : around[i]) middle += positions[static_cast<std::size_t>(n)];
         middle /= static_cast<double>(around[i].size());
         Vec3 p = positions[i] + 0.6 * (middle - positions[i]);
-        const Vec3 g = gradient(bones, p);
+        const Vec3 g = gradient(near[i], p);
         const double squared = g.squaredNorm();
-        if (squared > 0.05) p -= std::clamp(field(bones, p), -k_spacing, k_spacing) / squared * g;
+        if (squared > 0.05) p -= std::clamp(field(near[i], p), -k_spacing, k_spacing) / squared * g;
         next[i] = p;
       }
     });

@@ -140,7 +140,7 @@ Landmarks find_landmarks(const Character& character, const BodyFrame& frame, con
 class FleshBuilder {
  public:
   FleshBuilder(const Character& character, const BodyFrame& frame)
-      : character_(character), frame_(frame), limb_(limbs(character, frame)), marks_(find_landmarks(character, frame, limb_)) {}
+      : frame_(frame), limb_(limbs(character, frame)), marks_(find_landmarks(character, frame, limb_)) {}
 
   std::vector<BodyBone> build() {
     for (std::size_t i = 0; i < limb_.size(); ++i)
@@ -229,7 +229,6 @@ class FleshBuilder {
 
   void add(int node, const Vec3& a, const Vec3& b, double radius_a, double radius_b) { out_.push_back({node, a, b, radius_a, radius_b}); }
 
-  const Character& character_;
   const BodyFrame& frame_;
   std::vector<Limb> limb_;
   Landmarks marks_;

@@ -42,7 +42,7 @@ double least_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 const char* const k_bvh[] = {"cmu_01_playground/01_01.bvh", "animateddrawings_fair1_child/dab.bvh", "animateddrawings_cmu_jacks/jumping_jacks.bvh"};
 
-TEST(Body, Is_closed_even_and_human_sized_and_stays_so_while_it_moves) {
+TEST(Body, Is_closed_even_and_human_sized_and_stays_so_while_it_moves_slow) {
   for (const char* name : k_bvh) {
     ImportRequest request;
     request.file = test::assets_root() / "mocap" / name;
@@ -72,7 +72,7 @@ TEST(Body, Is_closed_even_and_human_sized_and_stays_so_while_it_moves) {
   }
 }
 
-TEST(Body, Weights_do_not_leak_between_limbs) {
+TEST(Body, Weights_do_not_leak_between_limbs_slow) {
   for (const char* name : k_bvh) {
     const auto file = test::assets_root() / "mocap" / name;
     FT_REQUIRE_FILE(file);
