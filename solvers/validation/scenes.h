@@ -13,6 +13,7 @@ std::vector<ValidationCase> validate_heavy_elastica();
 // dynamics.cpp
 std::vector<ValidationCase> validate_free_fall();
 std::vector<ValidationCase> validate_free_flight();
+std::vector<ValidationCase> validate_folding_flight();
 std::vector<ValidationCase> validate_substep_invariance();
 std::vector<ValidationCase> validate_terminal_velocity();
 // swings.cpp
@@ -22,5 +23,6 @@ std::vector<ValidationCase> validate_swing_at_default_settings();
 std::vector<ValidationCase> validate_hanging_chain();
 // friction.cpp
 std::vector<ValidationCase> validate_incline();
+std::vector<ValidationCase> validate_incline_inner_edge();
 
 }  // namespace ft

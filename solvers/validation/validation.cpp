@@ -14,6 +14,7 @@ constexpr ValidationScene k_scenes[] = {
     {"heavy_elastica", "A cantilever under its own weight follows the elastica", true, validate_heavy_elastica},
     {"free_fall", "Cloth falls freely in vacuum", false, validate_free_fall},
     {"free_flight", "A sheet in free flight keeps its momentum and angular momentum", true, validate_free_flight},
+    {"folding_flight", "A sheet that folds onto itself in free flight keeps them too", true, validate_folding_flight},
     {"substep_invariance", "Halving the substep divides the error by four", false, validate_substep_invariance},
     {"terminal_velocity", "A stiff square falls flat in air with rho Cn A v^2 / 2 = m g", false, validate_terminal_velocity},
     {"pendulum_period", "The period of a pendulum grows with its amplitude as the elliptic integral", true,
@@ -23,6 +24,7 @@ constexpr ValidationScene k_scenes[] = {
      validate_swing_at_default_settings},
     {"hanging_chain", "The first mode of a hanging strip is that of Bernoulli's chain", true, validate_hanging_chain},
     {"incline", "Cloth on an incline sticks and slides by Coulomb's law", true, validate_incline},
+    {"incline_inner_edge", "Sliding over an edge between two triangles of a flat slab is not slowed", false, validate_incline_inner_edge},
 };
 
 }  // namespace
