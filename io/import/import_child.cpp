@@ -41,7 +41,6 @@ class ScratchFolder {
   ScratchFolder() {
     std::error_code ignored;
     auto base = std::filesystem::temp_directory_path(ignored);
-    if (base.empty()) base = "/tmp";
     std::string pattern = (base / "followthrough_import_XXXXXX").string();
     if (::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
   }
