@@ -4,61 +4,27 @@
 #include <fmt/format.h>
 #include <map>
 
-#include "baker/manifest.h"
+#include "baker/cache_track.h"
 #include "baker/report_json.h"
 #include "collision/crossings.h"
 #include "collision/penetration.h"
-#include "io/cache/cache.h"
-#include "io/shot/mesh_file.h"
 
 namespace ft {
 namespace {
 
-struct Track {
-  std::string name;
-  std::unique_ptr<CacheReader> reader;
-  Mesh rest;
-  std::vector<Triangle> triangles;
-
-  Status read(int index, std::vector<Vec3>& out) const {
-    std::vector<Vec3f> x;
-    if (const Status done = reader->read_frame(index, x); !done) return done;
-    for (const Vec3f& p : x) out.push_back(p.cast<double>());
-    return {};
-  }
-};
-
 /// What moves with one primary.
 struct Group {
-  std::vector<Track> cloths;
-  std::vector<Track> collider, body;   ///< none or one
+  std::vector<CacheTrack> cloths;
+  std::vector<CacheTrack> collider, body;   ///< none or one
   std::vector<Triangle> cloth_triangles;
   std::vector<Edge> edges;
   std::vector<double> rest_length;
   std::vector<int> first_vertex;
 };
 
-Result<Track> open_track(const std::filesystem::path& folder, const ManifestSystem& system, const Manifest& manifest) {
-  if (system.caches.empty()) return input_error("system \"" + system.name + "\" has no cache", folder.string());
-  const auto path = folder / system.caches[0].file;
-  auto reader = open_cache(path);
-  if (!reader) return reader.error();
-  Track track{system.name, std::move(*reader), {}, {}};
-  auto rest = read_obj(folder / system.topology);
-  if (!rest) return rest.error();
-  track.rest = std::move(*rest);
-  const CacheInfo& info = track.reader->info();
-  if (info.mesh.vertex_count() != track.rest.vertex_count())
-    return input_error(fmt::format("has {} vertices, {} has {}", info.mesh.vertex_count(), system.topology, track.rest.vertex_count()), path.string());
-  if (info.frame_count != manifest.written_count() && manifest.complete)
-    return input_error(fmt::format("has {} frames, the manifest says {}", info.frame_count, manifest.written_count()), path.string());
-  track.triangles = triangulate(track.rest);
-  return track;
-}
-
 void prepare(Group& group) {
   int first = 0;
-  for (const Track& cloth : group.cloths) {
+  for (const CacheTrack& cloth : group.cloths) {
     group.first_vertex.push_back(first);
     for (const Triangle& t : cloth.triangles) group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     for (const Edge& e : unique_edges(cloth.triangles)) {
@@ -83,7 +49,7 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   FrameReport report;
   report.frame = frame;
   std::vector<Vec3> x;
-  for (const Track& cloth : group.cloths)
+  for (const CacheTrack& cloth : group.cloths)
     if (const Status read = cloth.read(index, x); !read) return read.error();
   report.finite = all_finite(x);
   const auto incident = [&](Incident::Kind kind, int vertex, double depth, std::string text) {
@@ -105,7 +71,7 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
     report.strain_max = strain.back();
     report.strain_p99 = strain[strain.size() * 99 / 100];
   }
-  for (const Track& collider : group.collider) {
+  for (const CacheTrack& collider : group.collider) {
     std::vector<Vec3> y;
     if (const Status read = collider.read(index, y); !read) return read.error();
     const auto crossings = crossings_between(x, group.cloth_triangles, y, collider.triangles);
@@ -117,7 +83,7 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   const auto own = crossings_within(x, group.cloth_triangles);
   report.crossings_self = static_cast<int>(own.size());
   if (!own.empty()) incident(Incident::Kind::k_crossing, own[0].edge[0], 0, fmt::format("{} crossings among cloths", own.size()));
-  for (const Track& body : group.body) {
+  for (const CacheTrack& body : group.body) {
     std::vector<Vec3> y;
     if (const Status read = body.read(index, y); !read) return read.error();
     report.crossings_drawn = static_cast<int>(crossings_between(x, group.cloth_triangles, y, body.triangles).size());
@@ -151,7 +117,7 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     out.has_body = out.has_body || !group.body.empty();
     if (group.collider.empty()) out.notes.push_back("the feasible collider of \"" + primary + "\" is not cached: crossings with it are not judged");
     for (const auto* tracks : {&group.cloths, &group.collider, &group.body})
-      for (const Track& track : *tracks) frames = std::min(frames, track.reader->info().frame_count);
+      for (const CacheTrack& track : *tracks) frames = std::min(frames, track.reader->info().frame_count);
   }
   if (!manifest->complete) out.notes.push_back(fmt::format("the bake is not finished: {} of {} frames are judged", frames, manifest->written_count()));
   for (int i = 0; i < frames; ++i) {

@@ -3,22 +3,16 @@
 #include <memory>
 
 #include "baker/commands/command_line.h"
-#if __has_include("baker/commands/preview.h")
 #include "baker/commands/preview.h"
-#endif
 
 namespace ft {
 
 void add_preview_command(CLI::App& app, int& exit_code) {
-#if __has_include("baker/commands/preview.h")
   auto* command = app.add_subcommand("preview", "Writes one self-contained page with a player and plots");
   auto o = std::make_shared<PreviewOptions>();
   command->add_option("folder", o->folder, "Bake folder")->required()->type_name("DIR");
   command->add_option("-o,--out", o->output, "The page; without it preview.html in the folder")->type_name("FILE");
   command->callback([o, &exit_code] { exit_code = run_preview(*o); });
-#else
-  (void)app, (void)exit_code;
-#endif
 }
 
 }  // namespace ft

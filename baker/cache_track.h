@@ -1,0 +1,27 @@
+// One system of a bake as its cache and topology file hold it, for everything that looks at bakes afterwards.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baker/manifest.h"
+#include "io/cache/cache.h"
+
+namespace ft {
+
+struct CacheTrack {
+  std::string name;
+  std::unique_ptr<CacheReader> reader;
+  Mesh rest;                        ///< from the topology file: rest shape, in the garment's own order [m]
+  std::vector<Triangle> triangles;  ///< of rest
+
+  /// Appends the positions of a frame, counted from 0 [m].
+  Status read(int index, std::vector<Vec3>& out) const;
+};
+
+/// Opens the first cache of a system; refuses one whose topology or number of frames is not what the manifest says.
+Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system, const Manifest& manifest);
+
+}  // namespace ft
