@@ -120,7 +120,11 @@ std::string closing(const Manifest& manifest, const BakeFolder& folder) {
 
 BakeResult run(const BakeOptions& options, const BakeServices& services, const BakeFolder& folder, BakeInputs inputs, Standing standing,
                Progress& progress) {
-  if (const Status made = make_folders(folder.state()); !made) return failed(made.error());
+  if (const Status made = make_folders(folder.state()); !made) {
+    Error error = made.error();
+    if (error.hint.empty()) error.hint = "choose another folder with --out";
+    return failed(error);
+  }
   auto lock = LockFile::acquire(folder.lock());
   if (!lock) return failed(lock.error());
   auto checkpoint = find_checkpoint(options, folder, inputs, standing, progress);
@@ -138,13 +142,7 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   warn_of_space(folder, caches.expected_bytes(), progress);
   if (!*checkpoint)
     if (const Status removed = remove_left_behind(folder, standing.before, caches.systems()); !removed) return failed(removed.error());
-  WalkResult result = walk(*plan, *solvers, caches, folder, manifest, std::move(*checkpoint), progress);
-  if (!result.status && result.status.error().kind == ErrorKind::k_input) {
-    // Caches that do not fit the checkpoint any more: nothing of them can be used.
-    progress.note(result.status.error().text() + "; starting anew");
-    CacheSet anew(*plan, *solvers, folder.path);
-    result = walk(*plan, *solvers, anew, folder, manifest, std::nullopt, progress);
-  }
+  WalkResult result = walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), progress);
   Status status = result.status;
   if (status || status.error().kind == ErrorKind::k_interrupted)
     if (const Status written = write_report(folder, *plan, result); !written) status = written;

@@ -122,7 +122,7 @@ Status CacheSet::close() {
   for (ManifestSystem& system : systems_)
     for (ManifestCache& cache : system.caches) {
       auto bytes = read_file(folder_ / cache.file, std::numeric_limits<std::uint64_t>::max());
-      if (!bytes) return bytes.error();
+      if (!bytes) return output_error("cannot read back what was written: " + bytes.error().what, bytes.error().where);
       cache.bytes = bytes->size();
       cache.content = hash_bytes(*bytes).hex();
     }

@@ -93,7 +93,7 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
   for (const ClothSpec& cloth : s.cloths) {
     if (const Status added = add_file(inputs, "cloth." + cloth.name + ".mesh", cloth.mesh); !added) return added.error();
     for (const PrimarySpec& primary : s.primaries)
-      if (primary.name == cloth.name || primary.name + ".collider" == cloth.name)
+      if (primary.name + ".collider" == cloth.name)
         return usage_error("cloth \"" + cloth.name + "\" has the name of a cache of primary \"" + primary.name + "\"",
                            shot_file.string(), "give it another name");
   }

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "baker/core/file.h"
+#include "baker/core/hash.h"
 #include "io/shot/mesh_file.h"
 
 namespace ft::test {
@@ -92,7 +93,7 @@ FakeScene::FakeScene() {
 Mesh FakeScene::sheet() {
   std::vector<Vec3> x;
   for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) x.emplace_back(1.5, 0.5 * j, 0.5 * i);
+    for (int i = 0; i < 3; ++i) x.emplace_back(1.05, 0.5 * j, 0.5 * i);
   const std::vector<Triangle> t = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
   return make_triangle_mesh("sheet", x, t);
 }
@@ -134,9 +135,11 @@ std::map<std::string, std::string> FakeScene::products(const std::filesystem::pa
   std::map<std::string, std::string> out;
   if (!std::filesystem::exists(folder)) return out;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file() && entry.path().filename() != "report.json") out[entry.path().filename().string()] = read_text(entry.path()).value();
+    if (entry.is_regular_file() && entry.path().filename() != "report.json") out[entry.path().filename().string()] = hash_bytes(read_file(entry.path()).value()).hex();
   return out;
 }
+
+std::string FakeScene::manifest_text() const { return read_text(folder().manifest()).value(); }
 
 std::string text(const BakeResult& result) {
   std::string out;

@@ -35,9 +35,10 @@ class FakeScene {
 
   std::filesystem::path file(const std::string& name) const { return scratch_ / name; }
   BakeFolder folder() const { return {scratch_ / "out"}; }
-  /// Name -> bytes of everything that a user takes: caches, OBJ, manifest; not report.json, not .state.
+  /// Name -> content hash of everything that a user takes: caches, OBJ, manifest; not report.json, not .state.
   std::map<std::string, std::string> products(const std::filesystem::path& folder) const;
   std::map<std::string, std::string> products() const { return products(folder().path); }
+  std::string manifest_text() const;
 
  private:
   ScratchFolder scratch_;

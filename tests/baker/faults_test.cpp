@@ -49,9 +49,9 @@ TEST(Faults, Pin_group_that_does_not_exist_lists_those_that_do) {
 
 TEST(Faults, Pin_that_selects_nothing_states_the_smallest_distance) {
   FakeScene scene;
-  scene.write_shot(10, "pins = [ { within = 0.1 } ]\n");
-  expect_fault(scene.run(), 2, "the nearest vertex is 0.5 m from the body");
-  scene.write_shot(10, "pins = [ { within = 0.5001 } ]\n");
+  scene.write_shot(10, "pins = [ { within = 0.01 } ]\n");
+  expect_fault(scene.run(), 2, "the nearest vertex is 0.05 m from the body");
+  scene.write_shot(10, "pins = [ { within = 0.0501 } ]\n");
   EXPECT_EQ(scene.run().exit_code, 0);
 }
 
@@ -113,12 +113,17 @@ TEST(Faults, Crossings_fail_the_gate_only_when_it_is_set) {
   expect_fault(scene.run(again, crossing), 4, "frame 4: quality gate: 2 crossings");
 }
 
-TEST(Faults, Cloth_with_the_name_of_its_primary_is_refused) {
+TEST(Faults, Cloth_with_the_name_of_another_cache_is_refused) {
   FakeScene scene;
-  std::string shot = read_text(scene.file("shot.toml")).value();
-  shot.replace(shot.find("cloth.sheet"), 11, "cloth.box");
-  std::ofstream(scene.file("shot.toml")) << shot;
-  expect_fault(scene.run(), 2, "has the name of a cache");
+  const std::string shot = read_text(scene.file("shot.toml")).value();
+  for (const char* name : {"cloth.box", "cloth.\"box.collider\""}) {
+    std::string renamed = shot;
+    renamed.replace(renamed.find("cloth.sheet"), 11, name);
+    std::ofstream(scene.file("shot.toml")) << renamed;
+    const BakeResult result = scene.run();
+    EXPECT_EQ(result.exit_code, 2) << text(result);
+    EXPECT_NE(text(result).find("box"), std::string::npos) << text(result);
+  }
 }
 
 TEST(Faults, Error_of_the_importer_keeps_its_exit_code) {

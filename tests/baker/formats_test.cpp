@@ -109,7 +109,7 @@ TEST(Manifest, Comes_back_byte_for_byte) {
   ASSERT_EQ(scene.run(scene.options(), {{}, [](int frame, FrameReport& r, State&) {
                                           if (frame % 3 == 0) r.incidents = example_report(frame).incidents;
                                         }}).exit_code, 0);
-  const std::string text = scene.products()["manifest.json"];
+  const std::string text = scene.manifest_text();
   auto manifest = manifest_from_text(text, "manifest.json");
   ASSERT_TRUE(manifest) << manifest.error().text();
   EXPECT_EQ(to_text(*manifest), text);
@@ -122,7 +122,7 @@ TEST(Manifest, Cut_or_mutated_text_is_read_or_refused_and_never_crashes) {
   FakeScene scene;
   scene.write_shot(2);
   ASSERT_EQ(scene.run().exit_code, 0);
-  const std::string good = scene.products()["manifest.json"];
+  const std::string good = scene.manifest_text();
   for (std::size_t n = 0; n + 2 < good.size(); ++n) EXPECT_FALSE(manifest_from_text(good.substr(0, n), "m")) << n;
   for (std::uint64_t i = 0; i < 3000; ++i) {
     std::string bad = good;
@@ -136,7 +136,7 @@ TEST(Manifest, Cut_or_mutated_text_is_read_or_refused_and_never_crashes) {
 TEST(Manifest, Says_nothing_of_times_hosts_or_folders) {
   FakeScene scene;
   ASSERT_EQ(scene.run().exit_code, 0);
-  const std::string text = scene.products()["manifest.json"];
+  const std::string text = scene.manifest_text();
   EXPECT_EQ(text.find(scene.folder().path.string()), std::string::npos);
   EXPECT_EQ(text.find("thread"), std::string::npos);
   EXPECT_EQ(text.find("seconds"), std::string::npos);

@@ -69,7 +69,7 @@ TEST(Progress, Json_lines_parse_and_tell_begin_frames_end) {
   EXPECT_EQ(nlohmann::json::parse(lines.front())["event"], "begin");
   const auto frame = nlohmann::json::parse(lines[5]);
   EXPECT_EQ(frame["event"], "frame");
-  EXPECT_EQ(frame["report"]["frame"], 2);
+  EXPECT_EQ(frame["report"]["frame"], 3);
   EXPECT_EQ(nlohmann::json::parse(lines.back())["exit_code"], 0);
 }
 

@@ -54,7 +54,9 @@ TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes) {
 TEST(Resume, Interrupted_again_and_again_it_gives_the_same_bytes) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
-  for (int frame = 0; frame < 10; frame += 2) ASSERT_EQ(interrupted_after(scene, frame, SIGTERM, true).exit_code, 143);
+  for (int frame = 0; frame < 10; frame += 2) {
+    ASSERT_EQ(interrupted_after(scene, frame, SIGTERM, true).exit_code, 143);
+  }
   BakeOptions options = scene.options();
   options.resume = true;
   ASSERT_EQ(scene.run(options).exit_code, 0);
@@ -104,21 +106,39 @@ TEST(Resume, With_nothing_to_resume_it_bakes) {
   EXPECT_NE(text(scene.run(options)).find("up to date"), std::string::npos);
 }
 
-TEST(Resume, Damaged_checkpoint_or_cache_starts_anew_and_says_so) {
+TEST(Resume, Damaged_checkpoint_starts_anew_and_says_so) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
-  for (const char* name : {".state/checkpoint", "sheet.pc2", "sheet.abc"}) {
-    ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
-    std::filesystem::resize_file(scene.folder().path / name, 40);
-    BakeOptions options = scene.options();
-    options.resume = true;
-    RecordedProgress progress;
-    const BakeResult result = bake(options, scene.services(), progress);
-    EXPECT_EQ(result.exit_code, 0) << name << text(result);
-    EXPECT_NE(progress.notes.find("starting anew"), std::string::npos) << name << progress.notes;
-    EXPECT_EQ(scene.products(), expected) << name;
-    std::filesystem::remove_all(scene.folder().path);
-  }
+  ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
+  std::filesystem::resize_file(scene.folder().checkpoint(), 40);
+  BakeOptions options = scene.options();
+  options.resume = true;
+  RecordedProgress progress;
+  const BakeResult result = bake(options, scene.services(), progress);
+  EXPECT_EQ(result.exit_code, 0) << text(result);
+  EXPECT_NE(progress.notes.find("starting anew"), std::string::npos) << progress.notes;
+  EXPECT_EQ(scene.products(), expected);
+}
+
+TEST(Resume, Damaged_or_lost_cache_is_not_continued_and_the_way_out_is_named) {
+  FakeScene scene;
+  const auto expected = undisturbed(scene);
+  for (const char* name : {"sheet.pc2", "sheet.abc", "box.collider.abc"})
+    for (const bool lost : {false, true}) {
+      ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
+      if (lost)
+        std::filesystem::remove(scene.folder().path / name);
+      else
+        std::filesystem::resize_file(scene.folder().path / name, 40);
+      BakeOptions options = scene.options();
+      options.resume = true;
+      const BakeResult result = scene.run(options);
+      EXPECT_EQ(result.exit_code, 6) << name << text(result);
+      EXPECT_NE(text(result).find(name), std::string::npos) << text(result);
+      EXPECT_EQ(scene.run().exit_code, 0);
+      EXPECT_EQ(scene.products(), expected) << name;
+      std::filesystem::remove_all(scene.folder().path);
+    }
 }
 
 /// The bake as a child process, because kill -9 and resource limits are for whole processes.
