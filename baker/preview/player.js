@@ -198,7 +198,11 @@
     playing = on;
     clock = performance.now() - 1000 * Math.max(frame, 0) / (bake.fps * $('speed').value);
     $('play').textContent = on ? '\u275a\u275a' : '\u25b6';
-    if (on) requestAnimationFrame(tick);
+    if (on) later();
+  }
+  /// By timer: the picture changes 24 times a second, and a page without a screen has no animation frames.
+  function later() {
+    setTimeout(() => tick(performance.now()), 8);
   }
   function tick(now) {
     if (!playing) return;
@@ -213,7 +217,7 @@
       index = 0;
     }
     if (index !== frame) show(index);
-    requestAnimationFrame(tick);
+    later();
   }
 
   // ---- plots ----
@@ -350,7 +354,10 @@
     play(true);
     const out = document.createElement('pre');
     out.id = 'test-answer';
-    setTimeout(() => {
+    let waits = 0;
+    const wait = setInterval(() => {
+      if (frame === 0 && ++waits < 60) return;
+      clearInterval(wait);
       answer.played = first + frame;
       play(false);
       if (renderer) {
@@ -364,6 +371,6 @@
       }
       out.textContent = JSON.stringify(answer);
       document.body.append(out);
-    }, 600);
+    }, 100);
   }
 })();

@@ -1,0 +1,133 @@
+// The preview page in a headless Chromium: what it shows is what the caches say.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "baker/commands/preview.h"
+#include "baker/manifest.h"
+#include "io/cache/cache.h"
+#include "io/shot/mesh_file.h"
+#include "tests/support/assets.h"
+#include "tests/support/scripted_body.h"
+
+namespace ft {
+namespace {
+
+using test::ScratchFolder;
+
+constexpr int k_first = 101, k_frames = 12;
+
+std::vector<Vec3> wave(const Mesh& sheet, int frame) {
+  std::vector<Vec3> x = sheet.positions;
+  for (Vec3& p : x) p.y() += 0.05 * std::sin(9 * p.x() + 0.5 * frame) + 0.01 * frame;
+  return x;
+}
+
+/// A bake of a waving sheet above a ball, in both formats.
+void make_bake(const std::filesystem::path& folder) {
+  Manifest manifest;
+  manifest.version = manifest.build = manifest.fingerprint = "0";
+  manifest.shot = "</script>wave.toml";
+  manifest.complete = true;
+  manifest.first_frame = manifest.first_written = k_first;
+  manifest.last_frame = k_first + k_frames - 1;
+  Mesh sheet = make_sheet(0.8, 12, 0.4);
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  make_sphere(0.3, 12, 16, points, triangles);
+  const Mesh ball = make_triangle_mesh("ball", points, triangles);
+  const auto write = [&](const Mesh& mesh, const std::string& name, const std::string& role, const std::string& format) {
+    ASSERT_TRUE(write_obj(folder / (name + ".obj"), mesh));
+    CacheInfo info;
+    info.system = name;
+    info.mesh = mesh;
+    info.first_frame = k_first;
+    info.frame_count = k_frames;
+    const std::string file = name + "." + format;
+    auto writer = find_cache_format(format)->open_writer(folder / file, info, 0);
+    ASSERT_TRUE(writer);
+    for (int f = 0; f < k_frames; ++f) ASSERT_TRUE((*writer)->write_frame(role == "cloth" ? wave(mesh, f) : mesh.positions, {}));
+    ASSERT_TRUE((*writer)->close());
+    manifest.systems.push_back({name, role, "ball", mesh.vertex_count(), mesh.face_count(), name + ".obj", {{format, file, 0, ""}}});
+  };
+  write(sheet, "sheet", "cloth", "abc");
+  write(ball, "ball", "body", "pc2");
+  for (int f = 0; f < k_frames; ++f) {
+    FrameReport report;
+    report.frame = k_first + f;
+    report.strain_p99 = 0.01 * f;
+    report.smallest_gap = 0.002;
+    manifest.frames.push_back(report);
+  }
+  std::ofstream(folder / "manifest.json") << to_text(manifest);
+}
+
+nlohmann::json ask(const std::filesystem::path& page, const std::string& hash) {
+  const ScratchFolder profile;
+  const std::string command = "timeout 120 chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader "
+                              "--enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update "
+                              "--disable-sync --user-data-dir=" + profile.path().string() +
+                              " --virtual-time-budget=20000 --dump-dom 'file://" + page.string() + "#" + hash + "' 2>/dev/null";
+  std::string dom;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 65536> buffer;
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) dom.append(buffer.data(), n);
+  pclose(pipe);
+  const std::string open = "<pre id=\"test-answer\">";
+  const std::size_t begin = dom.find(open);
+  EXPECT_NE(begin, std::string::npos) << "the page did not answer; " << dom.size() << " bytes came";
+  if (begin == std::string::npos) return {};
+  const std::size_t end = dom.find("</pre>", begin);
+  return nlohmann::json::parse(dom.substr(begin + open.size(), end - begin - open.size()), nullptr, false);
+}
+
+TEST(Preview, shows_every_vertex_where_the_cache_has_it_and_plays_slow) {
+  if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not installed";
+  const ScratchFolder folder;
+  make_bake(folder.path());
+  const auto page = folder.path() / "page.html";
+  ASSERT_EQ(run_preview({folder.path(), page}), 0);
+  const auto answer = ask(page, "frame=107&colour=strain&test=sheet:0,57,168");
+  ASSERT_TRUE(answer.is_object());
+  EXPECT_EQ(answer["frame"], 107);
+  auto reader = open_cache(folder.path() / "sheet.abc");
+  ASSERT_TRUE(reader);
+  std::vector<Vec3f> x;
+  ASSERT_TRUE((*reader)->read_frame(107 - k_first, x));
+  const std::array<std::size_t, 3> asked{0, 57, 168};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)  // half a step of 16 bits over at most a metre
+      EXPECT_NEAR(answer["vertices"]["sheet"][k][axis].get<double>(), x[asked[k]][static_cast<int>(axis)], 0.5 / 65535 + 1e-9);
+  EXPECT_TRUE(answer["drawn"].get<bool>());
+  EXPECT_EQ(answer["plots"], nlohmann::json({"strain", "smallest gap", "crossings"}));  // no times: there is no report.json
+  EXPECT_EQ(answer["scrubbed"], k_first);
+  EXPECT_GT(answer["played"], k_first);
+  EXPECT_GT(answer["colours"], 20);  // something is lit, not one flat colour
+}
+
+TEST(Preview, holds_every_frame_and_nothing_from_elsewhere) {
+  const ScratchFolder folder;
+  make_bake(folder.path());
+  const auto page = preview_page(folder.path());
+  ASSERT_TRUE(page) << page.error().text();
+  for (const char* outside : {"src=\"http", "src='http", "href=\"http", "import(", "<link"})
+    EXPECT_EQ(page->find(outside), std::string::npos) << outside;
+  // A name from a file cannot end the data block.
+  EXPECT_NE(page->find("<\\/script>wave.toml"), std::string::npos);
+  EXPECT_NE(page->find("\"frame_count\":12"), std::string::npos);
+}
+
+TEST(Preview, refuses_a_folder_that_is_no_bake_and_caches_that_do_not_belong_to_it) {
+  const ScratchFolder folder;
+  EXPECT_EQ(preview_page(folder.path()).error().kind, ErrorKind::k_input);
+  make_bake(folder.path());
+  std::filesystem::resize_file(folder.path() / "ball.pc2", 40);
+  EXPECT_EQ(preview_page(folder.path()).error().kind, ErrorKind::k_input);
+}
+
+}  // namespace
+}  // namespace ft
