@@ -32,7 +32,7 @@ BakeResult interrupted_after(const FakeScene& scene, int frame, int signal = SIG
   return bake(options, scene.services(), progress);
 }
 
-TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes) {
+TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes_slow) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
   for (int frame = -1; frame < 10; ++frame) {
@@ -51,7 +51,7 @@ TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes) {
   }
 }
 
-TEST(Resume, Interrupted_again_and_again_it_gives_the_same_bytes) {
+TEST(Resume, Interrupted_again_and_again_it_gives_the_same_bytes_slow) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
   for (int frame = 0; frame < 10; frame += 2) {
@@ -120,7 +120,7 @@ TEST(Resume, Damaged_checkpoint_starts_anew_and_says_so) {
   EXPECT_EQ(scene.products(), expected);
 }
 
-TEST(Resume, Damaged_or_lost_cache_is_not_continued_and_the_way_out_is_named) {
+TEST(Resume, Damaged_or_lost_cache_is_not_continued_and_the_way_out_is_named_slow) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
   for (const char* name : {"sheet.pc2", "sheet.abc", "box.collider.abc"})
@@ -181,7 +181,7 @@ TEST(Resume, Killed_at_25_random_instants_it_gives_the_same_bytes_slow) {
   EXPECT_GE(killed, 25);  // else the instants were after the end, and nothing was tested
 }
 
-TEST(Resume, File_size_limit_gives_exit_code_6_and_resume_gives_the_same_bytes) {
+TEST(Resume, File_size_limit_gives_exit_code_6_and_resume_gives_the_same_bytes_slow) {
   FakeScene scene;
   scene.write_shot(40);
   const auto expected = undisturbed(scene);
