@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
@@ -26,6 +27,38 @@ inline void lower(double& target, double value) {
   double seen = shared.load(std::memory_order_relaxed);
   while (value < seen && !shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
   }
+}
+
+/// True when the plane's normal n separates the two features by more than keep, wherever between start and end each vertex is.
+bool separates_throughout(int split, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& end, const Vec3& n, double keep) {
+  double lowest_first = std::numeric_limits<double>::infinity(), highest_second = -lowest_first;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double a = n.dot(x[i] - x[0]), b = n.dot(end[i] - x[0]);
+    if (static_cast<int>(i) < split)
+      lowest_first = std::min({lowest_first, a, b});
+    else
+      highest_second = std::max({highest_second, a, b});
+  }
+  return lowest_first - highest_second > keep;
+}
+
+/// A pair that slides past itself keeps apart although it approaches along the line between its closest points: cloth that
+/// glides over the inner edges of a flat face. The face's normal, the common normal of the edges, or the normal where the pair
+/// ends proves it; any plane will do.
+bool slides_past(PairKind kind, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx,
+                 const std::array<bool, 4>& movable, double keep) {
+  const int split = first_feature_size(kind);
+  std::array<Vec3, 4> end = x;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (movable[i]) end[i] += dx[i];
+  Vec3 flat = kind == PairKind::k_vertex_face ? (x[2] - x[1]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[3] - x[2]);
+  const double length = flat.norm();
+  if (length > 1e-30) {
+    flat /= length;
+    if (flat.dot(x[0] - x[3]) < 0) flat = -flat;
+    if (separates_throughout(split, x, end, flat, keep)) return true;
+  }
+  return separates_throughout(split, x, end, pair_geometry(kind, end).normal, keep);
 }
 
 }  // namespace
@@ -63,6 +96,8 @@ std::array<double, 4> truncate_pair(PairKind kind, const std::array<Vec3, 4>& x,
   }
   if (toward_first <= 0 && toward_second <= 0) return share;
   const double room = std::max(0.0, gap - floor);
+  const bool may_be_cut = toward_first + toward_second > k_truncate_reach * room;
+  if (may_be_cut && slides_past(kind, x, dx, movable, std::max(floor, (1 - k_truncate_reach) * gap))) return share;
   double part_of_first = std::clamp(toward_first / (toward_first + toward_second), 0.05, 0.95);
   if (!first_moves) part_of_first = 0;
   if (!second_moves) part_of_first = 1;
