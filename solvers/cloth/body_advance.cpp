@@ -13,6 +13,10 @@ constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
 /// Newton iterations of a shortened piece: a gap that an unconverged solve leaves closed blocks the next advance.
 constexpr int k_shortened_newton = 4;
+/// Cloth that wants to leave its slack by more than this [m] gets more and is solved anew, so often at most: what is held back
+/// loses momentum.
+constexpr double k_negligible = 1e-5;
+constexpr int k_most_asked = 3;
 
 double seconds_since(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();
@@ -46,8 +50,10 @@ double BodyAdvance::plan(const ClothMotion& cloth, double h, double extra_slack,
   }
 }
 
-/// Solves for the cloth at the end of a piece and moves its history on.
-void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, ClothMotion& cloth, AdvanceReport& report) {
+/// Solves for the cloth at the end of a piece and moves its history on; unless cloth was held back by its slack and may_ask is set:
+/// then nothing changes, and the slack that is missing is returned [m].
+double BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
+                          AdvanceReport& report) {
   Scratch& s = *scratch_;
   s.pins.resize(in.pins_t0.size());
   for (std::size_t p = 0; p < s.pins.size(); ++p) s.pins[p] = in.pins_t0[p] + end * (in.pins_t1[p] - in.pins_t0[p]);
@@ -70,17 +76,19 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   const StepResult result = s.step.solve(step, s.x, s.v);
   report.newton_iterations += result.newton_iterations;
   report.linear_iterations += result.linear_iterations;
-  report.smallest_gap = std::min(report.smallest_gap, result.smallest_gap);
-  report.finite = report.finite && result.finite;
   report.seconds_assembly += result.seconds_assembly;
   report.seconds_linear += result.seconds_linear;
   report.seconds_contact += result.seconds_contact;
+  if (may_ask && result.held_back > k_negligible) return result.held_back;
+  report.smallest_gap = std::min(report.smallest_gap, result.smallest_gap);
+  report.finite = report.finite && result.finite;
   ++report.pieces;
   cloth.x_previous.swap(cloth.x);
   cloth.v_previous.swap(cloth.v);
   cloth.x.swap(s.x);
   cloth.v.swap(s.v);
   cloth.h_previous = step.h;
+  return 0;
 }
 
 AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
@@ -90,6 +98,8 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
   double done = 0, beta = 1, share = 1;  // share: of what is left, that this piece takes
+  double slack = in.extra_slack;
+  int asked = 0;
   while (done < 1) {
     auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
@@ -104,7 +114,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
       piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
     }
-    const double free = plan(cloth, h, in.extra_slack, &beta);
+    const double free = plan(cloth, h, slack, &beta);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
@@ -120,9 +130,16 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
     report.seconds_advance += seconds_since(clock);
-    solve(in, h, end, share < 1, cloth, report);
+    const double missing = solve(in, h, end, share < 1, asked < k_most_asked, cloth, report);
+    if (missing > 0) {
+      slack += 1.5 * missing + 1e-3;
+      ++asked;
+      continue;
+    }
     done = end;
     share = 1;
+    slack = in.extra_slack;
+    asked = 0;
   }
   return report;
 }

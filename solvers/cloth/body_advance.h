@@ -45,7 +45,8 @@ class BodyAdvance {
  private:
   struct Scratch;
   double plan(const ClothMotion& cloth, double h, double extra_slack, double* beta);
-  void solve(const SubstepInput& input, double h, double end, bool shortened, ClothMotion& cloth, AdvanceReport& report);
+  double solve(const SubstepInput& input, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
+               AdvanceReport& report);
 
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;

@@ -158,12 +158,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     result.seconds_linear += watch.lap();
 
     double longest = 0;
+    result.held_back = 0;
     for (std::size_t i = 0; i < n; ++i) {
       if (!s.direction[i].allFinite()) s.direction[i].setZero(), result.finite = false;
       // Stay in the ball around the carried position, inside which the list of pairs is complete.
       const Vec3 from = s.all[i] - in.all_begin[i];
       const double room = in.slack[i];
       if ((from + s.direction[i]).squaredNorm() > room * room) {
+        result.held_back = std::max(result.held_back, (from + s.direction[i]).norm() - room);
         const double dd = s.direction[i].squaredNorm(), fd = from.dot(s.direction[i]);
         const double cc = from.squaredNorm() - room * room;
         const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;

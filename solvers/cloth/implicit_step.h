@@ -36,6 +36,7 @@ struct StepResult {
   int newton_iterations = 0, linear_iterations = 0, backtracks = 0;
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
+  double held_back = 0;     ///< how far past its slack the last iteration wanted to take a vertex [m]; 0: nothing was held back
   bool finite = true;
   double seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };

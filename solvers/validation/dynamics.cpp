@@ -41,9 +41,11 @@ std::array<double, 2> momentum_change(bool folds) {
   const Mesh mesh = rectangle_mesh(16, 16, [&](double s, double t) { return Vec3(side * (s - 0.5), 0, side * (t - 0.5)); });
   const Fabric fabric = plain_fabric(0.15, 500, 1e-4, 0.3);
   const auto mass = masses(mesh, fabric);
-  ClothSetup setup = accurate_setup(mesh, fabric, 24, folds ? 16 : 64);
+  ClothSetup setup = accurate_setup(mesh, fabric, 24, 64);
   setup.gravity.setZero();
   setup.garments[0].self_collision = folds;
+  // Friction acts on two surfaces that are a gap apart: its couple (gap times force) is real, 8e-5 in this scene, and left out here.
+  setup.garments[0].self_friction = 0;
   ClothRun run(std::move(setup));
   run.set_velocity([folds](const Vec3& p) {
     const Vec3 spin = Vec3(0.4, 1.0, 0.2).cross(p);
