@@ -1,11 +1,28 @@
 #include "baker/core/parallel.h"
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <thread>
+#include <vector>
+
+// Debian's TBB is built without the thread sanitizer, which therefore sees neither the fork nor the join of a TBB loop
+// and reports every loop as a race. Under that sanitizer our loops run on plain threads instead: the same blocks, and
+// what it reports is ours.
+#if defined(__SANITIZE_THREAD__)
+#define FT_PLAIN_THREADS 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define FT_PLAIN_THREADS 1
+#endif
+#endif
+
+#ifdef FT_PLAIN_THREADS
+#include <atomic>
+#include <exception>
+#else
+#include <tbb/parallel_for.h>
+#endif
 
 namespace ft {
 
@@ -18,6 +35,34 @@ std::size_t wanted(int thread_count) {
   if (thread_count > 0) return static_cast<std::size_t>(thread_count);
   return std::max(1u, std::thread::hardware_concurrency());
 }
+
+#ifdef FT_PLAIN_THREADS
+/// The blocks are handed out by a counter that orders nothing else between the threads (relaxed), so that two blocks
+/// that touch the same datum are seen even when they happen to run one after the other. The first exception is thrown
+/// again here.
+void run_on_threads(std::size_t blocks, const std::function<void(std::size_t)>& body) {
+  std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> caught(std::min(blocks, static_cast<std::size_t>(thread_count())));
+  const auto work = [&](std::size_t worker) {
+    try {
+      for (std::size_t b; (b = next.fetch_add(1, std::memory_order_relaxed)) < blocks;) body(b);
+    } catch (...) {
+      caught[worker] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t w = 1; w < caught.size(); ++w) threads.emplace_back(work, w);
+  work(0);
+  for (std::thread& t : threads) t.join();
+  for (const std::exception_ptr& e : caught) {
+    if (e) std::rethrow_exception(e);
+  }
+}
+#else
+void run_on_threads(std::size_t blocks, const std::function<void(std::size_t)>& body) {
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) { body(b); });
+}
+#endif
 }  // namespace
 
 ThreadLimit::ThreadLimit(int thread_count)
@@ -35,7 +80,7 @@ void run_blocks(std::size_t blocks, const std::function<void(std::size_t)>& body
     for (std::size_t b = 0; b < blocks; ++b) body(b);
     return;
   }
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) { body(b); });
+  run_on_threads(blocks, body);
 }
 
 }  // namespace detail
