@@ -18,7 +18,6 @@
 #endif
 
 #ifdef FT_PLAIN_THREADS
-#include <atomic>
 #include <exception>
 #else
 #include <tbb/parallel_for.h>
@@ -37,21 +36,21 @@ std::size_t wanted(int thread_count) {
 }
 
 #ifdef FT_PLAIN_THREADS
-/// The blocks are handed out by a counter that orders nothing else between the threads (relaxed), so that two blocks
-/// that touch the same datum are seen even when they happen to run one after the other. The first exception is thrown
-/// again here.
+/// Thread w runs blocks w, w + n, ... whatever the others do: nothing orders the threads between start and end, so two
+/// blocks of different threads that touch the same datum are seen in every run. The first exception is thrown again
+/// here.
 void run_on_threads(std::size_t blocks, const std::function<void(std::size_t)>& body) {
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> caught(std::min(blocks, static_cast<std::size_t>(thread_count())));
-  const auto work = [&](std::size_t worker) {
+  const std::size_t n = std::min(blocks, static_cast<std::size_t>(thread_count()));
+  std::vector<std::exception_ptr> caught(n);
+  const auto work = [&](std::size_t w) {
     try {
-      for (std::size_t b; (b = next.fetch_add(1, std::memory_order_relaxed)) < blocks;) body(b);
+      for (std::size_t b = w; b < blocks; b += n) body(b);
     } catch (...) {
-      caught[worker] = std::current_exception();
+      caught[w] = std::current_exception();
     }
   };
   std::vector<std::thread> threads;
-  for (std::size_t w = 1; w < caught.size(); ++w) threads.emplace_back(work, w);
+  for (std::size_t w = 1; w < n; ++w) threads.emplace_back(work, w);
   work(0);
   for (std::thread& t : threads) t.join();
   for (const std::exception_ptr& e : caught) {
