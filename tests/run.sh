@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs the tests, from nothing: installs what is missing with apt (Debian 12), builds, runs ctest, prints a summary.
 #   tests/run.sh [--asan | --tsan | --clang] [--quick] [ctest arguments]
-# --asan, --tsan and --clang build and test those presets instead of release; --quick leaves out the tests labelled slow.
+# --asan (addresses, leaks and undefined behaviour), --tsan (races) and --clang build and test those presets instead of
+# release; --quick leaves out the tests labelled slow.
 # Example: tests/run.sh --asan -R collision
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../samples/setup.sh"
@@ -10,7 +11,7 @@ preset=release
 arguments=()
 for argument in "$@"; do
   case $argument in
-    -h | --help) sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
+    -h | --help) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
     --asan) preset=asan ;;
     --tsan) preset=tsan ;;
     --clang) preset=clang ;;
@@ -24,6 +25,15 @@ packages="$packages_build $packages_tests"
 # shellcheck disable=SC2086
 install_packages $packages
 build "$preset"
+
+# Any report of a sanitizer ends the program with an error, and so fails the test. Options of the caller's come last and win.
+case $preset in
+  asan)
+    export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:${ASAN_OPTIONS:-}
+    export UBSAN_OPTIONS=print_stacktrace=1:${UBSAN_OPTIONS:-}
+    ;;
+  tsan) export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:${TSAN_OPTIONS:-} ;;
+esac
 
 say "Running the tests of preset $preset"
 log=$root/build/$preset/test.log

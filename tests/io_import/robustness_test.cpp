@@ -36,6 +36,8 @@ void try_file(const std::filesystem::path& file, double seconds, Tally& tally) {
       ++tally.stopped;
       std::printf("  stopped: %s\n", error.text().c_str());
     }
+    // Neither a refusal nor a crash: something that escaped in the child, or a sanitizer's report (then it stands above).
+    if (error.what.find("ended with code") != std::string::npos) tally.faults.push_back(error.text());
     if (error.where.empty() || error.what.empty()) tally.faults.push_back("no name in: " + error.text());
     return;
   }
