@@ -15,7 +15,8 @@ constexpr double k_shortest_cut = 0.25;
 constexpr int k_shortened_newton = 4;
 /// Cloth that wants to leave its slack by more than this [m] gets more and is solved anew, so often at most: what is held back
 /// loses momentum.
-constexpr double k_negligible = 1e-5;
+constexpr double k_negligible = 1e-4;
+constexpr double k_asked_margin = 5e-4;
 constexpr int k_most_asked = 3;
 
 double seconds_since(std::chrono::steady_clock::time_point& last) {
@@ -50,9 +51,9 @@ double BodyAdvance::plan(const ClothMotion& cloth, double h, double extra_slack,
   }
 }
 
-/// Solves for the cloth at the end of a piece and moves its history on; unless cloth was held back by its slack and may_ask is set:
-/// then nothing changes, and the slack that is missing is returned [m].
-double BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
+/// Solves for the cloth at the end of a piece and moves its history on. Unless cloth was held back by its slack and may_ask is set:
+/// then nothing changes but the slack that is asked for, and the answer is false.
+bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
                           AdvanceReport& report) {
   Scratch& s = *scratch_;
   s.pins.resize(in.pins_t0.size());
@@ -79,7 +80,13 @@ double BodyAdvance::solve(const SubstepInput& in, double h, double end, bool sho
   report.seconds_assembly += result.seconds_assembly;
   report.seconds_linear += result.seconds_linear;
   report.seconds_contact += result.seconds_contact;
-  if (may_ask && result.held_back > k_negligible) return result.held_back;
+  if (may_ask && result.held_back > k_negligible) {
+    const std::span<const double> missing = s.step.held_back();
+    s.piece.extra.resize(missing.size(), 0.0);
+    for (std::size_t i = 0; i < missing.size(); ++i)
+      if (missing[i] > 0) s.piece.extra[i] += 2 * missing[i] + k_asked_margin;
+    return false;
+  }
   report.smallest_gap = std::min(report.smallest_gap, result.smallest_gap);
   report.finite = report.finite && result.finite;
   ++report.pieces;
@@ -88,7 +95,7 @@ double BodyAdvance::solve(const SubstepInput& in, double h, double end, bool sho
   cloth.x.swap(s.x);
   cloth.v.swap(s.v);
   cloth.h_previous = step.h;
-  return 0;
+  return true;
 }
 
 AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
@@ -98,8 +105,8 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
   double done = 0, beta = 1, share = 1;  // share: of what is left, that this piece takes
-  double slack = in.extra_slack;
   int asked = 0;
+  piece.extra.clear();
   while (done < 1) {
     auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
@@ -114,7 +121,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
       piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
     }
-    const double free = plan(cloth, h, slack, &beta);
+    const double free = plan(cloth, h, in.extra_slack, &beta);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
@@ -130,16 +137,14 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
     report.seconds_advance += seconds_since(clock);
-    const double missing = solve(in, h, end, share < 1, asked < k_most_asked, cloth, report);
-    if (missing > 0) {
-      slack += 1.5 * missing + 1e-3;
+    if (!solve(in, h, end, share < 1, asked < k_most_asked, cloth, report)) {
       ++asked;
       continue;
     }
     done = end;
     share = 1;
-    slack = in.extra_slack;
     asked = 0;
+    piece.extra.clear();
   }
   return report;
 }

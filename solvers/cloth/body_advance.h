@@ -45,8 +45,8 @@ class BodyAdvance {
  private:
   struct Scratch;
   double plan(const ClothMotion& cloth, double h, double extra_slack, double* beta);
-  double solve(const SubstepInput& input, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
-               AdvanceReport& report);
+  bool solve(const SubstepInput& input, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
+             AdvanceReport& report);
 
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;

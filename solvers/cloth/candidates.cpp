@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
+constexpr double k_most_expected = 2e-3;   ///< slack for acceleration that is given unasked [m]
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -29,6 +30,14 @@ std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
   return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
 }
 
+/// Squared distance between the boxes of the two features: a lower bound that is cheaper than theirs.
+double box_gap_squared(const std::array<Vec3, 4>& x, std::size_t split) {
+  Vec3 lo_a = x[0], hi_a = x[0], lo_b = x[split], hi_b = x[split];
+  for (std::size_t k = 1; k < split; ++k) lo_a = lo_a.cwiseMin(x[k]), hi_a = hi_a.cwiseMax(x[k]);
+  for (std::size_t k = split + 1; k < 4; ++k) lo_b = lo_b.cwiseMin(x[k]), hi_b = hi_b.cwiseMax(x[k]);
+  return (lo_a - hi_b).cwiseMax(lo_b - hi_a).cwiseMax(0.0).squaredNorm();
+}
+
 }  // namespace
 
 Candidates::Candidates(const ClothModel& model)
@@ -36,6 +45,7 @@ Candidates::Candidates(const ClothModel& model)
       finder_(model.vertex_count(), model.triangles, model.collider ? model.collider->vertex_count() : 0,
               shifted_triangles(model)) {
   for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
+  for (const double r : model.contact.self_radius) self_radius_ = std::max(self_radius_, r);
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
 
@@ -109,11 +119,12 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, d
   piece.slack.resize(nc);
   boxes_.resize(nc + nb);
   for (std::size_t i = 0; i < nc; ++i) {
-    piece.slack[i] = 1.2 * (h * cloth.v[i] - piece.carry[i]).norm() + 0.6 * h * h * gravity + 1e-3 +
-                     0.1 * std::min(fastest, k_farthest_range) + extra_slack;
+    piece.slack[i] = 1.2 * (h * cloth.v[i] - piece.carry[i]).norm() + 0.6 * h * h * gravity + 3e-4 +
+                     0.03 * std::min(fastest, k_farthest_range) + extra_slack;
     // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
     if (cloth.h_previous > 0)
-      piece.slack[i] += std::min(1.5 * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(), k_farthest_range);
+      piece.slack[i] += std::min(1.5 * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(), k_most_expected);
+    if (!piece.extra.empty()) piece.slack[i] += piece.extra[i];
     boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, piece.slack[i] + 0.5 * radius_);
   }
   for (std::size_t i = 0; i < nb; ++i) {
@@ -149,9 +160,12 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
         double& side = k < split ? slack_a : slack_b;
         if (v < model_.vertex_count()) side = std::max(side, piece.slack[at(v)]);
       }
+      const bool self = found[p].v[split] < model_.vertex_count() && found[p].v[0] < model_.vertex_count();
+      const double reach = relative + slack_a + slack_b + (self ? self_radius_ : radius_);
+      if (box_gap_squared(x, split) >= reach * reach || !counts(cloth, found[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
-      if (g.distance >= relative + slack_a + slack_b + radius_ || !counts(cloth, found[p])) continue;
+      if (g.distance >= reach) continue;
       mine.push_back(found[p]);
       if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
       first = std::min(first, ccd_time(kind, x, d));

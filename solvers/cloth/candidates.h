@@ -18,6 +18,7 @@ struct PieceMotion {
   std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
   std::vector<Vec3> carry;        ///< per cloth vertex [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
+  std::vector<double> extra;      ///< per cloth vertex: slack that an earlier try asked for [m]; empty: none
   std::vector<double> slack;      ///< per cloth vertex: how far the solve may go from the carried place [m]
 };
 
@@ -45,7 +46,7 @@ class Candidates {
 
   const ClothModel& model_;
   PairFinder finder_;
-  double radius_ = 1e-3;
+  double radius_ = 1e-3, self_radius_ = 0;
   double range_ = 0;  ///< of near_body_ [m]
   bool any_self_ = false;
   std::vector<VertexBox> boxes_;

@@ -59,7 +59,7 @@ struct ImplicitStep::Scratch {
   LinearSystem system;
   ContactPotential contact;
   std::vector<Vec3> y, gradient, direction, all, trial;
-  std::vector<double> share;
+  std::vector<double> share, held_back;
   std::vector<PairTerm> terms;
   ContactPairs near;
 };
@@ -70,6 +70,8 @@ ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
   scratch_ = std::make_unique<Scratch>(model, settings);
 }
 ImplicitStep::~ImplicitStep() = default;
+
+std::span<const double> ImplicitStep::held_back() const { return scratch_->held_back; }
 
 StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::span<Vec3> v_out) {
   Scratch& s = *scratch_;
@@ -100,6 +102,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.gradient.resize(n);
   s.direction.resize(n);
   s.share.resize(n);
+  s.held_back.assign(n, 0.0);
 
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   const auto potential = [&](std::vector<Vec3>& all) {
@@ -159,13 +162,15 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
 
     double longest = 0;
     result.held_back = 0;
+    std::fill(s.held_back.begin(), s.held_back.end(), 0.0);
     for (std::size_t i = 0; i < n; ++i) {
       if (!s.direction[i].allFinite()) s.direction[i].setZero(), result.finite = false;
       // Stay in the ball around the carried position, inside which the list of pairs is complete.
       const Vec3 from = s.all[i] - in.all_begin[i];
       const double room = in.slack[i];
       if ((from + s.direction[i]).squaredNorm() > room * room) {
-        result.held_back = std::max(result.held_back, (from + s.direction[i]).norm() - room);
+        s.held_back[i] = (from + s.direction[i]).norm() - room;
+        result.held_back = std::max(result.held_back, s.held_back[i]);
         const double dd = s.direction[i].squaredNorm(), fd = from.dot(s.direction[i]);
         const double cc = from.squaredNorm() - room * room;
         const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;

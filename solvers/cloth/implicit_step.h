@@ -36,7 +36,7 @@ struct StepResult {
   int newton_iterations = 0, linear_iterations = 0, backtracks = 0;
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
-  double held_back = 0;     ///< how far past its slack the last iteration wanted to take a vertex [m]; 0: nothing was held back
+  double held_back = 0;     ///< how far past its slack the last iteration wanted to take a vertex [m]; see held_back() for each
   bool finite = true;
   double seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
@@ -47,6 +47,8 @@ class ImplicitStep {
   ~ImplicitStep();
   /// Fills x and v of the cloth at the end of the step.
   StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
+  /// Per vertex, of the last solve: how far past its slack its last iteration wanted to go [m].
+  std::span<const double> held_back() const;
 
  private:
   struct Scratch;
