@@ -9,6 +9,10 @@ namespace ft {
 namespace {
 
 constexpr std::size_t k_block = 2048;
+constexpr float k_rounding = 1.0001f;     ///< of float sums of ways
+constexpr float k_no_way = 1e30f;
+/// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
+constexpr double k_truncation_reach = 2.3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -39,7 +43,8 @@ void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_
   pairs_ = &pairs;
   x_start_ = x_start;
   h_ = h;
-  moved_total_ = 0;
+  way_.assign(at(model_.cloth_vertex_count), 0.f);
+  x_last_.clear();
   state_vf_.assign(pairs.vertex_face.size(), {-1.f, 0.f});
   state_ee_.assign(pairs.edge_edge.size(), {-1.f, 0.f});
   contacts_.clear();
@@ -77,14 +82,24 @@ double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_fa
   return r;
 }
 
-void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, double moved, double reach) {
+/// How far the features of a pair can have come nearer, at most: way_ of the farthest vertex on either side; the body stands still.
+float ContactPotential::way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const {
+  const std::size_t split = vertex_face ? 1 : 2;
+  float side[2] = {farthest ? 0.f : k_no_way, farthest ? 0.f : k_no_way};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const float way = v[k] < model_.cloth_vertex_count ? way_[at(v[k])] : 0.f;
+    float& s = side[k < split ? 0 : 1];
+    s = farthest ? std::max(s, way) : std::min(s, way);
+  }
+  return side[0] + side[1];
+}
+
+void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x) {
   const auto& list = vertex_face ? pairs_->vertex_face : pairs_->edge_edge;
   auto& state = vertex_face ? state_vf_ : state_ee_;
   const int n = model_.cloth_vertex_count;
   const std::size_t blocks = block_count(list.size(), k_block);
   if (block_contacts_.size() < blocks) block_contacts_.resize(blocks);
-  const float total = static_cast<float>(moved_total_);
-  (void)moved;
   parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
     auto& out = block_contacts_[begin / k_block];
     out.clear();
@@ -95,11 +110,10 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, do
       double largest = 0;
       for (const int i : v)
         if (i < n) largest = std::max(largest, self ? model_.self_radius[at(i)] : model_.radius[at(i)]);
-      const double wanted = std::max(largest, reach);
-      // Both features may have moved towards each other; the body stands still in a solve, which only makes this safer.
-      if (s.distance >= 0 && s.distance - 2.0001f * (total - s.moved_at) > static_cast<float>(wanted) + 1e-6f) continue;
+      if (s.distance >= 0 && s.distance - k_rounding * (way_of(v, vertex_face, true) - s.way) > static_cast<float>(largest) + 1e-6f)
+        continue;
       const PairGeometry g = geometry_of(vertex_face, v, x);
-      s = {static_cast<float>(g.distance), total};
+      s = {static_cast<float>(g.distance), way_of(v, vertex_face, false)};
       if (g.distance >= largest || g.distance <= 0) continue;
       if (!vertex_face && !g.interior) continue;
       Contact c;
@@ -116,11 +130,13 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, do
     contacts_.insert(contacts_.end(), block_contacts_[b].begin(), block_contacts_[b].end());
 }
 
-void ContactPotential::update(std::span<const Vec3> x, double moved, double reach) {
-  moved_total_ += moved;
+void ContactPotential::update(std::span<const Vec3> x) {
+  const std::size_t n = way_.size();
+  for (std::size_t i = 0; i < x_last_.size(); ++i) way_[i] += static_cast<float>((x[i] - x_last_[i]).norm());
+  x_last_.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n));
   contacts_.clear();
-  update_kind(true, x, moved, reach);
-  update_kind(false, x, moved, reach);
+  update_kind(true, x);
+  update_kind(false, x);
 }
 
 void ContactPotential::lag_friction() {
@@ -187,25 +203,26 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
   }
 }
 
-void ContactPotential::near_pairs(double distance, ContactPairs& out) const {
-  out.vertex_face.clear();
-  out.edge_edge.clear();
-  const float total = static_cast<float>(moved_total_);
-  const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, std::vector<Stencil>& to) {
-    for (std::size_t p = 0; p < list.size(); ++p)
-      if (state[p].distance - 2.0001f * (total - state[p].moved_at) < static_cast<float>(distance) + 1e-6f)
-        to.push_back(list[p]);
+void ContactPotential::near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) const {
+  const int n = model_.cloth_vertex_count;
+  const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, bool vertex_face,
+                        std::vector<Stencil>& to) {
+    to.clear();
+    for (std::size_t p = 0; p < list.size(); ++p) {
+      double largest = 0;
+      for (const int i : list[p].v)
+        if (i < n) largest = std::max(largest, dx[at(i)].squaredNorm());
+      const auto reach = static_cast<float>(k_truncation_reach * std::sqrt(largest) + floor) + 1e-6f;
+      if (state[p].distance - k_rounding * (way_of(list[p].v, vertex_face, true) - state[p].way) < reach) to.push_back(list[p]);
+    }
   };
-  take(pairs_->vertex_face, state_vf_, out.vertex_face);
-  take(pairs_->edge_edge, state_ee_, out.edge_edge);
+  take(pairs_->vertex_face, state_vf_, true, out.vertex_face);
+  take(pairs_->edge_edge, state_ee_, false, out.edge_edge);
 }
 
 double ContactPotential::smallest_gap() const {
   double gap = std::numeric_limits<double>::infinity();
-  const float total = static_cast<float>(moved_total_);
-  for (const auto* state : {&state_vf_, &state_ee_})
-    for (const PairState& s : *state)
-      if (s.moved_at == total) gap = std::min(gap, static_cast<double>(s.distance));
+  for (const Contact& c : contacts_) gap = std::min(gap, c.geometry.distance);
   return gap;
 }
 

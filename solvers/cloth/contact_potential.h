@@ -44,9 +44,8 @@ class ContactPotential {
   /// length [s].
   void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h);
 
-  /// Finds the active contacts at x (all vertices); moved: no vertex has moved further than this since the last call [m].
-  /// reach: distances up to it are kept exact for near_pairs().
-  void update(std::span<const Vec3> x, double moved, double reach);
+  /// Finds the active contacts at x (all vertices). Distances are evaluated anew only where the pair can have come within reach.
+  void update(std::span<const Vec3> x);
   /// Fixes normal forces for friction at the contacts of the last update.
   void lag_friction();
 
@@ -54,10 +53,10 @@ class ContactPotential {
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const;  ///< N, cloth vertices only
   void add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const;
 
-  /// Pairs nearer than `distance` at the last update, for truncation.
-  void near_pairs(double distance, ContactPairs& out) const;
+  /// Pairs that displacements dx [m] of the cloth can bring nearer than floor [m], for truncation.
+  void near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) const;
   std::span<const Contact> contacts() const { return contacts_; }
-  double smallest_gap() const;  ///< m, over all pairs of this solve at the last update
+  double smallest_gap() const;  ///< m, over the contacts of the last update; infinite without any
 
  private:
   struct Lagged {
@@ -68,14 +67,18 @@ class ContactPotential {
     double friction;
   };
   double pair_radius(const std::array<int, 4>& v, bool vertex_face, double* friction, double* area) const;
-  void update_kind(bool vertex_face, std::span<const Vec3> x, double moved, double reach);
+  void update_kind(bool vertex_face, std::span<const Vec3> x);
+  float way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const;
 
   const ContactModel& model_;
   const ContactPairs* pairs_ = nullptr;
   std::span<const Vec3> x_start_;
-  double h_ = 0, moved_total_ = 0;
+  double h_ = 0;
+  std::vector<float> way_;     ///< how far each cloth vertex has gone in this solve [m]
+  std::vector<Vec3> x_last_;
+  /// Distance when it was last evaluated (-1: never) and what the pair's vertices had gone then, at least [m].
   struct PairState {
-    float distance, moved_at;
+    float distance, way;
   };
   std::vector<PairState> state_vf_, state_ee_;
   std::vector<Contact> contacts_;

@@ -122,7 +122,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   double smallest_radius = 1e-3;
   for (const double r : model_.contact.radius) smallest_radius = std::min(smallest_radius, r);
   s.contact.begin(*in.pairs, in.all_start, in.h);
-  s.contact.update(s.all, 0, 0);
+  s.contact.update(s.all);
   result.seconds_contact += watch.lap();
 
   for (int iteration = 0; iteration < in.newton_iterations; ++iteration) {
@@ -160,7 +160,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     ++result.newton_iterations;
     result.seconds_linear += watch.lap();
 
-    double longest = 0;
     result.held_back = 0;
     std::fill(s.held_back.begin(), s.held_back.end(), 0.0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -176,12 +175,11 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
         const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;
         s.direction[i] *= std::clamp(t, 0.0, 1.0);
       }
-      longest = std::max(longest, s.direction[i].norm());
     }
-    s.contact.near_pairs(2.2 * longest + k_floor, s.near);
+    s.contact.near_pairs(s.direction, k_floor, s.near);
     truncate_displacements(s.all, s.direction, model_.vertex_count(), s.near, k_floor, s.share);
 
-    double moved = 0, factor = 1;
+    double factor = 1;
     bool accepted = false;
     for (int cut = 0; cut < 5 && !accepted; ++cut, factor *= 0.5) {
       double step = 0;
@@ -190,9 +188,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
         s.trial[i] = s.all[i] + d;
         step = std::max(step, d.norm());
       }
-      moved += step;
-      s.contact.update(s.trial, moved, 0);
-      moved = step;  // a further cut moves back by at most this much
+      s.contact.update(s.trial);
       const double after = potential(s.trial);
       // Truncation and lagged friction leave the exact descent direction: a small rise is no reason to stop.
       accepted = std::isfinite(after) && after <= before + 1e-9 + 1e-3 * std::abs(before);
