@@ -15,9 +15,9 @@ constexpr double k_shortest_cut = 0.25;
 constexpr int k_shortened_newton = 4;
 /// Cloth that wants to leave its slack by more than this [m] gets more and is solved anew, so often at most: what is held back
 /// loses momentum.
-constexpr double k_negligible = 1e-4;
+constexpr double k_negligible = 5e-4;
 constexpr double k_asked_margin = 5e-4;
-constexpr int k_most_asked = 3;
+constexpr int k_most_asked = 1;
 
 double seconds_since(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();

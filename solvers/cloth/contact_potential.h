@@ -19,9 +19,9 @@ namespace ft {
 /// Per vertex of the common numbering (cloth first); the pair takes the mean, or for friction the larger.
 struct ContactModel {
   int cloth_vertex_count = 0;
-  /// N/m3. 1e5 soft as flesh, 1e7 hard; gravity on cotton is 1.5 Pa, so 3e5 rests 5 um deep. Much harder contacts hold cloth between
+  /// N/m3. 1e5 soft as flesh, 1e7 hard; gravity on cotton is 1.5 Pa, so 5e5 rests 3 um deep. Much harder contacts hold cloth between
   /// two surfaces so fast that friction tears at it.
-  double stiffness_per_area = 3e5;
+  double stiffness_per_area = 5e5;
   double sliding_speed = 2e-5;        ///< below this speed friction is viscous [m/s]: the creep of a contact at rest
   std::vector<double> area;           ///< lumped area of each cloth vertex [m2]
   std::vector<double> radius;         ///< contact radius against the body of each cloth vertex [m]
