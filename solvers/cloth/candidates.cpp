@@ -87,7 +87,12 @@ double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMoti
   }
   range_ = 2 * radius_ + std::min(fastest, k_farthest_range);
   boxes_.resize(nc + nb);
-  for (std::size_t i = 0; i < nc + nb; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], 0.5 * range_);
+  // A surface matters from as far away as it comes itself; what stands still with the cloth only where it is near.
+  for (std::size_t i = 0; i < nc; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], radius_);
+  for (std::size_t i = 0; i < nb; ++i) {
+    const double way = std::min((piece.body_motion[i] - mean).norm(), k_farthest_range);
+    boxes_[nc + i] = VertexBox::swept(piece.start[nc + i], piece.start[nc + i], radius_ + way);
+  }
   finder_.find_vertex_face(boxes_, false, found_);
   for (const Stencil& stencil : found_.vertex_face)  // cloth with the body only, either way round
     if (counts(cloth, stencil)) near_body_.vertex_face.push_back(stencil);
