@@ -12,8 +12,6 @@ namespace {
 /// Bind distance from which on vertices of touching parts keep the full gap [m].
 constexpr double k_touching_zone = 30e-3;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 Adjacency neighbours_of(std::size_t vertex_count, std::span<const Edge> edges) {
   std::vector<std::array<int, 2>> both;
   for (const Edge& e : edges) both.insert(both.end(), {{e[0], e[1]}, {e[1], e[0]}});

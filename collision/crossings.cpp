@@ -10,7 +10,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 Vec2 drop(const Vec3& v, int axis) { return {v[(axis + 1) % 3], v[(axis + 2) % 3]}; }
 
 bool boxes_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {

@@ -25,10 +25,6 @@ using FclNode = fcl::BVNode<FclBox>;
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
 
-inline std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 static_assert(sizeof(FclBox) == 6 * sizeof(float));
 inline bool overlap(const FclBox& a, const FclBox& b) {
   return boxes_overlap(a.min_.data(), b.min_.data());

@@ -11,7 +11,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double k_rounding = 1e-9;  ///< edges longer by no more than this share are not long
 
 Edge sorted(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }

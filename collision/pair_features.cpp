@@ -14,10 +14,6 @@ constexpr std::size_t k_block = 4096;
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 constexpr VertexBox k_nowhere{{k_infinity, k_infinity, k_infinity}, {-k_infinity, -k_infinity, -k_infinity}};
 
-inline std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 inline bool valid(const VertexBox& b) {
   return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
 }

@@ -10,8 +10,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::vector<int> weld(std::span<const Vec3> bind, std::span<const int> part_of_vertex) {
   std::vector<int> order(bind.size()), representative(bind.size());
   std::iota(order.begin(), order.end(), 0);

@@ -20,8 +20,6 @@ namespace {
 
 constexpr double k_strain_step = 0.0025;  ///< of the 8-bit strain; player.js knows it as 40 steps to 10 %
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::string base64(std::span<const std::byte> data) {
   constexpr const char* k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;

@@ -17,10 +17,6 @@ constexpr double k_flat_triangle = 1e-10;
 /// Vertices nearer than this fraction of the bounding diagonal are at one place: the sixth decimal of a file in metres.
 constexpr double k_same_place = 1e-7;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// "3 faces (12, 15, 99)", "1 face (12)", "90 faces (1, 2, 3, ...)".
 std::string places(std::size_t count, std::string_view singular, std::string_view plural,
                    const std::vector<std::string>& first) {

@@ -12,10 +12,6 @@ namespace {
 
 using Cell = std::array<long long, 3>;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 Cell cell_of(const Vec3& p, double size) {
   Cell cell;
   // Far beyond any garment; keeps the cast defined for any finite input.

@@ -8,8 +8,6 @@
 namespace ft::garments {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 constexpr double k_cell = 5e-3;  // m; a wrist is ten cells wide
 
 /// The cells of one slice; 0 outside, otherwise the number of the connected piece.

@@ -6,8 +6,6 @@
 namespace ft::garments {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   const double length2 = d.squaredNorm();

@@ -7,8 +7,6 @@
 namespace ft::garments {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto volume = [](const Vec3& u, const Vec3& v, const Vec3& w, const Vec3& x) { return (v - u).cross(w - u).dot(x - u); };
   const double sp = volume(a, b, c, p), sq = volume(a, b, c, q);

@@ -7,8 +7,6 @@
 namespace ft::garments {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 constexpr int k_directions = 360;
 
 Vec2 direction(int k) {

@@ -10,8 +10,6 @@
 namespace ft::garments {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 using Field = std::function<double(const Vec3&)>;
 
 struct QuadMesh {

@@ -14,8 +14,6 @@ constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 constexpr double k_most_expected = 2e-3;   ///< slack for acceleration that is given unasked [m]
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Collider triangles in the common numbering.
 std::vector<Triangle> shifted_triangles(const ClothModel& model) {
   std::vector<Triangle> out;

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t k_block = 4096;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 struct Pull {
   std::array<int, 4> vertex;
   std::array<double, 4> weight;

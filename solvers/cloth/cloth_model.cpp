@@ -7,8 +7,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Pattern coordinates of the corners of each triangle of triangulate(); empty when the mesh has none.
 std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles) {
   std::vector<std::array<Vec2, 3>> out;

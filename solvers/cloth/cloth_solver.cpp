@@ -22,8 +22,6 @@ namespace {
 constexpr int k_rewinds = 3;
 constexpr std::size_t k_incidents_per_frame = 16;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
 }

@@ -14,8 +14,6 @@ constexpr float k_no_way = 1e30f;
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
 constexpr double k_truncation_reach = 2.3;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 PairGeometry geometry_of(bool vertex_face, const std::array<int, 4>& v, std::span<const Vec3> x) {
   return vertex_face ? vertex_face_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])])
                      : edge_edge_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])]);

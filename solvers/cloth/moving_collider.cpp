@@ -9,8 +9,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Garments deeper inside than this are not pushed out but let through and reported [m].
 constexpr double k_deepest_start = 0.03;
 

@@ -8,8 +8,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Orthonormal frame of a triangle: first edge, in-plane, normal. Identity for a degenerate one.
 Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 e = b - a, n = e.cross(c - a);

@@ -8,7 +8,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr std::size_t k_block = 512;
 
 }  // namespace

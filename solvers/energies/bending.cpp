@@ -11,8 +11,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// A triangle pressed below this share of its rest area counts as degenerate.
 constexpr double k_collapsed = 1e-3;
 

@@ -10,8 +10,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// A triangle lower than this share of its longest edge carries nothing.
 constexpr double k_flattest = 1e-6;
 /// Below this a projected direction is noise [1].

@@ -15,8 +15,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 struct EdgeUse {
   Edge edge;
   int triangle;

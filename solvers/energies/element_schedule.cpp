@@ -6,8 +6,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Spreads the lower 10 bits, two zeros between each.
 std::uint32_t spread(std::uint32_t v) {
   v = (v | (v << 16)) & 0x030000FFu;

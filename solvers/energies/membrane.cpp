@@ -9,8 +9,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 using Lane = double[k_lanes];
 
 /// Two edges and the deformation gradient F = (f1 f2) of a group.

@@ -6,8 +6,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 constexpr int k_max_candidates = 10;
 
 /// Greedy independent set: taken breadth first so that its members sit in an even net.

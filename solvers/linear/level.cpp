@@ -10,8 +10,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 constexpr std::size_t k_rows = 512;  ///< rows per block of work
 
 Vec4f row_product(const Level& level, std::size_t row, const Vec4f* x) {

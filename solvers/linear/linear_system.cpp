@@ -11,8 +11,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 constexpr int k_dense_size = 64;       ///< vertices of the level that is factored densely
 constexpr int k_dense_limit = 400;     ///< no dense factor above this size: the coarsest level is only smoothed then
 constexpr std::size_t k_rows = 1024;

@@ -7,8 +7,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 class Boxes final : public Trajectory {
  public:
   using Place = std::function<Vec3(std::size_t, double, const Vec3&)>;

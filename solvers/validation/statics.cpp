@@ -9,8 +9,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Advances until nothing moves faster than `speed` [m/s], at most `frames`.
 void settle(ClothRun& run, double speed, int frames) {
   for (int f = 0; f < frames; ++f) {

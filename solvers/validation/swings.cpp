@@ -8,7 +8,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double k_degree = std::numbers::pi / 180;
 constexpr double k_length = 1;
 

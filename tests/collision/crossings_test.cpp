@@ -19,8 +19,6 @@ namespace {
 using Exact = boost::multiprecision::cpp_rational;
 using Small = boost::rational<std::int64_t>;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 struct Dice {
   std::uint64_t seed, draw = 0;
   double unit() { return random_uniform({seed, 1, 2, 3}, draw++); }

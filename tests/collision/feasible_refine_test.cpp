@@ -11,8 +11,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::vector<Vec3> refined(const RefinedMesh& mesh, std::span<const Vec3> x) {
   std::vector<Vec3> out(at(mesh.vertex_count()));
   mesh.positions(x, out);

@@ -22,7 +22,6 @@ using Isometry = Eigen::Isometry3d;
 
 constexpr double k_gap = 6e-3;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 Isometry shift(const Vec3& by) { return Isometry(Eigen::Translation3d(by)); }
 
 struct Judged {

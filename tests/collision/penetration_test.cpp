@@ -14,8 +14,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::vector<Vec3> cloud(std::uint64_t seed, int count, double size) {
   std::vector<Vec3> out;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) {

@@ -8,8 +8,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::shared_ptr<ScriptedBody> spheres(const std::vector<std::function<Vec3(double)>>& paths, double radius, double preroll = 0) {
   Surface surface;
   std::vector<Vec3> points, bind;

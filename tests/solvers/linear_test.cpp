@@ -12,8 +12,6 @@
 namespace ft {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 double noise(std::size_t element, std::uint64_t draw) { return 2 * random_uniform({.element = element}, draw) - 1; }
 
 /// A crumpled sheet of springs: stiff along the springs, a thousand times softer across them, as cloth is.
