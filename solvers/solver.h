@@ -57,8 +57,6 @@ class Solver {
   virtual const Mesh& system_mesh(int system) const = 0;
   /// Positions in the vertex order of system_mesh().
   virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const = 0;
-  /// Per-vertex values for the preview: gap to the nearest surface [m] and strain [1].
-  virtual void system_health(const State& state, int system, std::span<double> gap, std::span<double> strain) const = 0;
 
   /// Topology of the feasible collider, and its positions at the state's time.
   virtual std::span<const Triangle> collider_triangles() const = 0;

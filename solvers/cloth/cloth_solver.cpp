@@ -76,8 +76,6 @@ class ClothSolver final : public Solver {
     std::copy(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(end), out.begin());
   }
 
-  void system_health(const State& state, int system, std::span<double> gap, std::span<double> strain) const override;
-
   std::span<const Triangle> collider_triangles() const override {
     return model_->collider ? model_->collider->triangles() : std::span<const Triangle>{};
   }
@@ -394,40 +392,6 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   state.time = frame.t1;
   report.profile.total = elapsed(clock);
   return report;
-}
-
-void ClothSolver::system_health(const State& state, int system, std::span<double> gap, std::span<double> strain) const {
-  const ClothMotion m = load(state, at(model_->vertex_count()));
-  const std::size_t first = at(model_->first_vertex[at(system)]), end = at(model_->first_vertex[at(system) + 1]);
-  CHECK(gap.size() == end - first && strain.size() == end - first);
-  std::fill(strain.begin(), strain.end(), 0.0);
-  for (std::size_t e = 0; e < model_->edges.size(); ++e) {
-    const Edge& edge = model_->edges[e];
-    const double value = (m.x[at(edge[0])] - m.x[at(edge[1])]).norm() / model_->rest_length[e] - 1;
-    for (const int v : edge)
-      if (at(v) >= first && at(v) < end && std::abs(value) > std::abs(strain[at(v) - first])) strain[at(v) - first] = value;
-  }
-  // Gap up to 2 cm, from vertex-face pairs with the collider.
-  constexpr double k_far = 0.02;
-  std::fill(gap.begin(), gap.end(), k_far);
-  if (!model_->collider) return;
-  std::vector<Vec3> all = m.x, body;
-  collider_positions(state, body);
-  all.insert(all.end(), body.begin(), body.end());
-  std::vector<Triangle> shifted(model_->collider->triangles().begin(), model_->collider->triangles().end());
-  for (Triangle& t : shifted)
-    for (int& v : t) v += model_->vertex_count();
-  PairFinder finder(model_->vertex_count(), model_->triangles, static_cast<int>(body.size()), shifted);
-  std::vector<VertexBox> boxes(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) boxes[i] = VertexBox::swept(all[i], all[i], 0.5 * k_far);
-  ContactPairs pairs;
-  finder.find(boxes, false, pairs);
-  for (const Stencil& s : pairs.vertex_face) {
-    if (at(s.v[0]) < first || at(s.v[0]) >= end) continue;
-    const double d = vertex_face_geometry(all[at(s.v[0])], all[at(s.v[1])], all[at(s.v[2])], all[at(s.v[3])]).distance;
-    double& g = gap[at(s.v[0]) - first];
-    g = std::min(g, d);
-  }
 }
 
 }  // namespace

@@ -43,7 +43,6 @@ class FakeSolver final : public Solver {
     const auto x = as_points(*state.find(std::string("x").append(std::to_string(s))));
     std::copy(x.begin(), x.end(), out.begin());
   }
-  void system_health(const State&, int, std::span<double>, std::span<double>) const override {}
   std::span<const Triangle> collider_triangles() const override { return setup_.primary->surface().triangles; }
   void collider_positions(const State& state, std::vector<Vec3>& out) const override {
     out.resize(8);
