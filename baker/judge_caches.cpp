@@ -5,6 +5,7 @@
 #include <map>
 
 #include "baker/cache_track.h"
+#include "baker/core/edge_strain.h"
 #include "baker/report_json.h"
 #include "collision/crossings.h"
 #include "collision/penetration.h"
@@ -17,25 +18,21 @@ struct Group {
   std::vector<CacheTrack> cloths;
   std::vector<CacheTrack> collider, body;   ///< none or one
   std::vector<Triangle> cloth_triangles;
-  std::vector<Edge> edges;
-  std::vector<double> rest_length;
+  RestEdges rest_edges;
   std::vector<int> first_vertex;
 };
 
 void prepare(Group& group) {
   int first = 0;
+  std::vector<Vec3> rest;
   for (const CacheTrack& cloth : group.cloths) {
     group.first_vertex.push_back(first);
     for (const Triangle& t : cloth.triangles) group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    for (const Edge& e : unique_edges(cloth.triangles)) {
-      const double length = (cloth.rest.positions[static_cast<std::size_t>(e[0])] - cloth.rest.positions[static_cast<std::size_t>(e[1])]).norm();
-      if (length <= 0) continue;
-      group.edges.push_back({e[0] + first, e[1] + first});
-      group.rest_length.push_back(length);
-    }
+    rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
     first += cloth.rest.vertex_count();
   }
   group.first_vertex.push_back(first);
+  group.rest_edges = rest_edges(rest, group.cloth_triangles);
 }
 
 void place_incident(const Group& group, int vertex, Incident& incident) {
@@ -62,15 +59,10 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
     place_incident(group, vertex, out);
     report.incidents.push_back(std::move(out));
   };
-  std::vector<double> strain(group.edges.size());
-  for (std::size_t e = 0; e < strain.size(); ++e)
-    strain[e] = (x[static_cast<std::size_t>(group.edges[e][0])] - x[static_cast<std::size_t>(group.edges[e][1])]).norm() / group.rest_length[e] - 1;
-  for (const double s : strain) report.strain_mean += s / static_cast<double>(strain.size());
-  if (!strain.empty()) {
-    std::sort(strain.begin(), strain.end());
-    report.strain_max = strain.back();
-    report.strain_p99 = strain[strain.size() * 99 / 100];
-  }
+  const StrainSummary strain = summary(edge_strains(group.rest_edges, x));
+  report.strain_mean = strain.mean;
+  report.strain_p99 = strain.p99;
+  report.strain_max = strain.max;
   for (const CacheTrack& collider : group.collider) {
     std::vector<Vec3> y;
     if (const Status read = collider.read(index, y); !read) return read.error();

@@ -9,6 +9,7 @@
 #include "baker/bake_folder.h"
 #include "baker/cache_track.h"
 #include "baker/commands/command_line.h"
+#include "baker/core/edge_strain.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/preview/embedded.h"
@@ -41,8 +42,7 @@ std::string base64_of(const std::vector<T>& values) {
 struct Clip {
   ManifestSystem system;
   CacheTrack track;
-  std::vector<Edge> edges;
-  std::vector<double> rest_length;
+  RestEdges rest_edges;
   Box box;
   std::vector<std::uint16_t> positions;
   std::vector<std::int8_t> strain;
@@ -71,12 +71,10 @@ Status quantise(Clip& clip, int frames) {
 /// Per vertex the edge strain that is largest in size.
 void add_strain(Clip& clip, std::span<const Vec3> x) {
   std::vector<double> worst(x.size(), 0.0);
-  for (std::size_t e = 0; e < clip.edges.size(); ++e) {
-    const Edge& edge = clip.edges[e];
-    const double strain = (x[at(edge[0])] - x[at(edge[1])]).norm() / clip.rest_length[e] - 1;
-    for (const int v : edge)
-      if (std::abs(strain) > std::abs(worst[at(v)])) worst[at(v)] = strain;
-  }
+  const std::vector<double> strains = edge_strains(clip.rest_edges, x);
+  for (std::size_t e = 0; e < strains.size(); ++e)
+    for (const int v : clip.rest_edges.edges[e])
+      if (std::abs(strains[e]) > std::abs(worst[at(v)])) worst[at(v)] = strains[e];
   for (const double s : worst)
     clip.strain.push_back(static_cast<std::int8_t>(std::lround(std::clamp(s / k_strain_step, -127.0, 127.0))));
 }
@@ -100,10 +98,7 @@ void add_gap(Clip& clip, std::span<const Vec3> x, std::span<const Vec3> surface,
 Status measure(std::vector<Clip>& clips, int frames) {
   for (Clip& clip : clips) {
     if (clip.system.role != "cloth") continue;
-    for (const Edge& e : unique_edges(clip.track.triangles)) {
-      const double length = (clip.track.rest.positions[at(e[0])] - clip.track.rest.positions[at(e[1])]).norm();
-      if (length > 0) clip.edges.push_back(e), clip.rest_length.push_back(length);
-    }
+    clip.rest_edges = rest_edges(clip.track.rest.positions, clip.track.triangles);
     const Clip* surface = nullptr;
     for (const Clip& other : clips)
       if (other.system.primary == clip.system.primary &&
@@ -197,7 +192,7 @@ Result<std::string> preview_page(const std::filesystem::path& bake_folder) {
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
     frames = std::min(frames, track->reader->info().frame_count);
-    clips.push_back({system, std::move(*track), {}, {}, {}, {}, {}, {}});
+    clips.push_back({system, std::move(*track), {}, {}, {}, {}, {}});
   }
   if (clips.empty() || frames < 1) return input_error("the bake has no finished frame to show", bake_folder.string());
   if (const Status measured = measure(clips, frames); !measured) return measured.error();

@@ -107,7 +107,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, double beta, PieceMot
   input.x = piece.start;
   input.body_motion = piece.body_motion;
   input.inertia = inertia_;
-  input.edges = model_.edges;
+  input.edges = model_.rest_edges.edges;
   input.pairs = &near_body_;
   input.part_of_body_vertex = model_.collider->part_of_vertex();
   input.range = range_;

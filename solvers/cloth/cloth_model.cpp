@@ -99,12 +99,7 @@ void weigh(ClothModel& model) {
   }
   for (std::size_t i = 0; i < n; ++i)
     if (!(model.mass[i] > 0)) model.unused[i] = 1;
-  for (const Edge& e : unique_edges(model.triangles)) {
-    const double length = (model.contact.rest[at(e[0])] - model.contact.rest[at(e[1])]).norm();
-    if (!(length > 0)) continue;
-    model.edges.push_back(e);
-    model.rest_length.push_back(length);
-  }
+  model.rest_edges = rest_edges(model.contact.rest, model.triangles);
 }
 
 void place_and_pin(ClothModel& model) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/edge_strain.h"
 #include "baker/core/result.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
@@ -32,8 +33,7 @@ struct ClothModel {
   std::vector<Vec3> start;                    ///< placed at the start of the pre-roll [m]
   std::vector<double> mass;                   ///< lumped [kg]
   std::vector<Triangle> triangles;
-  std::vector<Edge> edges;
-  std::vector<double> rest_length;            ///< of each edge [m]
+  RestEdges rest_edges;
   std::vector<char> self_collides;            ///< per vertex
   std::vector<char> unused;                   ///< vertices of no face: carried along, never solved for
   ContactModel contact;

@@ -300,19 +300,10 @@ void ClothSolver::certify(const Frame& frame, ClothMotion& m, FrameReport& repor
 }
 
 void ClothSolver::describe(const Frame& frame, const ClothMotion& m, FrameReport& report) const {
-  std::vector<double> strain(model_->edges.size());
-  double sum = 0;
-  for (std::size_t e = 0; e < strain.size(); ++e) {
-    const Edge& edge = model_->edges[e];
-    strain[e] = (m.x[at(edge[0])] - m.x[at(edge[1])]).norm() / model_->rest_length[e] - 1;
-    sum += strain[e];
-  }
-  if (!strain.empty()) {
-    report.strain_mean = sum / static_cast<double>(strain.size());
-    std::sort(strain.begin(), strain.end());
-    report.strain_max = strain.back();
-    report.strain_p99 = strain[strain.size() * 99 / 100];
-  }
+  const StrainSummary strain = summary(edge_strains(model_->rest_edges, m.x));
+  report.strain_mean = strain.mean;
+  report.strain_p99 = strain.p99;
+  report.strain_max = strain.max;
   for (std::size_t i = 0; i < m.v.size(); ++i) report.kinetic_energy += 0.5 * model_->mass[i] * m.v[i].squaredNorm();
   if (model_->collider) {
     const auto& surface = model_->collider->trajectory().surface();
