@@ -54,15 +54,20 @@ int Candidates::part_of(const Stencil& stencil) const {
   return -1;
 }
 
-/// A pair counts unless it is a cloth vertex against a part that it may pass, or cloth that does not collide with itself.
-bool Candidates::counts(const ClothMotion& cloth, const Stencil& stencil) const {
+/// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself, or tangled
+/// cloth with tangled cloth.
+bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const {
   const int part = part_of(stencil);
-  for (const int v : stencil.v) {
+  const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
+  bool tangled_a = false, tangled_b = false;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int v = stencil.v[k];
     if (v >= model_.vertex_count()) continue;
     if (part >= 0 && cloth.released[at(v)] == part) return false;
     if (part < 0 && !model_.self_collides[at(v)]) return false;
+    if (cloth.tangled[at(v)] > 0) (k < split ? tangled_a : tangled_b) = true;
   }
-  return true;
+  return !(tangled_a && tangled_b);
 }
 
 double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {
@@ -93,7 +98,7 @@ double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMoti
   }
   finder_.find_vertex_face(boxes_, false, found_);
   for (const Stencil& stencil : found_.vertex_face)  // cloth with the body only, either way round
-    if (counts(cloth, stencil)) near_body_.vertex_face.push_back(stencil);
+    if (counts(cloth, PairKind::k_vertex_face, stencil)) near_body_.vertex_face.push_back(stencil);
   return fastest;
 }
 
@@ -165,7 +170,7 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
       }
       const bool self = found[p].v[split] < model_.vertex_count() && found[p].v[0] < model_.vertex_count();
       const double reach = relative + slack_a + slack_b + (self ? self_radius_ : radius_);
-      if (box_gap_squared(x, split) >= reach * reach || !counts(cloth, found[p])) continue;
+      if (box_gap_squared(x, split) >= reach * reach || !counts(cloth, kind, found[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;

@@ -39,7 +39,7 @@ class Candidates {
   const ContactPairs& pairs() const { return pairs_; }
 
  private:
-  bool counts(const ClothMotion& cloth, const Stencil& stencil) const;
+  bool counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const;
   int part_of(const Stencil& stencil) const;
   double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
                 std::vector<Stencil>& kept);

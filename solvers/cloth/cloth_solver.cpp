@@ -15,6 +15,7 @@
 #include "collision/penetration.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/tangles.h"
 
 namespace ft {
 namespace {
@@ -44,6 +45,7 @@ void store(State& state, const ClothMotion& m) {
   state.block("v_previous") = flat(m.v_previous);
   state.block("h_previous") = {m.h_previous};
   state.block("released") = m.released;
+  state.block("tangled") = m.tangled;
 }
 
 ClothMotion load(const State& state, std::size_t count) {
@@ -54,9 +56,11 @@ ClothMotion load(const State& state, std::size_t count) {
   m.v_previous = points(state.find("v_previous"), count);
   const auto* h = state.find("h_previous");
   const auto* released = state.find("released");
-  CHECK(h && h->size() == 1 && released && released->size() == count);
+  const auto* tangled = state.find("tangled");
+  CHECK(h && h->size() == 1 && released && released->size() == count && tangled && tangled->size() == count);
   m.h_previous = h->front();
   m.released = *released;
+  m.tangled = *tangled;
   return m;
 }
 
@@ -131,6 +135,7 @@ State ClothSolver::initial_state() const {
   m.x = model_->start;
   m.v.assign(m.x.size(), Vec3::Zero());
   m.released.assign(m.x.size(), -1.0);
+  mark_tangled(*model_, own_crossings(*model_, m.x), m.tangled);
   // A history of constant acceleration makes BDF2 exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
   m.x_previous = m.x;
@@ -210,6 +215,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, double extra_slack, Clo
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
     in.extra_slack = extra_slack;
+    if (k > 0 && any_tangled(m.tangled)) mark_tangled(*model_, own_crossings(*model_, m.x), m.tangled);
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;
@@ -265,14 +271,14 @@ void ClothSolver::certify(const Frame& frame, ClothMotion& m, FrameReport& repor
                  "cloth crosses the collider's part " + model_->collider->trajectory().surface().parts[at(part)].name);
     }
   }
-  const auto own = crossings_within(m.x, model_->triangles);
+  const std::vector<Crossing> own = own_crossings(*model_, m.x);
+  report.crossings_self = static_cast<int>(own.size());
   for (const Crossing& c : own) {
-    if (!model_->self_collides[at(c.edge[0])] || !model_->self_collides[at(c.triangle[0])]) continue;
-    ++report.crossings_self;
-    ++*avoidable;
+    if (!among_tangled(c, m.tangled)) ++*avoidable;
     if (report.incidents.size() < k_incidents_per_frame)
       incident(report, Incident::Kind::k_crossing, c.edge[0], m.x[at(c.edge[0])], 0, "cloth crosses cloth");
   }
+  mark_tangled(*model_, own, m.tangled);
   // A part holds the cloth again once none of the cloth that it let through crosses it or is inside it.
   if (std::any_of(m.released.begin(), m.released.end(), [](double p) { return p >= 0; })) {
     const auto parts = model_->collider->part_of_vertex();
