@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
-#include <utility>
 
 namespace ft {
 
 struct ProfileText::Sums {
   FrameProfile sum;
+  double total = 0;  ///< with what the conductor does around the solver [s]
   std::vector<double> seconds;
   long substeps = 0, newton = 0, linear = 0;
 };
@@ -24,19 +24,14 @@ class Listener final : public Progress {
   std::function<void(const ProgressFrame&)> hear_;
 };
 
-constexpr std::pair<const char*, double FrameProfile::*> k_phases[] = {
-    {"candidate pairs", &FrameProfile::candidates}, {"contact", &FrameProfile::narrow},     {"assembly", &FrameProfile::assembly},
-    {"linear solves", &FrameProfile::linear},       {"body advance", &FrameProfile::advance}, {"certificate", &FrameProfile::certificate},
-    {"body pose", &FrameProfile::body}};
-
 }  // namespace
 
 ProfileText::ProfileText() : sums_(std::make_shared<Sums>()) {}
 
 std::unique_ptr<Progress> ProfileText::listener() {
   return std::make_unique<Listener>([sums = sums_](const ProgressFrame& f) {
-    for (const auto& [name, phase] : k_phases) sums->sum.*phase += f.report.profile.*phase;
-    sums->sum.total += f.seconds;
+    sums->sum += f.report.profile;
+    sums->total += f.seconds;
     sums->seconds.push_back(f.seconds);
     sums->substeps += f.report.substeps;
     sums->newton += f.report.newton_iterations;
@@ -47,7 +42,7 @@ std::unique_ptr<Progress> ProfileText::listener() {
 std::vector<std::string> ProfileText::lines() const {
   std::vector<std::string> out;
   if (sums_->seconds.empty()) return out;
-  const double total = sums_->sum.total, count = static_cast<double>(sums_->seconds.size());
+  const double total = sums_->total, count = static_cast<double>(sums_->seconds.size());
   auto sorted = sums_->seconds;
   std::sort(sorted.begin(), sorted.end());
   out.push_back(fmt::format("{} frames in {}: mean {:.1f} ms, median {:.1f} ms, slowest {:.1f} ms", sorted.size(), clock_text(total),
@@ -58,7 +53,7 @@ std::vector<std::string> ProfileText::lines() const {
   const auto row = [&](const char* name, double seconds) {
     out.push_back(fmt::format("  {:<16} {:8.1f} ms a frame {:5.1f} %", name, 1e3 * seconds / count, 100 * seconds / total));
   };
-  for (const auto& [name, phase] : k_phases) row(name, sums_->sum.*phase), known += sums_->sum.*phase;
+  for (const ProfilePhase& phase : profile_phases()) row(phase.title, sums_->sum.*phase.time), known += sums_->sum.*phase.time;
   row("other", std::max(0.0, total - known));
   return out;
 }

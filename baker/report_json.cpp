@@ -33,13 +33,7 @@ void for_each_field(Report& r, Visit&& visit) {
 
 template <class Profile, class Visit>
 void for_each_time(Profile& p, Visit&& visit) {
-  visit("candidates", p.candidates);
-  visit("narrow", p.narrow);
-  visit("assembly", p.assembly);
-  visit("linear", p.linear);
-  visit("advance", p.advance);
-  visit("certificate", p.certificate);
-  visit("body", p.body);
+  for (const ProfilePhase& phase : profile_phases()) visit(phase.key, p.*phase.time);
   visit("total", p.total);
 }
 
@@ -203,9 +197,7 @@ FrameReport merge(const FrameReport& a, const FrameReport& b) {
   out.released_vertices += b.released_vertices;
   out.finite = a.finite && b.finite;
   out.incidents.insert(out.incidents.end(), b.incidents.begin(), b.incidents.end());
-  for (double FrameProfile::*time : {&FrameProfile::candidates, &FrameProfile::narrow, &FrameProfile::assembly, &FrameProfile::linear,
-                                     &FrameProfile::advance, &FrameProfile::certificate, &FrameProfile::body, &FrameProfile::total})
-    out.profile.*time += b.profile.*time;
+  out.profile += b.profile;
   return out;
 }
 

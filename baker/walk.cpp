@@ -231,9 +231,7 @@ Status write_report(const BakeFolder& folder, const BakePlan& plan, const WalkRe
   for (const FrameReport& frame : result.manifest.frames) {
     frames.push_back({{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
     if (frame.substeps > 0) totals.push_back(frame.profile.total);
-    for (double FrameProfile::*t : {&FrameProfile::candidates, &FrameProfile::narrow, &FrameProfile::assembly, &FrameProfile::linear,
-                                    &FrameProfile::advance, &FrameProfile::certificate, &FrameProfile::body, &FrameProfile::total})
-      sum.*t += frame.profile.*t;
+    sum += frame.profile;
   }
   std::sort(totals.begin(), totals.end());
   struct rusage usage {};

@@ -28,8 +28,21 @@ const char* name(Incident::Kind kind);
 
 /// Wall time of the phases of a frame [s]; for --profile and the log, never for a cache.
 struct FrameProfile {
-  double candidates = 0, narrow = 0, assembly = 0, linear = 0, advance = 0, certificate = 0, body = 0, total = 0;
+  double candidates = 0, narrow = 0, assembly = 0, linear = 0, certificate = 0, body = 0;
+  double total = 0;  ///< of the frame: the phases and what lies between them
+
+  FrameProfile& operator+=(const FrameProfile& other);
 };
+
+/// A phase as files and tables know it.
+struct ProfilePhase {
+  const char* key;
+  const char* title;
+  double FrameProfile::*time;
+};
+
+/// The one list of the phases; the total is not among them.
+std::span<const ProfilePhase> profile_phases();
 
 /// The certificate of one frame, and what it took.
 struct FrameReport {

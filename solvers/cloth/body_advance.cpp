@@ -19,11 +19,8 @@ constexpr double k_negligible = 5e-4;
 constexpr double k_asked_margin = 5e-4;
 constexpr int k_most_asked = 1;
 
-double seconds_since(std::chrono::steady_clock::time_point& last) {
-  const auto now = std::chrono::steady_clock::now();
-  const double s = std::chrono::duration<double>(now - last).count();
-  last = now;
-  return s;
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -108,7 +105,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   int asked = 0;
   piece.extra.clear();
   while (done < 1) {
-    auto clock = std::chrono::steady_clock::now();
+    const auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
     const double end = share >= 1 ? 1.0 : done + share * (1 - done);
     piece.start.resize(nc + nb);
@@ -130,13 +127,10 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
         continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
       }
       // No room: whatever blocks is let through until the part is clear of all cloth again.
-      const int freed = s.candidates.release_blocked(1.0, piece, cloth, &report.let_through);
-      report.released += freed;
-      if (freed > 0) continue;  // search again without them
+      if (s.candidates.release_blocked(1.0, piece, cloth) > 0) continue;  // search again without them
       // Only cloth on cloth is left: these pairs pass this once, the certificate will say so.
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
-    report.seconds_advance += seconds_since(clock);
     if (!solve(in, h, end, share < 1, asked < k_most_asked, cloth, report)) {
       ++asked;
       continue;

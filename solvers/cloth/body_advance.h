@@ -31,10 +31,9 @@ struct SubstepInput {
 
 struct AdvanceReport {
   int pieces = 0, newton_iterations = 0, linear_iterations = 0;
-  int released = 0, let_through = 0;
   double smallest_gap = 0;
   bool finite = true;
-  double seconds_candidates = 0, seconds_advance = 0, seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
+  double seconds_candidates = 0, seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
 
 class BodyAdvance {

@@ -189,14 +189,13 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
   return t;
 }
 
-int Candidates::release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth, int* let_through) {
+int Candidates::release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth) {
   int freed = 0;
   for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge}) {
     auto& list = kind == PairKind::k_vertex_face ? pairs_.vertex_face : pairs_.edge_edge;
     std::erase_if(list, [&](const Stencil& stencil) {
       if (ccd_time(kind, gather(piece.start, stencil), gather(piece.all, stencil)) >= share) return false;
       const int part = part_of(stencil);
-      if (part < 0) ++*let_through;
       for (const int v : stencil.v)
         if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part) cloth.released[at(v)] = part, ++freed;
       return true;

@@ -33,8 +33,8 @@ class Candidates {
   /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
   double collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece);
   /// Takes out the pairs that touch within `share` of the motion: cloth vertices are let through the collider's part (noted in
-  /// cloth.released; returns how many), pairs of cloth with cloth are only dropped (counted in let_through).
-  int release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth, int* let_through);
+  /// cloth.released; returns how many), pairs of cloth with cloth are only dropped.
+  int release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth);
 
   const ContactPairs& pairs() const { return pairs_; }
 

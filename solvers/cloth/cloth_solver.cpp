@@ -223,7 +223,6 @@ void ClothSolver::walk(const Frame& frame, int substeps, double extra_slack, Clo
     report.smallest_gap = std::min(report.smallest_gap, step.smallest_gap);
     report.finite = report.finite && step.finite;
     report.profile.candidates += step.seconds_candidates;
-    report.profile.advance += step.seconds_advance;
     report.profile.assembly += step.seconds_assembly;
     report.profile.linear += step.seconds_linear;
     report.profile.narrow += step.seconds_contact;
