@@ -1,7 +1,7 @@
 // The walk of a frame:
 //   collider at both ends -> substeps from the body's speed near the cloth
 //     per substep: collider and pins at its end -> BodyAdvance (carry, CCD, Newton, truncation)
-//   frame certificate: exact crossings; any that released cloth does not explain: back to the frame's start, twice the substeps,
+//   certificate.cpp: exact crossings; any that released cloth does not explain: back to the frame's start, twice the substeps,
 //   more slack, at most three times
 //   parts that no cloth touches any more hold the cloth again; report
 #include "solvers/cloth/cloth_solver.h"
@@ -11,9 +11,8 @@
 #include <cmath>
 #include <mutex>
 
-#include "collision/crossings.h"
-#include "collision/penetration.h"
 #include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/tangles.h"
 
@@ -21,7 +20,6 @@ namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
-constexpr std::size_t k_incidents_per_frame = 16;
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -103,9 +101,6 @@ class ClothSolver final : public Solver {
   struct Frame;
   void walk(const Frame& frame, int substeps, double extra_slack, ClothMotion& motion, FrameReport& report) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
-  void certify(const Frame& frame, ClothMotion& motion, FrameReport& report, int* avoidable) const;
-  void describe(const Frame& frame, const ClothMotion& motion, FrameReport& report) const;
-  void incident(FrameReport& report, Incident::Kind kind, int vertex, const Vec3& place, double depth, std::string text) const;
 
   std::unique_ptr<ClothModel> model_;
   // Scratch only: forgotten between frames, one frame at a time.
@@ -231,101 +226,6 @@ void ClothSolver::walk(const Frame& frame, int substeps, double extra_slack, Clo
   }
 }
 
-void ClothSolver::incident(FrameReport& report, Incident::Kind kind, int vertex, const Vec3& place, double depth,
-                           std::string text) const {
-  Incident out;
-  out.kind = kind;
-  out.frame = report.frame;
-  if (vertex >= 0) {
-    const int garment = model_->garment_of(vertex);
-    out.system = model_->setup.garments[at(garment)].name;
-    out.vertex = vertex - model_->first_vertex[at(garment)];
-  }
-  out.place = place;
-  out.depth = depth;
-  out.text = std::move(text);
-  report.incidents.push_back(std::move(out));
-}
-
-void ClothSolver::certify(const Frame& frame, ClothMotion& m, FrameReport& report, int* avoidable) const {
-  *avoidable = 0;
-  const auto explained = [&](std::span<const int> cloth_vertices, int part) {
-    for (const int v : cloth_vertices)
-      if (m.released[at(v)] == part) return true;
-    return false;
-  };
-  std::vector<char> touched;
-  if (model_->collider) {
-    const auto parts = model_->collider->part_of_vertex();
-    touched.assign(model_->collider->trajectory().surface().parts.size(), 0);
-    const auto crossings = crossings_between(m.x, model_->triangles, frame.body_t1, model_->collider->triangles());
-    report.crossings_body = static_cast<int>(crossings.size());
-    for (const Crossing& c : crossings) {
-      const int part = parts[at(c.edge_of_first ? c.triangle[0] : c.edge[0])];
-      touched[at(part)] = 1;
-      if (!(c.edge_of_first ? explained(c.edge, part) : explained(c.triangle, part))) ++*avoidable;
-      const int vertex = c.edge_of_first ? c.edge[0] : c.triangle[0];
-      if (report.incidents.size() < k_incidents_per_frame)
-        incident(report, Incident::Kind::k_crossing, vertex, m.x[at(vertex)], 0,
-                 "cloth crosses the collider's part " + model_->collider->trajectory().surface().parts[at(part)].name);
-    }
-  }
-  const std::vector<Crossing> own = own_crossings(*model_, m.x);
-  report.crossings_self = static_cast<int>(own.size());
-  for (const Crossing& c : own) {
-    if (!among_tangled(c, m.tangled)) ++*avoidable;
-    if (report.incidents.size() < k_incidents_per_frame)
-      incident(report, Incident::Kind::k_crossing, c.edge[0], m.x[at(c.edge[0])], 0, "cloth crosses cloth");
-  }
-  mark_tangled(*model_, own, m.tangled);
-  // A part holds the cloth again once none of the cloth that it let through crosses it or is inside it.
-  if (std::any_of(m.released.begin(), m.released.end(), [](double p) { return p >= 0; })) {
-    const auto parts = model_->collider->part_of_vertex();
-    for (std::size_t part = 0; part < touched.size(); ++part) {
-      std::vector<Vec3> through;
-      std::vector<int> index;
-      for (std::size_t i = 0; i < m.released.size(); ++i)
-        if (m.released[i] == static_cast<double>(part)) through.push_back(m.x[i]), index.push_back(static_cast<int>(i));
-      if (through.empty()) continue;
-      report.released_vertices += static_cast<int>(through.size());
-      std::vector<Triangle> shell;
-      for (const Triangle& t : model_->collider->triangles())
-        if (parts[at(t[0])] == static_cast<int>(part)) shell.push_back(t);
-      double deepest = 0;
-      int worst = index[0];
-      for (const Penetration& p : penetrations(through, frame.body_t1, shell))
-        if (p.depth > deepest) deepest = p.depth, worst = index[at(p.vertex)];
-      const std::string name = model_->collider->trajectory().surface().parts[part].name;
-      incident(report, Incident::Kind::k_released, worst, m.x[at(worst)], deepest,
-               "no room: " + std::to_string(through.size()) + " vertices let through part " + name);
-      if (!touched[part] && deepest == 0)
-        for (const int i : index) m.released[at(i)] = -1;
-    }
-  }
-}
-
-void ClothSolver::describe(const Frame& frame, const ClothMotion& m, FrameReport& report) const {
-  const StrainSummary strain = summary(edge_strains(model_->rest_edges, m.x));
-  report.strain_mean = strain.mean;
-  report.strain_p99 = strain.p99;
-  report.strain_max = strain.max;
-  for (std::size_t i = 0; i < m.v.size(); ++i) report.kinetic_energy += 0.5 * model_->mass[i] * m.v[i].squaredNorm();
-  if (model_->collider) {
-    const auto& surface = model_->collider->trajectory().surface();
-    report.crossings_drawn =
-        static_cast<int>(crossings_between(m.x, model_->triangles, frame.drawn_t1, surface.triangles).size());
-    int worst = -1;
-    for (const Penetration& p : penetrations(m.x, frame.drawn_t1, surface.triangles))
-      if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
-    if (worst >= 0 && report.deepest_drawn > 1e-3)
-      incident(report, Incident::Kind::k_penetration, worst, m.x[at(worst)], report.deepest_drawn,
-               "cloth is inside the drawn body, where it overlaps itself or leaves no room");
-  }
-  std::stable_sort(report.incidents.begin(), report.incidents.end(),
-                   [](const Incident& a, const Incident& b) { return a.depth > b.depth; });
-  if (report.incidents.size() > k_incidents_per_frame) report.incidents.resize(k_incidents_per_frame);
-}
-
 FrameReport ClothSolver::advance_frame(State& state) const {
   const std::lock_guard lock(one_at_a_time_);
   const auto clock = std::chrono::steady_clock::now();
@@ -364,8 +264,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     walk(frame, substeps << attempt, attempt * 2e-3, motion, report);
     if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
-    int avoidable = 0;
-    certify(frame, motion, report, &avoidable);
+    const int avoidable = certify(*model_, frame.body_t1, motion, report);
     report.profile.certificate += elapsed(certificate);
     spent = report.profile;
     const int score = report.finite ? avoidable : std::numeric_limits<int>::max();
@@ -381,7 +280,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   report.profile = spent;
   if (!std::isfinite(report.smallest_gap)) report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
-  describe(frame, motion, report);
+  describe(*model_, frame.drawn_t1, motion, report);
   report.profile.certificate += elapsed(certificate);
   store(state, motion);
   state.frame = frame.number;
