@@ -18,6 +18,8 @@ constexpr int k_shortened_newton = 4;
 constexpr double k_negligible = 5e-4;
 constexpr double k_asked_margin = 5e-4;
 constexpr int k_most_asked = 1;
+/// Rounds in which cloth that would touch is joined to zones, before the piece is shortened.
+constexpr int k_joining_rounds = 4;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -36,15 +38,16 @@ struct BodyAdvance::Scratch {
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
 BodyAdvance::~BodyAdvance() = default;
 
-/// Carries the cloth and collects candidates. Less inertia in the carry costs candidates, not time: a blocked piece tries that
-/// before it is shortened. Returns the share of the remaining motion that is free.
-double BodyAdvance::plan(const ClothMotion& cloth, double h, double extra_slack, double* beta) {
-  const double fastest = scratch_->candidates.find_near(cloth, h, scratch_->piece);
-  while (true) {
-    scratch_->candidates.carry(cloth, h, *beta, scratch_->piece);
-    const double t = scratch_->candidates.collect(cloth, h, fastest, extra_slack, scratch_->piece);
-    if (t >= 1 || *beta == 0) return t;
-    *beta = *beta > 0.5 ? 0.5 : 0;
+/// Carries the cloth and collects candidates; cloth that would touch is carried as one, which costs candidates and not time. Returns
+/// the share of the motion that is free then.
+double BodyAdvance::plan(const ClothMotion& cloth, double h, double extra_slack) {
+  Scratch& s = *scratch_;
+  const double fastest = s.candidates.find_near(cloth, h, s.piece);
+  s.candidates.carry(cloth, h, s.piece);
+  for (int round = 0;; ++round) {
+    const double t = s.candidates.collect(cloth, h, fastest, extra_slack, s.piece);
+    if (t >= 1 || round == k_joining_rounds) return t;
+    s.candidates.join_blocked(s.piece);
   }
 }
 
@@ -101,7 +104,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   const std::size_t nc = cloth.x.size(), nb = in.body_t0.size();
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
-  double done = 0, beta = 1, share = 1;  // share: of what is left, that this piece takes
+  double done = 0, share = 1;  // share: of what is left, that this piece takes
   int asked = 0;
   piece.extra.clear();
   while (done < 1) {
@@ -118,7 +121,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
       piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
     }
-    const double free = plan(cloth, h, in.extra_slack, &beta);
+    const double free = plan(cloth, h, in.extra_slack);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);

@@ -44,7 +44,7 @@ class BodyAdvance {
 
  private:
   struct Scratch;
-  double plan(const ClothMotion& cloth, double h, double extra_slack, double* beta);
+  double plan(const ClothMotion& cloth, double h, double extra_slack);
   bool solve(const SubstepInput& input, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
              AdvanceReport& report);
 

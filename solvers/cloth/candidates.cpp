@@ -102,9 +102,10 @@ double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMoti
   return fastest;
 }
 
-void Candidates::carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece) {
+void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
+  zones_.clear(static_cast<int>(cloth.x.size()));
   inertia_.resize(cloth.x.size());
-  for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = beta * h * cloth.v[i];
+  for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = h * cloth.v[i];
   piece.carry = inertia_;
   if (near_body_.vertex_face.empty()) return;
   CarryInput input;
@@ -142,20 +143,30 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, d
   finder_.find(boxes_, any_self_, found_);
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
-  const double t = filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face);
-  return std::min(t, filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge));
+  const double t = filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face, blocked_.vertex_face);
+  return std::min(t, filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, blocked_.edge_edge));
+}
+
+void Candidates::join_blocked(PieceMotion& piece) {
+  const auto join = [&](PairKind kind, const std::vector<Stencil>& pairs) {
+    for (const Stencil& s : pairs) zones_.join(kind, s, gather(piece.start, s), gather(piece.all, s));
+  };
+  join(PairKind::k_vertex_face, blocked_.vertex_face);
+  join(PairKind::k_edge_edge, blocked_.edge_edge);
+  zones_.apply(piece.carry);
 }
 
 /// Keeps what can come nearer than the contact radius, and finds the first time of contact among it.
 double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
-                          std::vector<Stencil>& kept) {
+                          std::vector<Stencil>& kept, std::vector<Stencil>& blocked) {
   const std::size_t blocks = block_count(found.size(), k_block);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
   if (kept_.size() < blocks) kept_.resize(blocks);
   earliest_.assign(blocks, 1.0);
   parallel_for(found.size(), k_block, [&](std::size_t begin, std::size_t end) {
     auto& mine = kept_[begin / k_block];
-    mine.clear();
+    mine.pairs.clear();
+    mine.blocked.clear();
     double first = 1;
     for (std::size_t p = begin; p < end; ++p) {
       const std::array<Vec3, 4> x = gather(piece.start, found[p]), d = gather(piece.all, found[p]);
@@ -174,16 +185,20 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;
-      mine.push_back(found[p]);
+      mine.pairs.push_back(found[p]);
       if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
-      first = std::min(first, ccd_time(kind, x, d));
+      const double touch = ccd_time(kind, x, d);
+      if (touch < 1) mine.blocked.push_back(found[p]);
+      first = std::min(first, touch);
     }
     earliest_[begin / k_block] = first;
   });
   kept.clear();
+  blocked.clear();
   double t = 1;
   for (std::size_t b = 0; b < blocks; ++b) {
-    kept.insert(kept.end(), kept_[b].begin(), kept_[b].end());
+    kept.insert(kept.end(), kept_[b].pairs.begin(), kept_[b].pairs.end());
+    blocked.insert(blocked.end(), kept_[b].blocked.begin(), kept_[b].blocked.end());
     t = std::min(t, earliest_[b]);
   }
   return t;

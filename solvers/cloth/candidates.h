@@ -9,6 +9,7 @@
 #include "solvers/cloth/body_advance.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
+#include "solvers/cloth/motion_zones.h"
 
 namespace ft {
 
@@ -28,10 +29,12 @@ class Candidates {
 
   /// Finds the surfaces near the cloth for carry(). Returns the largest body motion near the cloth, relative to the cloth's mean [m].
   double find_near(const ClothMotion& cloth, double h, const PieceMotion& piece);
-  /// Fills piece.carry: near the body its motion, else beta times the cloth's own. After find_near().
-  void carry(const ClothMotion& cloth, double h, double beta, PieceMotion& piece);
+  /// Fills piece.carry: near the body its motion, else the cloth's own. After find_near(); forgets zones.
+  void carry(const ClothMotion& cloth, double h, PieceMotion& piece);
   /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
   double collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece);
+  /// After a collect() that gave less than 1: carries the cloth of the pairs that would touch as one.
+  void join_blocked(PieceMotion& piece);
   /// Takes out the pairs that touch within `share` of the motion: cloth vertices are let through the collider's part (noted in
   /// cloth.released; returns how many), pairs of cloth with cloth are only dropped.
   int release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth);
@@ -42,7 +45,7 @@ class Candidates {
   bool counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const;
   int part_of(const Stencil& stencil) const;
   double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
-                std::vector<Stencil>& kept);
+                std::vector<Stencil>& kept, std::vector<Stencil>& blocked);
 
   const ClothModel& model_;
   PairFinder finder_;
@@ -53,7 +56,12 @@ class Candidates {
   ContactPairs found_, near_body_, pairs_;
   std::vector<Vec3> inertia_;
   std::vector<double> earliest_;
-  std::vector<std::vector<Stencil>> kept_;
+  struct Kept {
+    std::vector<Stencil> pairs, blocked;
+  };
+  std::vector<Kept> kept_;
+  ContactPairs blocked_;
+  MotionZones zones_;
 };
 
 }  // namespace ft

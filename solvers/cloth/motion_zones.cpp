@@ -1,0 +1,67 @@
+#include "solvers/cloth/motion_zones.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ft {
+
+void MotionZones::clear(int cloth_vertex_count) {
+  parent_.resize(at(cloth_vertex_count));
+  std::iota(parent_.begin(), parent_.end(), 0);
+  body_.clear();
+}
+
+int MotionZones::root(int vertex) const {
+  while (parent_[at(vertex)] != vertex) vertex = parent_[at(vertex)];
+  return vertex;
+}
+
+void MotionZones::join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& d) {
+  const int n = static_cast<int>(parent_.size());
+  int first = -1;
+  for (const int v : stencil.v) {
+    if (v >= n) continue;
+    const int own = root(v);
+    if (first < 0) first = own;
+    // The smaller number stays root: zones do not depend on the order of joining.
+    const int low = std::min(first, own), high = std::max(first, own);
+    parent_[at(high)] = low;
+    first = low;
+  }
+  if (first < 0) return;
+  const PairGeometry g = pair_geometry(kind, x);
+  Vec3 motion = Vec3::Zero();
+  double weight = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (stencil.v[k] >= n) motion += std::abs(g.weight[k]) * d[k], weight += std::abs(g.weight[k]);
+  if (weight > 0) body_.push_back({first, motion / weight});
+}
+
+void MotionZones::apply(std::span<Vec3> motion) const {
+  struct Sum {
+    Vec3 body = Vec3::Zero(), own = Vec3::Zero();
+    int contacts = 0, vertices = 0;
+  };
+  std::vector<Sum> sums(parent_.size());
+  std::vector<int> roots(parent_.size());
+  for (std::size_t v = 0; v < roots.size(); ++v) {
+    roots[v] = root(static_cast<int>(v));
+    Sum& s = sums[at(roots[v])];
+    s.own += motion[v];
+    ++s.vertices;
+  }
+  for (const BodyMotion& b : body_) {
+    Sum& s = sums[at(roots[at(b.vertex)])];
+    s.body += b.motion;
+    ++s.contacts;
+  }
+  for (std::size_t v = 0; v < roots.size(); ++v) {
+    const Sum& s = sums[at(roots[v])];
+    if (s.contacts > 0)
+      motion[v] = s.body / s.contacts;
+    else if (s.vertices > 1)
+      motion[v] = s.own / s.vertices;
+  }
+}
+
+}  // namespace ft
