@@ -2,13 +2,15 @@
 #include <limits>
 
 #include "baker/checkpoint.h"
-#include "baker/core/random.h"
 #include "baker/manifest.h"
 #include "baker/report_json.h"
 #include "tests/baker/fake_bake.h"
+#include "tests/support/damage.h"
 
 namespace ft::test {
 namespace {
+
+using namespace std::string_view_literals;
 
 FrameReport example_report(int frame) {
   FrameReport r;
@@ -56,16 +58,12 @@ TEST(Checkpoint, Comes_back_bit_for_bit) {
 
 TEST(Checkpoint, Cut_at_any_byte_is_refused) {
   const Bytes bytes = save(example_checkpoint());
-  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(load_checkpoint(std::span(bytes).first(n))) << n;
+  for_each_cut(bytes, [](auto cut, std::size_t size) { EXPECT_FALSE(load_checkpoint(cut)) << size; });
 }
 
 TEST(Checkpoint, Any_flipped_bit_is_refused) {
   const Bytes bytes = save(example_checkpoint());
-  for (std::size_t n = 0; n < bytes.size(); ++n) {
-    Bytes bad = bytes;
-    bad[n] ^= std::byte{static_cast<unsigned char>(1u << (n % 8))};
-    EXPECT_FALSE(load_checkpoint(bad)) << n;
-  }
+  for_each_flipped_bit(bytes, [](const Bytes& bad, std::size_t bit) { EXPECT_FALSE(load_checkpoint(bad)) << bit; });
 }
 
 TEST(Checkpoint, Lies_behind_a_good_hash_are_refused) {
@@ -124,11 +122,9 @@ TEST(Manifest, Cut_or_mutated_text_is_read_or_refused_and_never_crashes) {
   ASSERT_EQ(scene.run().exit_code, 0);
   const std::string good = scene.manifest_text();
   for (std::size_t n = 0; n + 2 < good.size(); ++n) EXPECT_FALSE(manifest_from_text(good.substr(0, n), "m")) << n;
+  const TextDamage damage{"0123456789.-+eE\"\\{}[],: \nutrefalsn\x00\x7f\xff"sv, 3, 20};
   for (std::uint64_t i = 0; i < 3000; ++i) {
-    std::string bad = good;
-    for (std::uint64_t k = 0; k < 3; ++k)
-      bad[static_cast<std::size_t>(random_uniform({7, 1, i, k}) * static_cast<double>(bad.size()))] = static_cast<char>(random_bits({7, 2, i, k}) % 128);
-    auto manifest = manifest_from_text(bad, "m");
+    auto manifest = manifest_from_text(damaged(good, damage, i), "m");
     if (manifest) (void)to_text(*manifest);
   }
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/damage.h"
+
 namespace ft {
 namespace {
 
@@ -24,16 +26,12 @@ TEST(State, Saved_state_loads_equal) {
 
 TEST(State, Checkpoint_cut_at_any_byte_is_refused) {
   const Bytes data = save(example());
-  for (std::size_t n = 0; n < data.size(); ++n) EXPECT_FALSE(load_state(std::span(data).first(n))) << n;
+  test::for_each_cut(data, [](auto cut, std::size_t size) { EXPECT_FALSE(load_state(cut)) << size; });
 }
 
 TEST(State, Checkpoint_with_any_flipped_bit_is_refused) {
   const Bytes data = save(example());
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    Bytes bad = data;
-    bad[i] ^= std::byte{0x10};
-    EXPECT_FALSE(load_state(bad)) << i;
-  }
+  test::for_each_flipped_bit(data, [](const Bytes& bad, std::size_t bit) { EXPECT_FALSE(load_state(bad)) << bit; });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "baker/core/random.h"
 #include "io/import/character.h"
+#include "tests/support/damage.h"
 
 namespace ft {
 namespace {
@@ -44,16 +45,12 @@ TEST(Character_bytes, Give_back_what_was_saved) {
 
 TEST(Character_bytes, Cut_at_any_byte_are_refused) {
   const Bytes bytes = save_character(small_character());
-  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(load_character_bytes({bytes.data(), size})) << size;
+  test::for_each_cut(bytes, [](auto cut, std::size_t size) { EXPECT_FALSE(load_character_bytes(cut)) << size; });
 }
 
 TEST(Character_bytes, With_any_bit_flipped_are_refused) {
   const Bytes bytes = save_character(small_character());
-  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
-    Bytes damaged = bytes;
-    damaged[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
-    EXPECT_FALSE(load_character_bytes(damaged)) << bit;
-  }
+  test::for_each_flipped_bit(bytes, [](const Bytes& damaged, std::size_t bit) { EXPECT_FALSE(load_character_bytes(damaged)) << bit; });
 }
 
 /// What a hostile child could write: right hash, wrong content.

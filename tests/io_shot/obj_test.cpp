@@ -9,9 +9,12 @@
 #include "baker/core/random.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
+#include "tests/support/damage.h"
 
 namespace ft {
 namespace {
+
+using namespace std::string_view_literals;
 
 const char* const k_good =
     "# a strip\n"
@@ -165,26 +168,10 @@ TEST(Obj, Cut_at_any_byte_is_a_sound_mesh_or_a_fault) {
 
 TEST(Obj, Ten_thousand_mutations_are_sound_meshes_or_faults) {
   const std::string good = k_good;
-  const std::string_view alphabet = "0123456789.-+eE/\\ \nvfgtn#x\r\t\x00\xff";
+  const test::TextDamage damage{"0123456789.-+eE/\\ \nvfgtn#x\r\t\x00\xff"sv, 6, 20};
   int accepted = 0;
   for (std::uint64_t round = 0; round < 10'000; ++round) {
-    std::string text = good;
-    const RandomKey key{.seed = 7, .frame = round};
-    const int edits = 1 + static_cast<int>(random_uniform(key, 0) * 6);
-    for (int e = 0; e < edits; ++e) {
-      const std::uint64_t draw = 10 + 4 * static_cast<std::uint64_t>(e);
-      const std::size_t at = static_cast<std::size_t>(random_uniform(key, draw) * static_cast<double>(text.size()));
-      const char c =
-          alphabet[static_cast<std::size_t>(random_uniform(key, draw + 1) * static_cast<double>(alphabet.size()))];
-      const double kind = random_uniform(key, draw + 2);
-      if (kind < 0.5)
-        text[at] = c;
-      else if (kind < 0.75)
-        text.insert(text.begin() + static_cast<std::ptrdiff_t>(at), c);
-      else
-        text.erase(at, 1 + static_cast<std::size_t>(random_uniform(key, draw + 3) * 20));
-    }
-    const auto mesh = parse_obj(text, "mutated.obj");
+    const auto mesh = parse_obj(test::damaged(good, damage, round), "mutated.obj");
     if (mesh) expect_sound(*mesh), ++accepted;
   }
   // Both outcomes occur, or the mutations would test nothing.

@@ -1,8 +1,10 @@
-#include "baker/core/random.h"
 #include "tests/io_shot/shot_fixture.h"
+#include "tests/support/damage.h"
 
 namespace ft {
 namespace {
+
+using namespace std::string_view_literals;
 
 TEST_F(ShotFile, Cut_at_any_byte_is_a_shot_or_faults) {
   const std::string_view text = k_good;
@@ -14,26 +16,10 @@ TEST_F(ShotFile, Cut_at_any_byte_is_a_shot_or_faults) {
 
 TEST_F(ShotFile, Mutations_are_shots_or_faults) {
   const std::string good = k_good;
-  const std::string_view alphabet = "[]{}=\"'.,-0159eE\n #_\\+:\x00\xff\xc3zinfNaT";
+  const test::TextDamage damage{"[]{}=\"'.,-0159eE\n #_\\+:\x00\xff\xc3zinfNaT"sv, 4, 30};
   int accepted = 0;
   for (std::uint64_t round = 0; round < 3'000; ++round) {
-    std::string text = good;
-    const RandomKey key{.seed = 11, .frame = round};
-    const int edits = 1 + static_cast<int>(random_uniform(key, 0) * 4);
-    for (int e = 0; e < edits; ++e) {
-      const std::uint64_t draw = 10 + 4 * static_cast<std::uint64_t>(e);
-      const std::size_t at = static_cast<std::size_t>(random_uniform(key, draw) * static_cast<double>(text.size()));
-      const char c =
-          alphabet[static_cast<std::size_t>(random_uniform(key, draw + 1) * static_cast<double>(alphabet.size()))];
-      const double kind = random_uniform(key, draw + 2);
-      if (kind < 0.4)
-        text[at] = c;
-      else if (kind < 0.7)
-        text.insert(text.begin() + static_cast<std::ptrdiff_t>(at), c);
-      else
-        text.erase(at, 1 + static_cast<std::size_t>(random_uniform(key, draw + 3) * 30));
-    }
-    const auto shot = parse(text);
+    const auto shot = parse(test::damaged(good, damage, round));
     ASSERT_EQ(shot.ok(), faults_.messages.empty());
     ASSERT_TRUE(shot.ok() ? !canonical(*shot).empty() : !shot.error().what.empty());
     accepted += shot.ok() ? 1 : 0;
@@ -42,20 +28,11 @@ TEST_F(ShotFile, Mutations_are_shots_or_faults) {
 }
 
 TEST_F(ShotFile, Mutated_overrides_are_taken_or_refused) {
-  const std::string_view alphabet = "[]{}=\"'.,-019e# \\\n\x00\xff";
+  const test::TextDamage damage{"[]{}=\"'.,-019e# \\\n\x00\xff"sv, 3, 1};
   int accepted = 0;
   for (std::uint64_t round = 0; round < 2'000; ++round) {
-    std::string text = round % 2 == 0 ? "cloth.dress.fabric=denim" : "cloth.cape.pins=[{within=0.02}]";
-    const RandomKey key{.seed = 5, .frame = round};
-    for (std::uint64_t e = 0; e < 1 + round % 3; ++e) {
-      const std::size_t at = static_cast<std::size_t>(random_uniform(key, 3 * e) * static_cast<double>(text.size()));
-      const char c =
-          alphabet[static_cast<std::size_t>(random_uniform(key, 3 * e + 1) * static_cast<double>(alphabet.size()))];
-      if (random_uniform(key, 3 * e + 2) < 0.5)
-        text[at] = c;
-      else
-        text.erase(at, 1);
-    }
+    const std::string good = round % 2 == 0 ? "cloth.dress.fabric=denim" : "cloth.cape.pins=[{within=0.02}]";
+    const std::string text = test::damaged(good, damage, round);
     const auto shot = parse(k_good, {text});
     ASSERT_EQ(shot.ok(), faults_.messages.empty()) << text;
     for (const std::string& message : faults_.messages) ASSERT_TRUE(message.starts_with("--set ")) << message;
