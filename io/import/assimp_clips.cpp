@@ -35,24 +35,10 @@ Track read_track(const Key* keys, unsigned count, int width, double seconds_per_
   return track;
 }
 
-/// One node's transform at any time: rest, with what the channel has put over it.
-Mat4 sample_channel(const Channel& channel, const Mat4& rest, double time) {
+/// One node's matrix at any time; rest where no channel moves it.
+Mat4 sample_node(const Channel& channel, const Mat4& rest, double time) {
   if (channel.node < 0) return rest;
-  NodeTransform transform = decompose(rest);
-  double v[4];
-  if (!channel.translation.empty()) {
-    sample_track(channel.translation, time, false, v);
-    transform.translation = Vec3(v[0], v[1], v[2]);
-  }
-  if (!channel.rotation.empty()) {
-    sample_track(channel.rotation, time, true, v);
-    transform.rotation = Quat(v[3], v[0], v[1], v[2]);
-  }
-  if (!channel.scale.empty()) {
-    sample_track(channel.scale, time, false, v);
-    transform.stretch = Vec3(v[0], v[1], v[2]).asDiagonal();
-  }
-  return transform.matrix();
+  return sample_channel(channel, decompose(rest), time).matrix();
 }
 
 Mat4 matrix(const aiMatrix4x4& m) {
@@ -79,7 +65,7 @@ Channel collapse(const std::vector<int>& chain, const AssimpNodes& nodes, const 
     Mat4 product = Mat4::Identity();
     for (const int raw : chain) {
       const auto index = static_cast<std::size_t>(raw);
-      product = product * sample_channel(of_raw[index], matrix(nodes.raw[index]->mTransformation), time);
+      product = product * sample_node(of_raw[index], matrix(nodes.raw[index]->mTransformation), time);
     }
     if (!product.allFinite()) product.setConstant(std::numeric_limits<double>::quiet_NaN());  // refused by the check
     const NodeTransform parts = product.allFinite() ? decompose(product) : NodeTransform{product.topRightCorner<3, 1>(), {}, {}};

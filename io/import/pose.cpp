@@ -92,6 +92,24 @@ void sample_track(const Track& track, double time, bool rotation, std::span<doub
   if (rotation) put(quaternion(out.data()), out);
 }
 
+NodeTransform sample_channel(const Channel& channel, const NodeTransform& rest, double time) {
+  NodeTransform out = rest;
+  std::array<double, 4> v{};
+  if (!channel.translation.empty()) {
+    sample_track(channel.translation, time, false, v);
+    out.translation = Vec3(v[0], v[1], v[2]);
+  }
+  if (!channel.rotation.empty()) {
+    sample_track(channel.rotation, time, true, v);
+    out.rotation = Quat(v[3], v[0], v[1], v[2]);
+  }
+  if (!channel.scale.empty()) {
+    sample_track(channel.scale, time, false, v);
+    out.stretch = Vec3(v[0], v[1], v[2]).asDiagonal();
+  }
+  return out;
+}
+
 ClipPose::ClipPose(const Character& character, const Clip* clip) {
   morph_start_.push_back(0);
   for (const CharacterNode& node : character.nodes) {
@@ -111,23 +129,7 @@ void ClipPose::sample(double time, std::span<Mat4> locals, std::span<double> mor
   for (const Moving& moving : moving_) {
     const Channel& c = moving.channel;
     const auto node = static_cast<std::size_t>(c.node);
-    if (!c.translation.empty() || !c.rotation.empty() || !c.scale.empty()) {
-      NodeTransform transform = moving.rest;
-      std::array<double, 4> v{};
-      if (!c.translation.empty()) {
-        sample_track(c.translation, time, false, v);
-        transform.translation = Vec3(v[0], v[1], v[2]);
-      }
-      if (!c.rotation.empty()) {
-        sample_track(c.rotation, time, true, v);
-        transform.rotation = Quat(v[3], v[0], v[1], v[2]);
-      }
-      if (!c.scale.empty()) {
-        sample_track(c.scale, time, false, v);
-        transform.stretch = Vec3(v[0], v[1], v[2]).asDiagonal();
-      }
-      locals[node] = transform.matrix();
-    }
+    if (!c.translation.empty() || !c.rotation.empty() || !c.scale.empty()) locals[node] = sample_channel(c, moving.rest, time).matrix();
     if (!c.weights.empty()) {
       weights.resize(static_cast<std::size_t>(c.weights.width));
       sample_track(c.weights, time, false, weights);

@@ -25,6 +25,9 @@ NodeTransform blend(const NodeTransform& a, const NodeTransform& b, double weigh
 /// Value of a track at a time [s] into out (width numbers). Rotations come out with unit length.
 void sample_track(const Track& track, double time, bool rotation, std::span<double> out);
 
+/// A node's transform at a time: rest, with what the channel's tracks have put over it.
+NodeTransform sample_channel(const Channel& channel, const NodeTransform& rest, double time);
+
 /// All that moves in one clip, ready to be sampled at any time; thread-safe.
 class ClipPose {
  public:

@@ -6,32 +6,22 @@
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
 #include "io/shot/mesh_file.h"
+#include "tests/support/scripted_body.h"
 
 namespace ft::test {
 namespace {
 
 /// A box of 1 m that bobs.
-class BoxTrajectory final : public Trajectory {
- public:
-  explicit BoxTrajectory(double preroll) : preroll_(preroll) {
-    for (int i = 0; i < 8; ++i) corners_.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
-    surface_.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    surface_.part_of_vertex.assign(8, 0);
-    surface_.parts = {{"box", -1, 1.0}};
-  }
-  const Surface& surface() const override { return surface_; }
-  void bind_pose(std::span<Vec3> x) const override { std::copy(corners_.begin(), corners_.end(), x.begin()); }
-  void sample(double time, std::span<Vec3> x) const override {
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = corners_[i] + Vec3(0, 0.1 * std::sin(3 * time), 0);
-  }
-  Eigen::Isometry3d bind_to_start() const override { return Eigen::Isometry3d::Identity(); }
-  double preroll() const override { return preroll_; }
-
- private:
-  Surface surface_;
-  std::vector<Vec3> corners_;
-  double preroll_;
-};
+std::unique_ptr<Trajectory> bobbing_box(double preroll) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
+  Surface surface;
+  surface.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  surface.parts = {{"box", -1, 1.0}};
+  return std::make_unique<ScriptedBody>(std::move(surface), std::move(corners), preroll, [](double time, std::span<Vec3> x) {
+    for (Vec3& p : x) p += Vec3(0, 0.1 * std::sin(3 * time), 0);
+  });
+}
 
 class FakeSolver final : public Solver {
  public:
@@ -115,7 +105,7 @@ BakeOptions FakeScene::options() const {
 BakeServices FakeScene::services(FakeBehaviour behaviour) const {
   return {[](const ImportRequest& request) -> Result<ImportedPrimary> {
             ImportedPrimary out;
-            out.trajectory = std::make_unique<BoxTrajectory>(request.preroll);
+            out.trajectory = bobbing_box(request.preroll);
             out.info.bind_bounds.include(Vec3::Zero());
             out.info.bind_bounds.include(Vec3::Ones());
             return out;
