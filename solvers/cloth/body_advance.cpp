@@ -40,12 +40,12 @@ BodyAdvance::~BodyAdvance() = default;
 
 /// Carries the cloth and collects candidates; cloth that would touch is carried as one, which costs candidates and not time. Returns
 /// the share of the motion that is free then.
-double BodyAdvance::plan(const ClothMotion& cloth, double h, double extra_slack) {
+double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   Scratch& s = *scratch_;
   const double fastest = s.candidates.find_near(cloth, h, s.piece);
   s.candidates.carry(cloth, h, s.piece);
   for (int round = 0;; ++round) {
-    const double t = s.candidates.collect(cloth, h, fastest, extra_slack, s.piece);
+    const double t = s.candidates.collect(cloth, h, fastest, s.piece);
     if (t >= 1 || round == k_joining_rounds) return t;
     s.candidates.join_blocked(s.piece);
   }
@@ -121,7 +121,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
       piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
     }
-    const double free = plan(cloth, h, in.extra_slack);
+    const double free = plan(cloth, h);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);

@@ -26,7 +26,6 @@ struct SubstepInput {
   double h = 0;                                 ///< s
   double time_t0 = 0;                           ///< s
   double shortest = 0;                          ///< pieces shorter than this [s] make the walk release
-  double extra_slack = 0;                       ///< m, added to every vertex's slack after a rewind
 };
 
 struct AdvanceReport {
@@ -44,7 +43,7 @@ class BodyAdvance {
 
  private:
   struct Scratch;
-  double plan(const ClothMotion& cloth, double h, double extra_slack);
+  double plan(const ClothMotion& cloth, double h);
   bool solve(const SubstepInput& input, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
              AdvanceReport& report);
 

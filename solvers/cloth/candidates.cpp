@@ -120,7 +120,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   carry_field(input, piece.carry);
 }
 
-double Candidates::collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece) {
+double Candidates::collect(const ClothMotion& cloth, double h, double fastest, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   const double gravity = model_.setup.gravity.norm();
   Vec3 frame = Vec3::Zero();
@@ -129,7 +129,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, d
   boxes_.resize(nc + nb);
   for (std::size_t i = 0; i < nc; ++i) {
     piece.slack[i] = 1.2 * (h * cloth.v[i] - piece.carry[i]).norm() + 0.6 * h * h * gravity + 3e-4 +
-                     0.03 * std::min(fastest, k_farthest_range) + extra_slack;
+                     0.03 * std::min(fastest, k_farthest_range);
     // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
     if (cloth.h_previous > 0)
       piece.slack[i] += std::min(1.5 * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(), k_most_expected);

@@ -32,7 +32,7 @@ class Candidates {
   /// Fills piece.carry: near the body its motion, else the cloth's own. After find_near(); forgets zones.
   void carry(const ClothMotion& cloth, double h, PieceMotion& piece);
   /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
-  double collect(const ClothMotion& cloth, double h, double fastest, double extra_slack, PieceMotion& piece);
+  double collect(const ClothMotion& cloth, double h, double fastest, PieceMotion& piece);
   /// After a collect() that gave less than 1: carries the cloth of the pairs that would touch as one.
   void join_blocked(PieceMotion& piece);
   /// Takes out the pairs that touch within `share` of the motion: cloth vertices are let through the collider's part (noted in

@@ -2,7 +2,7 @@
 //   collider at both ends -> substeps from the body's speed near the cloth
 //     per substep: collider and pins at its end -> BodyAdvance (carry, CCD, Newton, truncation)
 //   certificate.cpp: exact crossings; any that released cloth does not explain: back to the frame's start, twice the substeps,
-//   more slack, at most three times
+//   at most three times and as long as it helps
 //   parts that no cloth touches any more hold the cloth again; report
 #include "solvers/cloth/cloth_solver.h"
 
@@ -99,7 +99,7 @@ class ClothSolver final : public Solver {
 
  private:
   struct Frame;
-  void walk(const Frame& frame, int substeps, double extra_slack, ClothMotion& motion, FrameReport& report) const;
+  void walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
 
   std::unique_ptr<ClothModel> model_;
@@ -183,7 +183,7 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
   return std::clamp(static_cast<int>(std::ceil(fastest / (4 * radius))), setup.min_substeps, setup.max_substeps);
 }
 
-void ClothSolver::walk(const Frame& frame, int substeps, double extra_slack, ClothMotion& m, FrameReport& report) const {
+void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
   std::vector<Vec3> drawn = frame.drawn_t0, body = frame.body_t0, body_next, pins(model_->pins.size()), pins_next(pins.size());
   pin_targets(*model_, drawn, pins);
@@ -209,7 +209,6 @@ void ClothSolver::walk(const Frame& frame, int substeps, double extra_slack, Clo
     in.h = h;
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
-    in.extra_slack = extra_slack;
     if (k > 0 && any_tangled(m.tangled)) mark_tangled(*model_, own_crossings(*model_, m.x), m.tangled);
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;
@@ -261,19 +260,20 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     report.rewinds = attempt;
     report.smallest_gap = std::numeric_limits<double>::infinity();
     report.profile = spent;
-    walk(frame, substeps << attempt, attempt * 2e-3, motion, report);
+    walk(frame, substeps << attempt, motion, report);
     if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
     const int avoidable = certify(*model_, frame.body_t1, motion, report);
     report.profile.certificate += elapsed(certificate);
     spent = report.profile;
     const int score = report.finite ? avoidable : std::numeric_limits<int>::max();
-    if (fewest < 0 || score < fewest) {
+    const bool better = fewest < 0 || score < fewest;
+    if (better) {
       fewest = score;
       best_report = report;
       best = motion;
     }
-    if (score == 0) break;
+    if (score == 0 || !better) break;
   }
   report = std::move(best_report);
   motion = std::move(best);

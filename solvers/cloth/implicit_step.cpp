@@ -193,7 +193,12 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       if (!accepted) ++result.backtracks;
       result.last_move = step;
     }
-    std::copy_n(s.trial.begin(), n, s.all.begin());
+    if (accepted) {
+      std::copy_n(s.trial.begin(), n, s.all.begin());
+    } else {
+      s.contact.update(s.all);  // nothing in this direction goes down: what there is is the answer
+      result.last_move = 0;
+    }
     result.seconds_contact += watch.lap();
     if (result.last_move < k_still * smallest_radius) break;
   }
