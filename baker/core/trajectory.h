@@ -27,7 +27,8 @@ struct Surface {
 };
 
 /// Times are seconds from the first frame of the shot. t < 0 is the pre-roll: at t <= -preroll the bind pose, placed where the
-/// first frame has the character (position and heading), from there blended into the pose at t = 0.
+/// first frame has the character (position and heading), from there blended into the pose at t = 0. A character that enters the
+/// shot at speed starts further back and picks the speed up towards t = 0.
 class Trajectory {
  public:
   virtual ~Trajectory() = default;

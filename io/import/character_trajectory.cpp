@@ -4,14 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/import/run_up.h"
+
 namespace ft {
-namespace {
-
-/// Share of the pre-roll that is spent blending; the rest holds the first frame's pose, so that garments settle in it.
-constexpr double k_blend_share = 0.6;
-
-}  // namespace
-
 double heading(const Mat3& rotation) {
   const Quat q(rotation);
   if (q.w() * q.w() + q.y() * q.y() < 0.02) return 0;
@@ -32,6 +27,13 @@ CharacterTrajectory::CharacterTrajectory(std::shared_ptr<const Character> charac
   const NodeTransform from = decompose(placement_ * bind_.globals[p]), to = decompose(placement_ * globals[p]);
   bind_to_start_.linear() = Eigen::AngleAxisd(heading((to.rotation * from.rotation.inverse()).toRotationMatrix()), Vec3::UnitY()).toRotationMatrix();
   bind_to_start_.translation() = to.translation - bind_to_start_.linear() * from.translation;
+
+  std::vector<double> morphs(start_morphs_.size());
+  std::vector<Mat4> later(nodes.size());
+  pose_.sample(playback_.start + k_speed_interval * playback_.speed, later, morphs);
+  std::vector<Mat4> later_globals(nodes.size());
+  globals_from_locals(nodes, later, later_globals);
+  start_velocity_ = (decompose(placement_ * later_globals[p]).translation - to.translation) / k_speed_interval;
 
   const Mat4 moved = placement_.inverse() * bind_to_start_.matrix() * placement_;
   std::vector<char> below(nodes.size(), 0);
@@ -65,6 +67,10 @@ void CharacterTrajectory::globals_at(double time, std::vector<Mat4>& globals, st
   for (std::size_t k = 0; k < morphs.size(); ++k) morphs[k] = rest[k] + weight * (start_morphs_[k] - rest[k]);
 }
 
+Eigen::Isometry3d CharacterTrajectory::bind_to_start() const {
+  return Eigen::Translation3d(run_up_offset(start_velocity_, -playback_.preroll, playback_.preroll)) * bind_to_start_;
+}
+
 void CharacterTrajectory::bind_pose(std::span<Vec3> positions) const {
   deform(skin_, placement_, bind_.globals, pose_.rest_morphs(), positions);
 }
@@ -74,6 +80,9 @@ void CharacterTrajectory::sample(double time, std::span<Vec3> positions) const {
   std::vector<double> morphs;
   globals_at(time, globals, morphs);
   deform(skin_, placement_, globals, morphs, positions);
+  const Vec3 offset = run_up_offset(start_velocity_, time, playback_.preroll);
+  if (offset != Vec3::Zero())
+    for (Vec3& p : positions) p += offset;
 }
 
 }  // namespace ft

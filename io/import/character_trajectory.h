@@ -1,4 +1,4 @@
-// A character playing a clip, as a Trajectory: pose of the nodes at the shot's time, pre-roll blend from the bind pose, skin.
+// A character playing a clip, as a Trajectory: pose of the nodes at the shot's time, pre-roll blend from the bind pose, run-up, skin.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ class CharacterTrajectory : public Trajectory {
   const Surface& surface() const override { return skin_.surface; }
   void bind_pose(std::span<Vec3> positions) const override;
   void sample(double time, std::span<Vec3> positions) const override;
-  Eigen::Isometry3d bind_to_start() const override { return bind_to_start_; }
+  Eigen::Isometry3d bind_to_start() const override;
   double preroll() const override { return playback_.preroll; }
 
   const Skin& skin() const { return skin_; }
@@ -48,6 +48,7 @@ class CharacterTrajectory : public Trajectory {
   };
   std::vector<Blend> blends_;
   std::vector<double> start_morphs_;
+  Vec3 start_velocity_ = Vec3::Zero();  ///< of the pelvis at the first frame, in the world [m/s]
 };
 
 /// Heading: the turn about Y that is in a rotation; 0 when it is upside down.

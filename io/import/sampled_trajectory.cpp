@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "baker/core/parallel.h"
+#include "io/import/run_up.h"
 
 namespace ft {
 namespace {
@@ -46,6 +47,10 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
     : cache_(std::move(cache)), linear_(unit_scale * axes), playback_(playback) {
   std::vector<Vec3> positions(static_cast<std::size_t>(cache_.vertex_count));
   at(playback_.start, positions);
+  std::vector<Vec3> later(positions.size());
+  at(playback_.start + k_speed_interval * playback_.speed, later);
+  for (std::size_t v = 0; v < later.size(); ++v) start_velocity_ += (later[v] - positions[v]) / k_speed_interval;
+  if (!later.empty()) start_velocity_ /= static_cast<double>(later.size());
   for (const Triangle& t : triangulate(cache_.mesh))
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) surface_.triangles.push_back(t);
   int pieces = 0;
@@ -66,8 +71,17 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
     if (p != largest) surface_.parts[static_cast<std::size_t>(p)].parent = largest;
 }
 
+Eigen::Isometry3d SampledTrajectory::bind_to_start() const {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.translation() = run_up_offset(start_velocity_, -playback_.preroll, playback_.preroll);
+  return out;
+}
+
 void SampledTrajectory::sample(double time, std::span<Vec3> positions) const {
   at(playback_.start + std::max(time, 0.0) * playback_.speed, positions);
+  const Vec3 offset = run_up_offset(start_velocity_, time, playback_.preroll);
+  if (offset != Vec3::Zero())
+    for (Vec3& p : positions) p += offset;
 }
 
 void SampledTrajectory::at(double time, std::span<Vec3> positions) const {

@@ -15,7 +15,7 @@ class SampledTrajectory : public Trajectory {
   const Surface& surface() const override { return surface_; }
   void bind_pose(std::span<Vec3> positions) const override { at(playback_.start, positions); }
   void sample(double time, std::span<Vec3> positions) const override;
-  Eigen::Isometry3d bind_to_start() const override { return Eigen::Isometry3d::Identity(); }
+  Eigen::Isometry3d bind_to_start() const override;
   double preroll() const override { return playback_.preroll; }
 
  private:
@@ -25,6 +25,7 @@ class SampledTrajectory : public Trajectory {
   Surface surface_;
   Mat3 linear_;
   Playback playback_;
+  Vec3 start_velocity_ = Vec3::Zero();  ///< mean over the vertices at the first frame [m/s]
 };
 
 /// Pieces of a surface that are not joined by triangles: one index per vertex, numbered by first vertex; vertices without
