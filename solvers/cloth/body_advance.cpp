@@ -69,6 +69,7 @@ bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.all_start = s.piece.start;
   step.all_begin = s.end;
   step.pin_target = s.pins;
+  step.push = in.push;
   step.slack = s.piece.slack;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations * (shortened ? k_shortened_newton : 1);

@@ -15,6 +15,7 @@
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/tangles.h"
+#include "solvers/cloth/untangle.h"
 
 namespace ft {
 namespace {
@@ -186,6 +187,7 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
 void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
   std::vector<Vec3> drawn = frame.drawn_t0, body = frame.body_t0, body_next, pins(model_->pins.size()), pins_next(pins.size());
+  std::vector<Vec3> push;
   pin_targets(*model_, drawn, pins);
   for (int k = 0; k < substeps; ++k) {
     const double t0 = frame.t0 + k * h;
@@ -209,7 +211,13 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     in.h = h;
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
-    if (k > 0 && any_tangled(m.tangled)) mark_tangled(*model_, own_crossings(*model_, m.x), m.tangled);
+    if (any_tangled(m.tangled)) {
+      const std::vector<Crossing> crossings = own_crossings(*model_, m.x);
+      mark_tangled(*model_, crossings, m.tangled);
+      push.resize(m.x.size());
+      untangling(m.x, model_->triangles, crossings, push);
+      in.push = push;
+    }
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;

@@ -95,6 +95,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   for (std::size_t i = 0; i < n; ++i)
     s.y[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i]) +
              bh * bh * model_.setup.gravity;
+  for (std::size_t i = 0; i < in.push.size(); ++i) s.y[i] += bh * bh * in.push[i];
   s.all.assign(in.all_begin.begin(), in.all_begin.end());
   s.trial = s.all;
   s.gradient.resize(n);

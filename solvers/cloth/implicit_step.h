@@ -28,6 +28,7 @@ struct StepInput {
   std::span<const Vec3> all_begin;                 ///< carried cloth and body at the end of the step
   std::span<const Vec3> pin_target;                ///< per pin, at the end of the step
   std::span<const double> slack;                   ///< how far each cloth vertex may go from all_begin [m]
+  std::span<const Vec3> push;                      ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
   const ContactPairs* pairs = nullptr;             ///< complete within the slack
   int newton_iterations = 3;
 };
