@@ -12,7 +12,15 @@ namespace {
 
 constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
-constexpr double k_most_expected = 2e-3;   ///< slack for acceleration that is given unasked [m]
+
+// How far the solve may take a vertex from its carried place. Too little holds cloth back (it then asks for more and is solved
+// anew), too much costs candidates: a share above 1 of each cause that is known beforehand, and a little for all others.
+constexpr double k_slack_inertia = 1.2;        ///< of the way from the carried place to where the vertex would fly
+constexpr double k_slack_gravity = 0.6;        ///< of h2 g; free fall takes 0.5
+constexpr double k_slack_acceleration = 1.5;   ///< of what the acceleration of the last step makes in this one
+constexpr double k_most_acceleration = 2e-3;   ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
+constexpr double k_slack_body = 0.03;          ///< of the body's motion near the cloth: rubbing and the carry's own error
+constexpr double k_slack_least = 3e-4;         ///< m
 
 /// Collider triangles in the common numbering.
 std::vector<Triangle> shifted_triangles(const ClothModel& model) {
@@ -128,11 +136,12 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, P
   piece.slack.resize(nc);
   boxes_.resize(nc + nb);
   for (std::size_t i = 0; i < nc; ++i) {
-    piece.slack[i] = 1.2 * (h * cloth.v[i] - piece.carry[i]).norm() + 0.6 * h * h * gravity + 3e-4 +
-                     0.03 * std::min(fastest, k_farthest_range);
+    piece.slack[i] = k_slack_inertia * (h * cloth.v[i] - piece.carry[i]).norm() + k_slack_gravity * h * h * gravity +
+                     k_slack_body * std::min(fastest, k_farthest_range) + k_slack_least;
     // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
     if (cloth.h_previous > 0)
-      piece.slack[i] += std::min(1.5 * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(), k_most_expected);
+      piece.slack[i] += std::min(k_slack_acceleration * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(),
+                                 k_most_acceleration);
     if (!piece.extra.empty()) piece.slack[i] += piece.extra[i];
     boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, piece.slack[i] + 0.5 * radius_);
   }

@@ -14,6 +14,11 @@ namespace {
 constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
+/// A step is halved at most so often until the potential goes down; what still goes up is not taken.
+constexpr int k_most_halvings = 5;
+/// Truncation and lagged friction leave the exact descent direction: a rise by this share is no reason to halve.
+constexpr double k_tolerated_rise = 1e-3;
+constexpr double k_energy_noise = 1e-9;  ///< rounding of the potential [J]
 
 class Stopwatch {
  public:
@@ -180,7 +185,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
 
     double factor = 1;
     bool accepted = false;
-    for (int cut = 0; cut < 5 && !accepted; ++cut, factor *= 0.5) {
+    for (int halving = 0; halving < k_most_halvings && !accepted; ++halving, factor *= 0.5) {
       double step = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const Vec3 d = (factor * s.share[i]) * s.direction[i];
@@ -189,8 +194,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       }
       s.contact.update(s.trial);
       const double after = potential(s.trial);
-      // Truncation and lagged friction leave the exact descent direction: a small rise is no reason to stop.
-      accepted = std::isfinite(after) && after <= before + 1e-9 + 1e-3 * std::abs(before);
+      accepted = std::isfinite(after) && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
       if (!accepted) ++result.backtracks;
       result.last_move = step;
     }
