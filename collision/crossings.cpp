@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "collision/crossing_predicates.h"
-#include "collision/triangle_tree.h"
 
 namespace ft {
 namespace {
@@ -55,23 +54,6 @@ bool coplanar_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, c
          segments_meet_2d(p2, q2, c2, a2);
 }
 
-/// For each triangle the edges that it owns, as bits.
-std::vector<unsigned char> owned_edges(std::span<const Triangle> triangles) {
-  std::vector<std::pair<Edge, int>> all;
-  all.reserve(3 * triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = triangles[i][k], b = triangles[i][(k + 1) % 3];
-      all.push_back({{std::min(a, b), std::max(a, b)}, static_cast<int>(3 * i + k)});
-    }
-  std::sort(all.begin(), all.end());
-  std::vector<unsigned char> owned(triangles.size(), 0);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (i == 0 || all[i].first != all[i - 1].first)
-      owned[at(all[i].second / 3)] |= static_cast<unsigned char>(1 << (all[i].second % 3));
-  return owned;
-}
-
 /// Adds the owned edges of s (in x) that cross t (in y). In one surface, edges that share a vertex with t are left out.
 template <bool one_surface>
 void edges_through(const Triangle& s, unsigned char owned, std::span<const Vec3> x, const Triangle& t,
@@ -112,35 +94,45 @@ bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Ve
   return u * w >= 0 && v * w >= 0;
 }
 
-std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::span<const Triangle> triangles_a,
-                                        std::span<const Vec3> positions_b, std::span<const Triangle> triangles_b) {
+std::vector<Crossing> crossings_between(const CheckedSurface& a, const CheckedSurface& b) {
   std::vector<Crossing> out;
-  if (triangles_a.empty() || triangles_b.empty()) return out;
-  const TriangleTree tree_a(positions_a, triangles_a), tree_b(positions_b, triangles_b);
-  const auto owned_a = owned_edges(triangles_a), owned_b = owned_edges(triangles_b);
-  tree_a.for_each_pair(tree_b, [&](int i, int j) {
-    const Triangle &s = triangles_a[at(i)], &t = triangles_b[at(j)];
-    if (!box_of(s, positions_a).overlaps(box_of(t, positions_b))) return;
-    edges_through<false>(s, owned_a[at(i)], positions_a, t, positions_b, true, out);
-    edges_through<false>(t, owned_b[at(j)], positions_b, s, positions_a, false, out);
+  if (a.empty() || b.empty()) return out;
+  a.tree().for_each_pair(b.tree(), [&](int i, int j) {
+    const Triangle &s = a.triangles()[at(i)], &t = b.triangles()[at(j)];
+    if (!box_of(s, a.positions()).overlaps(box_of(t, b.positions()))) return;
+    edges_through<false>(s, a.owned_edges(i), a.positions(), t, b.positions(), true, out);
+    edges_through<false>(t, b.owned_edges(j), b.positions(), s, a.positions(), false, out);
   });
   sort_unique(out);
   return out;
 }
 
-std::vector<Crossing> crossings_within(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+std::vector<Crossing> crossings_within(const CheckedSurface& a) {
   std::vector<Crossing> out;
-  if (triangles.empty()) return out;
-  const TriangleTree tree(positions, triangles);
-  const auto owned = owned_edges(triangles);
-  tree.for_each_own_pair([&](int i, int j) {
-    const Triangle &s = triangles[at(i)], &t = triangles[at(j)];
-    if (!box_of(s, positions).overlaps(box_of(t, positions))) return;
-    edges_through<true>(s, owned[at(i)], positions, t, positions, true, out);
-    edges_through<true>(t, owned[at(j)], positions, s, positions, true, out);
+  if (a.empty()) return out;
+  const auto x = a.positions();
+  a.tree().for_each_own_pair([&](int i, int j) {
+    const Triangle &s = a.triangles()[at(i)], &t = a.triangles()[at(j)];
+    if (!box_of(s, x).overlaps(box_of(t, x))) return;
+    edges_through<true>(s, a.owned_edges(i), x, t, x, true, out);
+    edges_through<true>(t, a.owned_edges(j), x, s, x, true, out);
   });
   sort_unique(out);
   return out;
+}
+
+std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::span<const Triangle> triangles_a,
+                                        std::span<const Vec3> positions_b, std::span<const Triangle> triangles_b) {
+  CheckedSurface a(triangles_a), b(triangles_b);
+  a.move(positions_a);
+  b.move(positions_b);
+  return crossings_between(a, b);
+}
+
+std::vector<Crossing> crossings_within(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  CheckedSurface a(triangles);
+  a.move(positions);
+  return crossings_within(a);
 }
 
 }  // namespace ft

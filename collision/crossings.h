@@ -7,6 +7,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
+#include "collision/checked_surface.h"
 
 namespace ft {
 
@@ -23,9 +24,11 @@ struct Crossing {
 };
 
 /// Edges of either surface through triangles of the other; sorted. Vertex numbering as positions are given.
+std::vector<Crossing> crossings_between(const CheckedSurface& a, const CheckedSurface& b);
 std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::span<const Triangle> triangles_a,
                                         std::span<const Vec3> positions_b, std::span<const Triangle> triangles_b);
 /// Within one surface; pairs that share a vertex are left out.
+std::vector<Crossing> crossings_within(const CheckedSurface& surface);
 std::vector<Crossing> crossings_within(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
 }  // namespace ft

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
-#include "collision/triangle_tree.h"
 
 namespace ft {
 namespace {
@@ -31,13 +30,14 @@ int winding(const TriangleTree& tree, const Vec3& p, const Vec3& direction, std:
 
 }  // namespace
 
-std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
-                                      std::span<const Triangle> triangles, double least_depth) {
+std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& checked, double least_depth) {
   std::vector<Penetration> out;
-  if (points.empty() || triangles.empty()) return out;
+  if (points.empty() || checked.empty()) return out;
+  const std::span<const Vec3> surface = checked.positions();
+  const std::span<const Triangle> triangles = checked.triangles();
+  const TriangleTree& tree = checked.tree();
   const Vec3 directions[3] = {Vec3(0.577, 0.61, 0.543).normalized(), Vec3(-0.31, 0.88, 0.36).normalized(),
                               Vec3(0.23, -0.41, -0.88).normalized()};
-  const TriangleTree tree(surface, triangles);
   std::vector<double> depth(points.size(), 0.0);
   parallel_for(points.size(), 128, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -54,6 +54,13 @@ std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<co
   for (std::size_t i = 0; i < points.size(); ++i)
     if (depth[i] > least_depth) out.push_back({static_cast<int>(i), depth[i]});
   return out;
+}
+
+std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
+                                      std::span<const Triangle> triangles, double least_depth) {
+  CheckedSurface checked(triangles);
+  checked.move(surface);
+  return penetrations(points, checked, least_depth);
 }
 
 }  // namespace ft

@@ -8,6 +8,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
+#include "collision/checked_surface.h"
 
 namespace ft {
 
@@ -17,6 +18,7 @@ struct Penetration {
 };
 
 /// Points inside by more than least_depth [m], by ascending vertex. Triangles counter-clockwise seen from outside.
+std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& surface, double least_depth = 1e-5);
 std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
                                       std::span<const Triangle> triangles, double least_depth = 1e-5);
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/parallel.h"
 #include "collision/crossings.h"
 #include "collision/penetration.h"
 #include "solvers/cloth/tangles.h"
@@ -40,12 +41,11 @@ bool any_released_to(int part, std::span<const int> cloth_vertices, const ClothM
 }
 
 /// Crossings with the feasible collider; notes which of its parts cloth crosses. Returns those that could have been avoided.
-int certify_body(const ClothModel& model, std::span<const Vec3> body, const ClothMotion& m, std::vector<char>& touched,
+int certify_body(const ClothModel& model, std::span<const Crossing> crossings, const ClothMotion& m, std::vector<char>& touched,
                  FrameReport& report) {
   const auto parts = model.collider->part_of_vertex();
   const auto& names = model.collider->trajectory().surface().parts;
   touched.assign(names.size(), 0);
-  const auto crossings = crossings_between(m.x, model.triangles, body, model.collider->triangles());
   report.crossings_body = static_cast<int>(crossings.size());
   int avoidable = 0;
   for (const Crossing& c : crossings) {
@@ -59,8 +59,7 @@ int certify_body(const ClothModel& model, std::span<const Vec3> body, const Clot
 }
 
 /// Crossings among the cloths; marks the tangles anew. Returns those that could have been avoided.
-int certify_cloths(const ClothModel& model, ClothMotion& m, FrameReport& report) {
-  const std::vector<Crossing> own = own_crossings(model, m.x);
+int certify_cloths(const ClothModel& model, std::span<const Crossing> own, ClothMotion& m, FrameReport& report) {
   report.crossings_self = static_cast<int>(own.size());
   int avoidable = 0;
   for (const Crossing& c : own) {
@@ -100,11 +99,17 @@ void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<c
 }
 
 /// Where the cloth is inside the body as it is drawn: the body overlaps itself there, or leaves no room.
-void describe_drawn(const ClothModel& model, std::span<const Vec3> drawn, const ClothMotion& m, FrameReport& report) {
-  const auto& triangles = model.collider->trajectory().surface().triangles;
-  report.crossings_drawn = static_cast<int>(crossings_between(m.x, model.triangles, drawn, triangles).size());
+void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const CheckedSurface& drawn, const ClothMotion& m,
+                    FrameReport& report) {
+  std::vector<Penetration> inside;
+  parallel_tasks(2, [&](std::size_t task) {
+    if (task == 0)
+      report.crossings_drawn = static_cast<int>(crossings_between(cloth, drawn).size());
+    else
+      inside = penetrations(m.x, drawn);
+  });
   int worst = -1;
-  for (const Penetration& p : penetrations(m.x, drawn, triangles))
+  for (const Penetration& p : inside)
     if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
   if (worst >= 0 && report.deepest_drawn > k_notable_depth)
     add_incident(model, m, Incident::Kind::k_penetration, worst, report.deepest_drawn,
@@ -113,22 +118,41 @@ void describe_drawn(const ClothModel& model, std::span<const Vec3> drawn, const 
 
 }  // namespace
 
-int certify(const ClothModel& model, std::span<const Vec3> body, ClothMotion& m, FrameReport& report) {
+Certificate::Certificate(const ClothModel& model)
+    : model_(model), cloth_(model.triangles),
+      collider_(model.collider ? model.collider->triangles() : std::span<const Triangle>{}),
+      drawn_(model.collider ? model.collider->trajectory().surface().triangles : std::span<const Triangle>{}) {}
+
+int Certificate::certify(std::span<const Vec3> body, ClothMotion& m, FrameReport& report) {
+  std::vector<Crossing> with_body, own;
+  cloth_.move(m.x);
+  parallel_tasks(2, [&](std::size_t task) {
+    if (task == 0) {
+      collider_.move(body);
+      with_body = crossings_between(cloth_, collider_);
+    } else {
+      own = own_crossings(model_, crossings_within(cloth_));
+    }
+  });
   int avoidable = 0;
   std::vector<char> touched;
-  if (model.collider) avoidable += certify_body(model, body, m, touched, report);
-  avoidable += certify_cloths(model, m, report);
-  if (model.collider) hold_again(model, body, touched, m, report);
+  if (model_.collider) avoidable += certify_body(model_, with_body, m, touched, report);
+  avoidable += certify_cloths(model_, own, m, report);
+  if (model_.collider) hold_again(model_, body, touched, m, report);
   return avoidable;
 }
 
-void describe(const ClothModel& model, std::span<const Vec3> drawn, const ClothMotion& m, FrameReport& report) {
-  const StrainSummary strain = summary(edge_strains(model.rest_edges, m.x));
+void Certificate::describe(std::span<const Vec3> drawn, const ClothMotion& m, FrameReport& report) {
+  const StrainSummary strain = summary(edge_strains(model_.rest_edges, m.x));
   report.strain_mean = strain.mean;
   report.strain_p99 = strain.p99;
   report.strain_max = strain.max;
-  for (std::size_t i = 0; i < m.v.size(); ++i) report.kinetic_energy += 0.5 * model.mass[i] * m.v[i].squaredNorm();
-  if (model.collider) describe_drawn(model, drawn, m, report);
+  for (std::size_t i = 0; i < m.v.size(); ++i) report.kinetic_energy += 0.5 * model_.mass[i] * m.v[i].squaredNorm();
+  if (model_.collider) {
+    cloth_.move(m.x);
+    drawn_.move(drawn);
+    describe_drawn(model_, cloth_, drawn_, m, report);
+  }
   std::stable_sort(report.incidents.begin(), report.incidents.end(),
                    [](const Incident& a, const Incident& b) { return a.depth > b.depth; });
   if (report.incidents.size() > k_incidents_per_frame) report.incidents.resize(k_incidents_per_frame);

@@ -5,16 +5,27 @@
 
 #include <span>
 
+#include "collision/checked_surface.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
 
-/// Counts the crossings at a frame's end. Parts that no cloth touches any more hold the cloth again, and tangles are marked anew.
-/// `body` is the feasible collider [m]. Returns the number of crossings that neither released nor tangled cloth explains.
-int certify(const ClothModel& model, std::span<const Vec3> body, ClothMotion& motion, FrameReport& report);
+class Certificate {
+ public:
+  explicit Certificate(const ClothModel& model);
 
-/// Strain, energy, and what is inside the drawn body [m]; then sorts the incidents, worst first, and keeps at most 16.
-void describe(const ClothModel& model, std::span<const Vec3> drawn, const ClothMotion& motion, FrameReport& report);
+  /// Counts the crossings at a frame's end. Parts that no cloth touches any more hold the cloth again, and tangles are marked anew.
+  /// `body` is the feasible collider [m]. Returns the number of crossings that neither released nor tangled cloth explains.
+  int certify(std::span<const Vec3> body, ClothMotion& motion, FrameReport& report);
+
+  /// Strain, energy, and what is inside the drawn body [m]; then sorts the incidents, worst first, and keeps at most 16.
+  void describe(std::span<const Vec3> drawn, const ClothMotion& motion, FrameReport& report);
+
+ private:
+  const ClothModel& model_;
+  // Scratch: box trees, refitted from frame to frame.
+  CheckedSurface cloth_, collider_, drawn_;
+};
 
 }  // namespace ft

@@ -65,7 +65,7 @@ ClothMotion load(const State& state, std::size_t count) {
 
 class ClothSolver final : public Solver {
  public:
-  explicit ClothSolver(std::unique_ptr<ClothModel> model) : model_(std::move(model)), advance_(*model_) {}
+  explicit ClothSolver(std::unique_ptr<ClothModel> model) : model_(std::move(model)), advance_(*model_), certificate_(*model_) {}
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
   const Mesh& system_mesh(int system) const override { return model_->setup.garments[at(system)].mesh; }
@@ -106,6 +106,7 @@ class ClothSolver final : public Solver {
   std::unique_ptr<ClothModel> model_;
   // Scratch only: forgotten between frames, one frame at a time.
   mutable BodyAdvance advance_;
+  mutable Certificate certificate_;
   /// The body at one time, kept because a frame starts where the last one ended. A function of the time alone.
   struct BodyAt {
     double time = std::numeric_limits<double>::quiet_NaN();
@@ -131,7 +132,7 @@ State ClothSolver::initial_state() const {
   m.x = model_->start;
   m.v.assign(m.x.size(), Vec3::Zero());
   m.released.assign(m.x.size(), -1.0);
-  mark_tangled(*model_, own_crossings(*model_, m.x), m.tangled);
+  mark_tangled(*model_, own_crossings(*model_, crossings_within(m.x, model_->triangles)), m.tangled);
   // A history of constant acceleration makes BDF2 exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
   m.x_previous = m.x;
@@ -212,7 +213,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
     if (any_tangled(m.tangled)) {
-      const std::vector<Crossing> crossings = own_crossings(*model_, m.x);
+      const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
       mark_tangled(*model_, crossings, m.tangled);
       push.resize(m.x.size());
       untangling(m.x, model_->triangles, crossings, push);
@@ -271,7 +272,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     walk(frame, substeps << attempt, motion, report);
     if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
-    const int avoidable = certify(*model_, frame.body_t1, motion, report);
+    const int avoidable = certificate_.certify(frame.body_t1, motion, report);
     report.profile.certificate += elapsed(certificate);
     spent = report.profile;
     const int score = report.finite ? avoidable : std::numeric_limits<int>::max();
@@ -288,7 +289,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   report.profile = spent;
   if (!std::isfinite(report.smallest_gap)) report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
-  describe(*model_, frame.drawn_t1, motion, report);
+  certificate_.describe(frame.drawn_t1, motion, report);
   report.profile.certificate += elapsed(certificate);
   store(state, motion);
   state.frame = frame.number;

@@ -14,8 +14,9 @@ namespace {
 constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
-/// A step is halved at most so often until the potential goes down; what still goes up is not taken.
-constexpr int k_most_halvings = 5;
+/// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in the direction,
+/// and cloth that glides over edges would stop there for good.
+constexpr int k_most_halvings = 4;
 /// Truncation and lagged friction leave the exact descent direction: a rise by this share is no reason to halve.
 constexpr double k_tolerated_rise = 1e-3;
 constexpr double k_energy_noise = 1e-9;  ///< rounding of the potential [J]
@@ -184,8 +185,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     truncate_displacements(s.all, s.direction, model_.vertex_count(), s.near, k_floor, s.share);
 
     double factor = 1;
-    bool accepted = false;
-    for (int halving = 0; halving < k_most_halvings && !accepted; ++halving, factor *= 0.5) {
+    bool accepted = false, finite = true;
+    for (int halving = 0; halving <= k_most_halvings && !accepted; ++halving, factor *= 0.5) {
       double step = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const Vec3 d = (factor * s.share[i]) * s.direction[i];
@@ -194,14 +195,15 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       }
       s.contact.update(s.trial);
       const double after = potential(s.trial);
-      accepted = std::isfinite(after) && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
+      finite = std::isfinite(after);
+      accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
       if (!accepted) ++result.backtracks;
       result.last_move = step;
     }
-    if (accepted) {
+    if (finite) {
       std::copy_n(s.trial.begin(), n, s.all.begin());
     } else {
-      s.contact.update(s.all);  // nothing in this direction goes down: what there is is the answer
+      s.contact.update(s.all);
       result.last_move = 0;
     }
     result.seconds_contact += watch.lap();

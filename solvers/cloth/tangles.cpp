@@ -10,12 +10,11 @@ constexpr int k_rings = 2;
 
 }  // namespace
 
-std::vector<Crossing> own_crossings(const ClothModel& model, std::span<const Vec3> x) {
-  std::vector<Crossing> crossings = crossings_within(x, model.triangles);
-  std::erase_if(crossings, [&](const Crossing& c) {
+std::vector<Crossing> own_crossings(const ClothModel& model, std::vector<Crossing> within) {
+  std::erase_if(within, [&](const Crossing& c) {
     return !model.self_collides[at(c.edge[0])] || !model.self_collides[at(c.triangle[0])];
   });
-  return crossings;
+  return within;
 }
 
 void mark_tangled(const ClothModel& model, std::span<const Crossing> crossings, std::vector<double>& tangled) {

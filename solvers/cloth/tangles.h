@@ -11,8 +11,8 @@
 
 namespace ft {
 
-/// Crossings among the garments that collide with themselves; sorted.
-std::vector<Crossing> own_crossings(const ClothModel& model, std::span<const Vec3> x);
+/// Of the crossings within the cloth those that are of garments that collide with themselves.
+std::vector<Crossing> own_crossings(const ClothModel& model, std::vector<Crossing> within);
 
 /// Fills `tangled` (per cloth vertex, 0 or 1) with the vertices of these crossings and of all edges within two of them.
 void mark_tangled(const ClothModel& model, std::span<const Crossing> crossings, std::vector<double>& tangled);
