@@ -3,6 +3,7 @@
 // (fcl_pair_finder.cpp), sorted, each pair once.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,6 +30,9 @@ struct VertexBox {
   std::array<float, 3> lo, hi;
   /// Box of the segment a..b grown by r on every side, rounded outwards.
   static VertexBox swept(const Vec3& a, const Vec3& b, double r);
+  void include(const VertexBox& other) {
+    for (std::size_t k = 0; k < 3; ++k) lo[k] = std::min(lo[k], other.lo[k]), hi[k] = std::max(hi[k], other.hi[k]);
+  }
 };
 
 class PairFinder {

@@ -32,7 +32,7 @@ struct BodyAdvance::Scratch {
   Candidates candidates;
   ImplicitStep step;
   PieceMotion piece;
-  std::vector<Vec3> end, x, v, pins;
+  std::vector<Vec3> end, centre, x, v, pins;
 };
 
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
@@ -70,6 +70,9 @@ bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.all_begin = s.end;
   step.pin_target = s.pins;
   step.push = in.push;
+  s.centre.resize(cloth.x.size());
+  for (std::size_t i = 0; i < s.centre.size(); ++i) s.centre[i] = cloth.x[i] + s.piece.centre[i];
+  step.centre = s.centre;
   step.slack = s.piece.slack;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations * (shortened ? k_shortened_newton : 1);

@@ -13,11 +13,12 @@ namespace {
 constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 
-// How far the solve may take a vertex from its carried place. Too little holds cloth back (it then asks for more and is solved
-// anew), too much costs candidates: a share above 1 of each cause that is known beforehand, and a little for all others.
-constexpr double k_slack_inertia = 1.2;        ///< of the way from the carried place to where the vertex would fly
-constexpr double k_slack_gravity = 0.6;        ///< of h2 g; free fall takes 0.5
-constexpr double k_slack_acceleration = 1.5;   ///< of what the acceleration of the last step makes in this one
+// Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity and the
+// acceleration of the last step. Too small a ball holds cloth back (it then asks for more and is solved anew), too large a one
+// costs candidates.
+constexpr double k_slack_way = 0.6;            ///< of the way between the two; half of it reaches both
+constexpr double k_slack_acceleration = 1.25;  ///< of what the last step's acceleration makes in this one, on top
+constexpr double k_slack_gravity = 0.6;        ///< of h2 g
 constexpr double k_most_acceleration = 2e-3;   ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
 constexpr double k_slack_body = 0.03;          ///< of the body's motion near the cloth: rubbing and the carry's own error
 constexpr double k_slack_least = 3e-4;         ///< m
@@ -34,6 +35,14 @@ std::vector<Triangle> shifted_triangles(const ClothModel& model) {
 
 std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
   return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
+}
+
+/// Largest relative motion between the two features of a pair [m].
+double largest_difference(const std::array<Vec3, 4>& d, std::size_t split) {
+  double squared = 0;
+  for (std::size_t a = 0; a < split; ++a)
+    for (std::size_t b = split; b < 4; ++b) squared = std::max(squared, (d[a] - d[b]).squaredNorm());
+  return std::sqrt(squared);
 }
 
 /// Squared distance between the boxes of the two features: a lower bound that is cheaper than theirs.
@@ -134,17 +143,24 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, P
   Vec3 frame = Vec3::Zero();
   for (std::size_t i = 0; i < nc; ++i) frame += piece.carry[i] / static_cast<double>(nc);
   piece.slack.resize(nc);
+  piece.centre.resize(nc + nb);
   boxes_.resize(nc + nb);
+  const double gained = cloth.h_previous > 0 ? h * h / cloth.h_previous : 0;
   for (std::size_t i = 0; i < nc; ++i) {
-    piece.slack[i] = k_slack_inertia * (h * cloth.v[i] - piece.carry[i]).norm() + k_slack_gravity * h * h * gravity +
-                     k_slack_body * std::min(fastest, k_farthest_range) + k_slack_least;
     // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
-    if (cloth.h_previous > 0)
-      piece.slack[i] += std::min(k_slack_acceleration * h * h / cloth.h_previous * (cloth.v[i] - cloth.v_previous[i]).norm(),
-                                 k_most_acceleration);
+    Vec3 acceleration = gained * (cloth.v[i] - cloth.v_previous[i]);
+    const double pull = acceleration.norm();
+    if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
+    const Vec3 way = h * cloth.v[i] + 0.5 * acceleration - piece.carry[i];
+    piece.centre[i] = piece.carry[i] + 0.5 * way;
+    piece.slack[i] = k_slack_way * way.norm() + k_slack_acceleration * std::min(pull, k_most_acceleration) +
+                     k_slack_gravity * h * h * gravity + k_slack_body * std::min(fastest, k_farthest_range) + k_slack_least;
     if (!piece.extra.empty()) piece.slack[i] += piece.extra[i];
-    boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, piece.slack[i] + 0.5 * radius_);
+    const Vec3 centre = cloth.x[i] + piece.centre[i] - frame;
+    boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, 0.5 * radius_);
+    boxes_[i].include(VertexBox::swept(centre, centre, piece.slack[i] + 0.5 * radius_));
   }
+  std::copy(piece.body_motion.begin(), piece.body_motion.end(), piece.centre.begin() + static_cast<std::ptrdiff_t>(nc));
   for (std::size_t i = 0; i < nb; ++i) {
     const Vec3& start = piece.start[nc + i];
     boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame, 0.5 * radius_);
@@ -179,17 +195,16 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
     double first = 1;
     for (std::size_t p = begin; p < end; ++p) {
       const std::array<Vec3, 4> x = gather(piece.start, found[p]), d = gather(piece.all, found[p]);
-      double relative = 0, slack_a = 0, slack_b = 0;
-      for (std::size_t a = 0; a < split; ++a)
-        for (std::size_t b = split; b < 4; ++b) relative = std::max(relative, (d[a] - d[b]).squaredNorm());
-      relative = std::sqrt(relative);
+      const double relative = largest_difference(d, split);
+      double slack_a = 0, slack_b = 0;
       for (std::size_t k = 0; k < 4; ++k) {
         const int v = found[p].v[k];
         double& side = k < split ? slack_a : slack_b;
         if (v < model_.vertex_count()) side = std::max(side, piece.slack[at(v)]);
       }
       const bool self = found[p].v[split] < model_.vertex_count() && found[p].v[0] < model_.vertex_count();
-      const double reach = relative + slack_a + slack_b + (self ? self_radius_ : radius_);
+      const double radius = self ? self_radius_ : radius_;
+      const double reach = std::max(relative, largest_difference(gather(piece.centre, found[p]), split) + slack_a + slack_b) + radius;
       if (box_gap_squared(x, split) >= reach * reach || !counts(cloth, kind, found[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);

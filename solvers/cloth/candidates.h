@@ -20,7 +20,8 @@ struct PieceMotion {
   std::vector<Vec3> carry;        ///< per cloth vertex [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
   std::vector<double> extra;      ///< per cloth vertex: slack that an earlier try asked for [m]; empty: none
-  std::vector<double> slack;      ///< per cloth vertex: how far the solve may go from the carried place [m]
+  std::vector<Vec3> centre;       ///< per vertex: from the start to the middle of where the solve may put it; the body's motion [m]
+  std::vector<double> slack;      ///< per cloth vertex: how far the solve may put it from there [m]
 };
 
 class Candidates {

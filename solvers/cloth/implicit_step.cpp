@@ -169,8 +169,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     std::fill(s.held_back.begin(), s.held_back.end(), 0.0);
     for (std::size_t i = 0; i < n; ++i) {
       if (!s.direction[i].allFinite()) s.direction[i].setZero(), result.finite = false;
-      // Stay in the ball around the carried position, inside which the list of pairs is complete.
-      const Vec3 from = s.all[i] - in.all_begin[i];
+      // Stay in the ball inside which the list of pairs is complete.
+      const Vec3 from = s.all[i] - in.centre[i];
       const double room = in.slack[i];
       if ((from + s.direction[i]).squaredNorm() > room * room) {
         s.held_back[i] = (from + s.direction[i]).norm() - room;

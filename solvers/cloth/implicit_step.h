@@ -27,7 +27,8 @@ struct StepInput {
   std::span<const Vec3> all_start;                 ///< cloth and body at the start: slip is measured from here
   std::span<const Vec3> all_begin;                 ///< carried cloth and body at the end of the step
   std::span<const Vec3> pin_target;                ///< per pin, at the end of the step
-  std::span<const double> slack;                   ///< how far each cloth vertex may go from all_begin [m]
+  std::span<const Vec3> centre;                    ///< of the ball that each cloth vertex has to stay in; all_begin is inside
+  std::span<const double> slack;                   ///< its radius [m]
   std::span<const Vec3> push;                      ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
   const ContactPairs* pairs = nullptr;             ///< complete within the slack
   int newton_iterations = 3;
