@@ -70,14 +70,14 @@ TEST(Import_child, A_file_that_is_not_there_is_an_error) {
   EXPECT_EQ(exit_code(loaded.error().kind), 3);
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
 /// A limit that no child could start under: what succeeds with it came from the cache.
 ImportLimits no_child() {
   ImportLimits limits;
   limits.memory_bytes = 1 << 20;
   return limits;
 }
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 TEST(Import_cache, A_second_import_starts_no_child) {
   const auto file = test::assets_root() / "characters/cesium_man/cesium_man.gltf";

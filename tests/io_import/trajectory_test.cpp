@@ -91,7 +91,7 @@ TEST(Preroll, Ends_with_the_speed_that_the_shot_begins_with) {
   ASSERT_TRUE(primary) << primary.error().text();
   const Trajectory& t = *primary->trajectory;
   const double h = 1.0 / 120;
-  const auto speed = [&](double time) { return (middle(positions(t, time + h)) - middle(positions(t, time))) / h; };
+  const auto speed = [&](double time) -> Vec3 { return (middle(positions(t, time + h)) - middle(positions(t, time))) / h; };
   EXPECT_GT(speed(0).norm(), 2.0);
   EXPECT_LT((speed(-h) - speed(0)).norm(), 0.15 * speed(0).norm());
   EXPECT_LT(speed(-0.6).norm(), 0.05 * speed(0).norm());
