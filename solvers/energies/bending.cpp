@@ -182,7 +182,9 @@ void Bending::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) co
           g1[k][l] = d.s2[l] * d.g2[k][l] + d.s3[l] * d.g3[k][l];
           g0[k][l] = d.g2[k][l] + d.g3[k][l] - g1[k][l];
         }
-      for (int l = 0; l < k_lanes; ++l) {
+      // Padding has vertex numbers that belong to other chunks: it must not even add zero.
+      const std::size_t used = hinge_schedule_.used(i);
+      for (std::size_t l = 0; l < used; ++l) {
         gradient[at(g.vertex[0][l])] -= Vec3(g0[0][l], g0[1][l], g0[2][l]);
         gradient[at(g.vertex[1][l])] -= Vec3(g1[0][l], g1[1][l], g1[2][l]);
         gradient[at(g.vertex[2][l])] += Vec3(d.g2[0][l], d.g2[1][l], d.g2[2][l]);

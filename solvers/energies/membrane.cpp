@@ -231,7 +231,9 @@ void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) c
           g1[k][l] = p1 * r[0][l] + p2 * r[1][l];
           g2[k][l] = p1 * r[2][l] + p2 * r[3][l];
         }
-      for (int l = 0; l < k_lanes; ++l) {
+      // Padding has vertex numbers that belong to other chunks: it must not even add zero.
+      const std::size_t used = schedule_.used(i);
+      for (std::size_t l = 0; l < used; ++l) {
         const Vec3 a(g1[0][l], g1[1][l], g1[2][l]), b(g2[0][l], g2[1][l], g2[2][l]);
         gradient[at(g.vertex[0][l])] -= a + b;
         gradient[at(g.vertex[1][l])] += a;
