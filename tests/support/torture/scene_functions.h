@@ -1,0 +1,30 @@
+// The torture scenes as functions; scenes.cpp lists them.
+#pragma once
+
+#include "solvers/cloth/cloth_solver.h"
+
+namespace ft::torture {
+
+// pull_scenes.cpp: cloth that is twisted, pulled through openings, knotted.
+ClothSetup twist();
+ClothSetup ring();
+ClothSetup funnel();
+ClothSetup knot();
+
+// press_scenes.cpp: cloth between things that close.
+ClothSetup plates();
+ClothSetup plates_no_room();
+ClothSetup elbow();
+ClothSetup legs();
+
+// hit_scenes.cpp: cloth that is hit, falls, lies on points, or is badly meshed.
+ClothSetup ball_5();
+ClothSetup ball_10();
+ClothSetup ball_20();
+ClothSetup ball_40();
+ClothSetup stack();
+ClothSetup needles();
+ClothSetup tiny_triangles();
+ClothSetup tiny_edges();
+
+}  // namespace ft::torture

@@ -1,0 +1,82 @@
+// Every torture scene, every frame: finite, no crossing that the independent checker finds, strain and speed within what the scene
+// itself does to the cloth. Where there is no room: nothing explodes, the report names frame, place and depth, and the cloth comes
+// back. A scene whose entry says what fails today is listed and not run by default; --gtest_also_run_disabled_tests runs it.
+#include <gtest/gtest.h>
+
+#include "tests/support/torture/scene.h"
+
+namespace ft::torture {
+namespace {
+
+std::vector<std::string> names(bool failing) {
+  std::vector<std::string> out;
+  for (const Scene& s : scenes())
+    if (s.fails_today.empty() != failing) out.push_back(s.name);
+  return out;
+}
+
+void expect_no_explosion(const Scene& scene, const CheckedFrame& f) {
+  EXPECT_TRUE(f.report.finite) << f.report.frame;
+  EXPECT_LT(f.report.strain_p99, scene.strain_bar) << f.report.frame;
+  EXPECT_LT(f.speed, scene.speed_bar) << f.report.frame;
+}
+
+void expect_agreement(const CheckedFrame& f) {
+  EXPECT_EQ(static_cast<int>(f.crossings_body), f.report.crossings_body) << f.report.frame;
+  EXPECT_EQ(static_cast<int>(f.crossings_self), f.report.crossings_self) << f.report.frame;
+}
+
+/// Named: the frame's report has an incident of that kind with a place and a vertex.
+bool names_a_place(const FrameReport& r, Incident::Kind kind) {
+  for (const Incident& i : r.incidents)
+    if (i.kind == kind && i.frame == r.frame && i.vertex >= 0 && i.place.allFinite() && !i.system.empty()) return true;
+  return false;
+}
+
+void expect_honest_and_over(const Walked& walked) {
+  for (const CheckedFrame& f : walked.frames) {
+    if (f.crossings_body + f.crossings_self > 0) {
+      EXPECT_TRUE(names_a_place(f.report, Incident::Kind::k_crossing)) << f.report.frame;
+    }
+    if (f.report.released_vertices > 0) {
+      EXPECT_TRUE(names_a_place(f.report, Incident::Kind::k_released)) << f.report.frame;
+    }
+  }
+  const CheckedFrame& last = walked.frames.back();
+  EXPECT_EQ(last.crossings_body + last.crossings_self, 0u);
+  EXPECT_EQ(last.report.released_vertices, 0);
+  EXPECT_LT(last.report.deepest_drawn, 1e-4);
+}
+
+void expect_untouched(const Walked& walked) {
+  for (const CheckedFrame& f : walked.frames) {
+    EXPECT_EQ(f.crossings_body, 0u) << f.report.frame;
+    EXPECT_EQ(f.crossings_self, 0u) << f.report.frame;
+    EXPECT_EQ(f.report.released_vertices, 0) << f.report.frame;
+  }
+}
+
+class Torture : public testing::TestWithParam<std::string> {};
+
+TEST_P(Torture, is_survived_slow) {
+  const Scene& scene = *find_scene(GetParam());
+  const Walked walked = walk(scene);
+  EXPECT_EQ(walked.start.crossings_body + walked.start.crossings_self, 0u);
+  EXPECT_GE(walked.vertex_count, 1000);
+  for (const CheckedFrame& f : walked.frames) {
+    expect_no_explosion(scene, f);
+    expect_agreement(f);
+  }
+  if (scene.has_room)
+    expect_untouched(walked);
+  else
+    expect_honest_and_over(walked);
+}
+
+const auto k_name = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
+INSTANTIATE_TEST_SUITE_P(scene, Torture, testing::ValuesIn(names(false)), k_name);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Torture);
+INSTANTIATE_TEST_SUITE_P(DISABLED_scene, Torture, testing::ValuesIn(names(true)), k_name);
+
+}  // namespace
+}  // namespace ft::torture
