@@ -1,20 +1,39 @@
 #!/usr/bin/env bash
 # Runs a benchmark scene, and Blender beside it, in one run on one machine; both results go to the same judge.
 #   tests/bench/run.sh SCENE [--frames N] [--preset NAME] [--threads N] [--keep FOLDER] [--peer FOLDER] [-- BAKE ARGUMENTS]
+#   tests/bench/run.sh torture NAME|all [--frames N] [--obj FOLDER]
 # SCENE     S1 (a square on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
+# torture   the scenes of tests/support/torture, without a peer, each for at most FOLLOWTHROUGH_TORTURE_SECONDS (600)
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
 # Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
+  torture) [ $# -ge 2 ] || { usage >&2; exit 2; }; shift ;;
   S1 | S2) shift ;;
   *) usage >&2; exit 2 ;;
 esac
+
+if [ "$scene" = torture ]; then
+  # shellcheck disable=SC2086
+  install_packages $packages_build $packages_tests $packages_bench
+  build release torture_bench
+  tool=$root/build/release/bin/torture_bench names=$1 failed=0
+  shift
+  [ "$names" != all ] || names=$("$tool" list)
+  for name in $names; do
+    status=0
+    timeout "${FOLLOWTHROUGH_TORTURE_SECONDS:-600}" "$tool" "$name" "$@" || status=$?
+    [ $status -ne 124 ] || echo "RESULT scene=$name verdict=too_slow"
+    [ $status -eq 0 ] || failed=1
+  done
+  exit $failed
+fi
 frames=100 preset=default keep="" peer="" bake_arguments=()
 while [ $# -gt 0 ]; do
   case $1 in

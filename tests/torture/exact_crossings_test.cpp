@@ -43,7 +43,7 @@ std::vector<EdgeTriangle> certified(const std::vector<Crossing>& crossings, bool
 
 TEST(ExactCrossings, are_those_of_the_certificate_one_by_one) {
   std::size_t found = 0;
-  for (std::uint64_t trial = 0; trial < 90; ++trial) {
+  for (std::uint64_t trial = 0; trial < 24; ++trial) {
     const int steps = trial % 3 == 0 ? 0 : 2 + static_cast<int>(trial % 5);
     const Soup a = soup(2 * trial, 24, 30, steps), b = soup(2 * trial + 1, 20, 24, steps);
     const auto certificate = crossings_between(a.x, a.t, b.x, b.t);
@@ -52,7 +52,7 @@ TEST(ExactCrossings, are_those_of_the_certificate_one_by_one) {
     ASSERT_EQ(exact_own_crossings(a.x, a.t), certified(crossings_within(a.x, a.t), true)) << trial;
     found += certificate.size();
   }
-  EXPECT_GT(found, 5000u);
+  EXPECT_GT(found, 1500u);
 }
 
 TEST(ExactCrossings, tell_a_touch_from_the_least_distance_there_is) {
