@@ -172,8 +172,11 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
     const double speed = (frame.body_t1[i] - frame.body_t0[i] - mean).norm();
     if (speed <= fastest) continue;
     bool near = false;
-    for (const Vec3& p : {frame.body_t0[i], (frame.body_t1[i] - mean).eval()}) {
-      const auto c = cell_of(p);
+    const Vec3 way = frame.body_t1[i] - mean - frame.body_t0[i];
+    // What starts before the cloth and ends behind it was near on its way.
+    const int stops = 1 + static_cast<int>(std::min(speed / cell, 256.0));
+    for (int stop = 0; stop <= stops && !near; ++stop) {
+      const auto c = cell_of(frame.body_t0[i] + (static_cast<double>(stop) / stops) * way);
       for (int k = 0; k < 27 && !near; ++k)
         near = std::binary_search(cells.begin(), cells.end(),
                                   std::array<int, 3>{c[0] + k % 3 - 1, c[1] + k / 3 % 3 - 1, c[2] + k / 9 - 1});
