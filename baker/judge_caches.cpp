@@ -9,6 +9,7 @@
 #include "baker/report_json.h"
 #include "collision/crossings.h"
 #include "collision/penetration.h"
+#include "collision/sewn_pairs.h"
 
 namespace ft {
 namespace {
@@ -19,20 +20,27 @@ struct Group {
   std::vector<CacheTrack> collider, body;   ///< none or one
   std::vector<Triangle> cloth_triangles;
   RestEdges rest_edges;
+  SewnPairs sewn;
   std::vector<int> first_vertex;
 };
 
 void prepare(Group& group) {
   int first = 0;
   std::vector<Vec3> rest;
+  std::vector<Stitch> stitches;
   for (const CacheTrack& cloth : group.cloths) {
     group.first_vertex.push_back(first);
     for (const Triangle& t : cloth.triangles) group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (Stitch s : cloth.rest.stitches) {
+      s.vertex += first, s.edge[0] += first, s.edge[1] += first;
+      stitches.push_back(s);
+    }
     rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
     first += cloth.rest.vertex_count();
   }
   group.first_vertex.push_back(first);
   group.rest_edges = rest_edges(rest, group.cloth_triangles);
+  group.sewn = SewnPairs(first, stitches, group.cloth_triangles);
 }
 
 void place_incident(const Group& group, int vertex, Incident& incident) {
@@ -72,7 +80,8 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
       incident(Incident::Kind::k_crossing, crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0], 0,
                fmt::format("{} crossings with the feasible collider", crossings.size()));
   }
-  const auto own = crossings_within(x, group.cloth_triangles);
+  auto own = crossings_within(x, group.cloth_triangles);
+  std::erase_if(own, [&](const Crossing& c) { return group.sewn.together(c); });
   report.crossings_self = static_cast<int>(own.size());
   if (!own.empty()) incident(Incident::Kind::k_crossing, own[0].edge[0], 0, fmt::format("{} crossings among cloths", own.size()));
   for (const CacheTrack& body : group.body) {

@@ -106,6 +106,19 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     return error;
   }
 
+  if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
+    std::vector<std::string> pattern_notes;
+    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes); !cut) return located(cut.error());
+    for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
+    garment.pattern_scale = spec.pattern_scale;
+  }
+  garment.sewing_time = spec.sewing_time;
+  if (!garment.mesh.stitches.empty() && spec.sewing_time > shot.preroll / shot.fps)
+    notes.push_back(fmt::format("cloth \"{}\": its seams close {:.3g} s after the shot's first frame: sewing_time is longer than the pre-roll",
+                                spec.name, spec.sewing_time - shot.preroll / shot.fps));
+  if (!garment.mesh.stitches.empty() && shot.preroll == 0)
+    notes.push_back(fmt::format("cloth \"{}\" is sewn in the shot's first frames: there is no pre-roll", spec.name));
+
   const Fabric* fabric = find_fabric(spec.fabric);
   if (!fabric) return located(usage_error("fabric \"" + spec.fabric + "\" does not exist"));
   garment.fabric = *fabric;

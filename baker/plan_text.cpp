@@ -26,6 +26,12 @@ std::uint64_t cache_bytes(const BakePlan& plan) {
 
 }  // namespace
 
+std::string sewing_text(const Mesh& mesh) {
+  int seams = 0;
+  for (const Stitch& s : mesh.stitches) seams = std::max(seams, s.seam + 1);
+  return fmt::format("sewn: {} stitches in {} seams", mesh.stitches.size(), seams);
+}
+
 std::string size_text(std::uint64_t bytes) {
   const double b = static_cast<double>(bytes);
   if (b < 1e3) return fmt::format("{} bytes", bytes);
@@ -68,6 +74,7 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
       out.push_back(fmt::format("cloth \"{}\" on \"{}\": {} vertices, {} faces, {} pinned, {}, {} at {:g} kg/m2", garment.name,
                                 plan.primaries[group.primary].name, garment.mesh.vertex_count(), garment.mesh.face_count(), pinned,
                                 box_text(bounds(garment.mesh.positions)), garment.fabric.name, garment.fabric.mass_per_area));
+      if (!garment.mesh.stitches.empty()) out.push_back("  " + sewing_text(garment.mesh) + (garment.pattern_scale > 0 ? ", cut from its pattern" : ""));
     }
   for (const std::string& note : plan.notes) out.push_back("note: " + note);
   std::string formats;

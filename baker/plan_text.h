@@ -13,6 +13,8 @@ namespace ft {
 std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder);
 /// "1.4 MB", powers of 1000.
 std::string size_text(std::uint64_t bytes);
+/// "sewn: 851 stitches in 94 seams".
+std::string sewing_text(const Mesh& mesh);
 /// A character in words: sizes, units, clips.
 std::vector<std::string> character_lines(const CharacterInfo& info);
 

@@ -74,6 +74,7 @@ Result<Lines> mesh_info(const std::filesystem::path& path) {
   Lines out{fmt::format("mesh: {} vertices, {} faces, {} pattern coordinates", mesh->vertex_count(), mesh->face_count(), mesh->uvs.size())};
   out.push_back("  size " + size_of(bounds(mesh->positions)) + " if the file is in metres");
   for (const VertexGroup& group : mesh->groups) out.push_back(fmt::format("  group \"{}\": {} vertices", group.name, group.vertices.size()));
+  if (!mesh->stitches.empty()) out.push_back(fmt::format("  {} panels, {}", panel_count(*mesh), sewing_text(*mesh)));
   const Status garment = check_garment(*mesh);
   out.push_back(garment ? "  as a garment: good" : "  as a garment: " + garment.error().what);
   return out;

@@ -1,6 +1,7 @@
 // Mesh: what a file holds, in the file's own vertex order, because caches are written back in that order.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,15 @@ struct VertexGroup {
   std::vector<double> weights;  ///< same length as vertices
 };
 
+/// A vertex sewn to a point of an edge: at (1 - place) x[edge[0]] + place x[edge[1]]. Both ends may be one vertex.
+struct Stitch {
+  int vertex = 0;
+  std::array<int, 2> edge{};
+  double place = 0;  ///< 0..1
+  int seam = 0;      ///< stitches of one seam share a number, from 0 without gaps
+  auto operator<=>(const Stitch&) const = default;
+};
+
 struct Mesh {
   std::string name;
   std::vector<Vec3> positions;     ///< m
@@ -26,6 +36,7 @@ struct Mesh {
   std::vector<Vec2> uvs;           ///< pattern coordinates; empty when the file has none
   std::vector<int> face_uvs;       ///< as face_vertices, into uvs; empty when uvs is
   std::vector<VertexGroup> groups;
+  std::vector<Stitch> stitches;    ///< what closes panels into a garment; in the file's order
 
   int vertex_count() const { return static_cast<int>(positions.size()); }
   int face_count() const { return static_cast<int>(face_sizes.size()); }

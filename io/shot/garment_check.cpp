@@ -68,6 +68,11 @@ bool well_formed(const Mesh& mesh) {
                                                              [&](int v) { return v >= 0 && v < mesh.vertex_count(); });
 }
 
+bool names_vertices(const Mesh& mesh, const Stitch& s) {
+  const auto exists = [&](int v) { return v >= 0 && v < mesh.vertex_count(); };
+  return exists(s.vertex) && exists(s.edge[0]) && exists(s.edge[1]) && s.place >= 0 && s.place <= 1;
+}
+
 void judge_numbers(const Mesh& mesh, GarmentFindings& out) {
   Finding bad;
   for (int i = 0; i < mesh.vertex_count(); ++i)
@@ -172,8 +177,41 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
         " exactly on another (merge them by distance in the modelling tool, or set weld for this cloth)");
 }
 
-/// Connected pieces: a garment that falls apart into several is legal, but good to know of.
-void count_pieces(const Mesh& mesh, GarmentFindings& out) {
+/// More places than this for one vertex is a broken file: four panels meet in a corner, each sewn to each and both ways.
+constexpr int k_most_stitches = 16;
+
+void judge_stitches(const Mesh& mesh, GarmentFindings& out) {
+  std::vector<char> used(mesh.positions.size(), 0);
+  for (const int v : mesh.face_vertices) used[at(v)] = 1;
+  Finding own, loose, crowded;
+  const auto name = [](std::size_t s) { return std::to_string(s + 1); };
+  std::vector<Stitch> sorted = mesh.stitches;
+  for (Stitch& s : sorted) s.seam = 0;
+  for (std::size_t s = 0; s < mesh.stitches.size(); ++s) {
+    const Stitch& stitch = mesh.stitches[s];
+    if (stitch.vertex == stitch.edge[0] || stitch.vertex == stitch.edge[1])
+      own.add(name(s));
+    else if (!used[at(stitch.vertex)] || !used[at(stitch.edge[0])] || !used[at(stitch.edge[1])])
+      loose.add(name(s));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t all = sorted.size();
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  std::vector<int> count(mesh.positions.size(), 0);
+  for (const Stitch& stitch : sorted)
+    if (++count[at(stitch.vertex)] == k_most_stitches + 1) crowded.add(std::to_string(stitch.vertex));
+  if (own.count > 0)
+    out.faults.push_back(places(own.count, "stitch sews", "stitches sew", own.first) + " a vertex to itself");
+  if (loose.count > 0)
+    out.faults.push_back(places(loose.count, "stitch sews", "stitches sew", loose.first) + " a vertex that no face uses");
+  if (crowded.count > 0)
+    out.faults.push_back(places(crowded.count, "vertex is", "vertices are", crowded.first) + " sewn to more than " +
+                         std::to_string(k_most_stitches) + " places");
+  if (sorted.size() < all) out.notes.push_back(std::to_string(all - sorted.size()) + " stitches are there twice; each counts once");
+}
+
+/// Connected pieces of the faces; seams join them or not.
+std::ptrdiff_t pieces_of(const Mesh& mesh, bool sewn) {
   std::vector<int> root(mesh.positions.size());
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int v) {
@@ -188,13 +226,25 @@ void count_pieces(const Mesh& mesh, GarmentFindings& out) {
     }
     begin += at(size);
   }
+  for (const Stitch& stitch : mesh.stitches)
+    for (const int e : stitch.edge) {
+      const int a = find(stitch.vertex), b = find(e);
+      if (sewn && a != b) root[at(std::max(a, b))] = std::min(a, b);
+    }
   std::vector<char> is_piece(mesh.positions.size(), 0);
   for (const int v : mesh.face_vertices) is_piece[at(find(v))] = 1;
-  const auto pieces = std::count(is_piece.begin(), is_piece.end(), 1);
+  return std::count(is_piece.begin(), is_piece.end(), 1);
+}
+
+/// A garment that falls apart into several pieces is legal, but good to know of.
+void count_pieces(const Mesh& mesh, GarmentFindings& out) {
+  const auto pieces = pieces_of(mesh, true);
   if (pieces > 1) out.notes.push_back("falls into " + std::to_string(pieces) + " pieces that are not joined");
 }
 
 }  // namespace
+
+int panel_count(const Mesh& mesh) { return static_cast<int>(pieces_of(mesh, false)); }
 
 GarmentFindings inspect_garment(const Mesh& mesh) {
   GarmentFindings out;
@@ -206,11 +256,16 @@ GarmentFindings inspect_garment(const Mesh& mesh) {
     out.faults.push_back("has faces that name vertices which do not exist");
     return out;
   }
+  if (!std::all_of(mesh.stitches.begin(), mesh.stitches.end(), [&](const Stitch& s) { return names_vertices(mesh, s); })) {
+    out.faults.push_back("has stitches that name vertices which do not exist");
+    return out;
+  }
   judge_numbers(mesh, out);
   if (!out.faults.empty()) return out;
   judge_faces(mesh, out);
   judge_edges(mesh, out);
   judge_vertices(mesh, out);
+  judge_stitches(mesh, out);
   count_pieces(mesh, out);
   return out;
 }
@@ -221,6 +276,36 @@ Status check_garment(const Mesh& mesh) {
   std::string what = "cannot be simulated: ";
   for (std::size_t i = 0; i < findings.faults.size(); ++i) what += (i > 0 ? "; " : "") + findings.faults[i];
   return input_error(what, mesh.name.empty() ? "mesh" : "mesh \"" + mesh.name + "\"");
+}
+
+Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes) {
+  const std::string where = mesh.name.empty() ? "mesh" : "mesh \"" + mesh.name + "\"";
+  if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size())
+    return input_error("has no pattern: its faces need texture vertices (vt)", where, "export with uvs, or write rest = \"mesh\"");
+  Finding flat;
+  double pattern_area = 0, mesh_area = 0;
+  std::size_t begin = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const std::size_t size = at(mesh.face_sizes[at(f)]);
+    const auto uv = [&](std::size_t k) { return mesh.uvs[at(mesh.face_uvs[begin + k])]; };
+    const auto x = [&](std::size_t k) { return mesh.positions[at(mesh.face_vertices[begin + k])]; };
+    double twice = 0, longest = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      const Vec2 a = uv(k) - uv(0), b = uv((k + 1) % size) - uv(0);
+      twice += a.x() * b.y() - b.x() * a.y();
+      longest = std::max(longest, (b - a).squaredNorm());
+      if (k > 0 && k + 1 < size) mesh_area += triangle_area(x(0), x(k), x(k + 1));
+    }
+    if (!(std::abs(twice) > k_flat_triangle * longest)) flat.add(std::to_string(f + 1));
+    pattern_area += 0.5 * std::abs(twice) * scale * scale;
+    begin += size;
+  }
+  if (flat.count > 0)
+    return input_error("cannot be cut from its pattern: " + places(flat.count, "face has", "faces have", flat.first) + " no area in vt", where);
+  const double ratio = std::sqrt(pattern_area / mesh_area);
+  if (!(ratio > 0.5 && ratio < 2))
+    notes.push_back("its pattern is " + std::to_string(ratio) + " times as long as the mesh: is pattern_scale right?");
+  return {};
 }
 
 }  // namespace ft

@@ -1,5 +1,7 @@
 // OBJ reader (Wavefront's "Advanced Visualizer" appendix B1): v, vt, f, g, o; the rest is skipped. One pass over the
 // text, numbers by std::from_chars. Caution: faces may name vertices that come later, so indices are judged at the end.
+// Sewing as the Codimensional IPC garments write it, which no standard knows: "seam N" opens a seam of N stitches, "stitch v a b t"
+// sews vertex v to the point (1 - t) a + t b, "stitch v w" a vertex to a vertex. These count vertices from 0.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -125,6 +127,38 @@ class ObjParser {
       parse_names(line, group_names_);
     else if (key == "o")
       parse_names(line, object_names_);
+    else if (key == "seam")
+      seam_open_ = true;
+    else if (key == "stitch")
+      parse_stitch(line);
+  }
+
+  void parse_stitch(std::string_view line) {
+    Stitch stitch;
+    line = line.substr(0, line.find('#'));
+    std::vector<std::string_view> words;
+    for (auto word = next_word(line); !word.empty() && words.size() < 5; word = next_word(line)) words.push_back(word);
+    if (words.size() != 2 && words.size() != 4)
+      return fault("stitch needs two vertices, or three and a place from 0 to 1 between the last two");
+    int vertex[3] = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string_view word = words[words.size() == 2 ? std::min<std::size_t>(k, 1) : k];
+      long long value = 0;
+      if (!parse_index(word, value)) return fault("stitch has \"" + shown(word) + "\" for a vertex");
+      if (value < 0 || value >= std::numeric_limits<int>::max())
+        return fault("stitch names vertex " + shown(word) + ", which does not exist; they count from 0");
+      vertex[k] = static_cast<int>(value);
+    }
+    stitch.vertex = vertex[0];
+    stitch.edge = {vertex[1], vertex[2]};
+    if (words.size() == 4 && (!parse_number(words[3], stitch.place) || !(stitch.place >= 0 && stitch.place <= 1)))
+      return fault("stitch has \"" + shown(words[3]) + "\" for a place, which is from 0 to 1");
+    // Stitches without a seam line are one seam.
+    if (seam_open_ || seam_count_ == 0) ++seam_count_;
+    seam_open_ = false;
+    stitch.seam = seam_count_ - 1;
+    mesh_.stitches.push_back(stitch);
+    stitch_lines_.push_back(line_number_);
   }
 
   /// Up to 7 finite numbers of a line (a comment ends it); -1 after a fault.
@@ -234,6 +268,12 @@ class ObjParser {
         if (uv >= uv_count)
           fault("face names texture vertex " + std::to_string(uv + 1) + ", the file has " + std::to_string(uv_count));
       }
+    for (std::size_t s = 0; s < mesh_.stitches.size(); ++s) {
+      line_number_ = stitch_lines_[s];
+      for (const int v : {mesh_.stitches[s].vertex, mesh_.stitches[s].edge[0], mesh_.stitches[s].edge[1]})
+        if (v >= vertex_count)
+          fault("stitch names vertex " + std::to_string(v) + ", the file has 0 to " + std::to_string(vertex_count - 1));
+    }
   }
 
   Error collected_faults() const {
@@ -274,7 +314,9 @@ class ObjParser {
   int line_number_ = 0, continued_ = 0;
   std::size_t uv_corner_count_ = 0, fault_count_ = 0;
   std::vector<std::string> faults_;
-  std::vector<int> face_lines_;
+  std::vector<int> face_lines_, stitch_lines_;
+  int seam_count_ = 0;
+  bool seam_open_ = false;  ///< a seam line came, and no stitch of it yet
   std::vector<Vec3> colours_;
   std::vector<FaceGroup> groups_;
   std::unordered_map<std::string, std::size_t> group_of_name_;  ///< looked up only, never walked

@@ -89,6 +89,17 @@ Status write_obj(const std::filesystem::path& path, const Mesh& mesh) {
     }
     out.push_back('\n');
   }
+  for (std::size_t s = 0, end = 0; s < mesh.stitches.size(); s = end) {
+    while (end < mesh.stitches.size() && mesh.stitches[end].seam == mesh.stitches[s].seam) ++end;
+    out += "seam " + std::to_string(end - s) + "\n";
+    for (std::size_t k = s; k < end; ++k) {
+      const Stitch& stitch = mesh.stitches[k];
+      out += "stitch";
+      for (const int v : {stitch.vertex, stitch.edge[0], stitch.edge[1]}) out.append(1, ' ').append(std::to_string(v));
+      put(out, stitch.place);
+      out.push_back('\n');
+    }
+  }
   return write_text_durably(path, out);
 }
 

@@ -58,6 +58,9 @@ struct ClothSpec {
   double unit_scale = 1;  ///< m per mesh unit
   std::string up = "y";
   Vec3 offset = Vec3::Zero();  ///< m, added after scale and axis
+  std::string rest;            ///< "mesh": rest lengths of the placed mesh; "pattern": of the flat pattern in vt; "": pattern if it is sewn
+  double pattern_scale = 1;    ///< m per unit of vt
+  double sewing_time = 0;      ///< s from the start of the pre-roll until seams are closed; 0: half of the pre-roll
   double thickness = 3e-3;     ///< m: contact begins at this distance from the body, 0.5e-3..10e-3
   double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
   double self_friction = 0.3;  ///< among cloths

@@ -64,6 +64,13 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"up", &ClothSpec::up, 0, 0, "", "y z", false, "up_axis axis", "Up axis of the mesh"},
       {"offset", &ClothSpec::offset, -1000, 1000, "m", "", false, "translate position move",
        "Added after scale and axis"},
+      {"rest", &ClothSpec::rest, 0, 0, "", "mesh pattern", false, "rest_shape rest_length rest_lengths",
+       "Where rest lengths come from: the `mesh` as it is placed, or the flat `pattern` in `vt`. Without it the pattern where "
+       "the mesh has stitches, else the mesh"},
+      {"pattern_scale", &ClothSpec::pattern_scale, 1e-6, 1000, "m per vt unit", "", false, "uv_scale vt_scale",
+       "Size of the pattern; 0.01 for a pattern in centimetres"},
+      {"sewing_time", &ClothSpec::sewing_time, 0, 100, "s", "", false, "sewing stitch_time closing_time",
+       "Seams (`stitch` lines) close in this time from the start of the pre-roll; 0 is half of the pre-roll"},
       {"thickness", &ClothSpec::thickness, 0.5e-3, 10e-3, "m", "", false, "contact_radius collision_distance gap",
        "Contact begins at this distance from the body"},
       {"friction", &ClothSpec::friction, 0, 2, "1", "", false, "mu", "Coulomb coefficient against the body"},

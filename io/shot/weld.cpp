@@ -63,6 +63,12 @@ WeldedMesh weld(const Mesh& mesh, double distance) {
     out.mesh.face_uvs.insert(out.mesh.face_uvs.end(), corner_uvs.begin(), corner_uvs.end());
   }
 
+  for (Stitch stitch : mesh.stitches) {
+    stitch.vertex = out.joined_of[at(stitch.vertex)];
+    for (int& v : stitch.edge) v = out.joined_of[at(v)];
+    if (stitch.vertex != stitch.edge[0] && stitch.vertex != stitch.edge[1]) out.mesh.stitches.push_back(stitch);
+  }
+
   for (const VertexGroup& group : mesh.groups) {
     std::map<int, double> weights;  // of joined vertices the heavier weight counts
     for (std::size_t i = 0; i < group.vertices.size(); ++i) {

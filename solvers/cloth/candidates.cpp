@@ -71,8 +71,8 @@ int Candidates::part_of(const Stencil& stencil) const {
   return -1;
 }
 
-/// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself, or tangled
-/// cloth with tangled cloth.
+/// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself, tangled
+/// cloth with tangled cloth, or what a seam holds together.
 bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const {
   const int part = part_of(stencil);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
@@ -84,7 +84,9 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
     if (part < 0 && !model_.self_collides[at(v)]) return false;
     if (cloth.tangled[at(v)] > 0) (k < split ? tangled_a : tangled_b) = true;
   }
-  return !(tangled_a && tangled_b);
+  if (tangled_a && tangled_b) return false;
+  const std::span<const int> v(stencil.v);
+  return part >= 0 || !model_.sewn.together(v.first(split), v.subspan(split));
 }
 
 double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {

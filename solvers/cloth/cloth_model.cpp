@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solvers/cloth/sewing.h"
 #include "solvers/energies/registry.h"
 
 namespace ft {
@@ -35,6 +36,10 @@ Status check(const ClothSetup& setup) {
     if (g.mesh.positions.empty() || g.mesh.face_sizes.empty())
       return input_error("cloth \"" + g.name + "\" has no faces");
     if (!all_finite(g.mesh.positions)) return input_error("cloth \"" + g.name + "\" has a vertex that is not a number");
+    for (const Stitch& s : g.mesh.stitches)
+      for (const int v : {s.vertex, s.edge[0], s.edge[1]})
+        if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] || !(s.place >= 0 && s.place <= 1))
+          return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) + " cannot be sewn");
     for (const ClothPin& pin : g.pins) {
       for (const int v : pin.vertices)
         if (v < 0 || v >= g.mesh.vertex_count())
@@ -60,7 +65,7 @@ void concatenate(ClothModel& model) {
     const int first = static_cast<int>(contact.rest.size());
     const std::size_t count = garment.mesh.positions.size();
     model.first_vertex.push_back(first);
-    pieces.push_back({first, static_cast<int>(count), garment.fabric});
+    pieces.push_back({first, static_cast<int>(count), garment.fabric, garment.pattern_scale});
     contact.rest.insert(contact.rest.end(), garment.mesh.positions.begin(), garment.mesh.positions.end());
     const auto triangles = triangulate(garment.mesh);
     const auto own_uvs = corner_uvs(garment.mesh, triangles);
@@ -91,7 +96,9 @@ void weigh(ClothModel& model) {
   model.unused.assign(n, 1);
   for (const Triangle& t : model.triangles) {
     const auto& rest = model.contact.rest;
-    const double area = triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
+    const std::size_t index = static_cast<std::size_t>(&t - model.triangles.data());
+    const bool cut = model.topology->pieces[at(model.topology->triangle_piece[index])].pattern_scale > 0;
+    const double area = cut ? model.topology->rest_area[index] : triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
     for (const int v : t) {
       model.contact.area[at(v)] += area / 3;
       model.unused[at(v)] = 0;
@@ -100,6 +107,7 @@ void weigh(ClothModel& model) {
   for (std::size_t i = 0; i < n; ++i)
     if (!(model.mass[i] > 0)) model.unused[i] = 1;
   model.rest_edges = rest_edges(model.contact.rest, model.triangles);
+  lengths_from_pattern(*model.topology, model.rest_edges);
 }
 
 void place_and_pin(ClothModel& model) {
@@ -137,6 +145,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   concatenate(*model);
   weigh(*model);
   place_and_pin(*model);
+  sew(*model);
   const ClothSetup& s = model->setup;
   AirSettings air;
   air.wind = s.wind;

@@ -9,6 +9,7 @@
 
 #include "baker/core/edge_strain.h"
 #include "baker/core/result.h"
+#include "collision/sewn_pairs.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
 #include "solvers/cloth/moving_collider.h"
@@ -37,6 +38,8 @@ struct ClothModel {
   std::vector<char> self_collides;            ///< per vertex
   std::vector<char> unused;                   ///< vertices of no face: carried along, never solved for
   ContactModel contact;
+  SewnPairs sewn;                             ///< pairs that a seam holds together
+  std::vector<double> sewn_until;             ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
   std::vector<PinPoint> pins;
   std::vector<std::unique_ptr<Energy>> energies;
   BlockPattern pattern;

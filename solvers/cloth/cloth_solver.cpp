@@ -14,6 +14,7 @@
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/sewing.h"
 #include "solvers/cloth/tangles.h"
 #include "solvers/cloth/untangle.h"
 
@@ -146,6 +147,11 @@ State ClothSolver::initial_state() const {
     m.x_previous[at(pin.vertex)] = m.x[at(pin.vertex)];
     m.v_previous[at(pin.vertex)] = m.v[at(pin.vertex)];
   }
+  // Nor does cloth that is still to be sewn fall.
+  std::vector<Vec3> eased(m.x.size(), Vec3::Zero());
+  if (ease_sewing(*model_, state.time, std::vector<Vec3>(m.x.size(), Vec3::Zero()), eased))
+    for (std::size_t i = 0; i < m.x.size(); ++i)
+      if (eased[i] != Vec3::Zero()) m.x_previous[i] = m.x[i], m.v_previous[i] = m.v[i];
   m.h_previous = h;
   store(state, m);
   return state;
@@ -221,7 +227,10 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
       push.resize(m.x.size());
       untangling(m.x, model_->triangles, crossings, push);
       in.push = push;
+    } else if (!model_->sewn_until.empty()) {
+      push.assign(m.x.size(), Vec3::Zero());
     }
+    if (!model_->sewn_until.empty() && ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;

@@ -26,7 +26,9 @@ struct ClothPin {
 
 struct ClothGarment {
   std::string name;
-  Mesh mesh;                     ///< bind-pose placement, m; its positions are the rest shape
+  Mesh mesh;                     ///< bind-pose placement, m; its positions are the rest shape unless pattern_scale says otherwise
+  double pattern_scale = 0;      ///< m per unit of uvs, which are the rest shape then; 0: the positions are
+  double sewing_time = 0;        ///< s from the start of the pre-roll until its stitches are closed; 0: half of the pre-roll
   Fabric fabric;
   std::vector<ClothPin> pins;
   double thickness = 3e-3;       ///< contact begins at this distance from the body [m], 0.5e-3..10e-3

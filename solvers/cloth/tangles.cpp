@@ -12,7 +12,7 @@ constexpr int k_rings = 2;
 
 std::vector<Crossing> own_crossings(const ClothModel& model, std::vector<Crossing> within) {
   std::erase_if(within, [&](const Crossing& c) {
-    return !model.self_collides[at(c.edge[0])] || !model.self_collides[at(c.triangle[0])];
+    return !model.self_collides[at(c.edge[0])] || !model.self_collides[at(c.triangle[0])] || model.sewn.together(c);
   });
   return within;
 }

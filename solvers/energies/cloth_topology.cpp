@@ -32,7 +32,30 @@ Vec3 warp_from_shape(const Vec3& normal) {
   return Vec3::Zero();
 }
 
+/// Lengths as on the cutting table; material axes are those of the pattern.
+void cut_from_pattern(const std::array<Vec2, 3>& uv, double scale, std::size_t t, ClothTopology& out) {
+  const Vec2 e1 = scale * (uv[1] - uv[0]), e2 = scale * (uv[2] - uv[0]);
+  const double det = e1.x() * e2.y() - e2.x() * e1.y();  // below 0 where a panel is mirrored
+  const double longest2 = std::max({e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()});
+  if (!(std::abs(det) > k_flattest * longest2) || !(std::abs(det) > 1e-14)) return;
+  out.rest_inverse[t] = {e2.y() / det, -e2.x() / det, -e1.y() / det, e1.x() / det};
+  out.rest_area[t] = 0.5 * std::abs(det);
+}
+
+void weigh(std::size_t t, ClothTopology& out) {
+  const double third = out.fabric_of_triangle(t).mass_per_area * out.rest_area[t] / 3;
+  for (const int v : out.triangles[t]) out.mass[at(v)] += third;
+}
+
 }  // namespace
+
+double rest_length(const ClothTopology& topology, std::size_t triangle, std::size_t corner) {
+  const auto& r = topology.rest_inverse[triangle];
+  const double det = r[0] * r[3] - r[1] * r[2];
+  CHECK(det != 0 && corner < 3);
+  const Vec2 e1 = Vec2(r[3], -r[2]) / det, e2 = Vec2(-r[1], r[0]) / det;
+  return corner == 0 ? (e2 - e1).norm() : corner == 1 ? e2.norm() : e1.norm();
+}
 
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {
   const Vec3 e = x1 - x0;
@@ -67,6 +90,12 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
     for (const int v : tri) CHECK(v >= 0 && v < out.vertex_count);
     out.triangle_piece[t] = piece_of[at(tri[0])];
     CHECK(out.triangle_piece[t] >= 0);
+    const double scale = triangle_uvs.empty() ? 0 : pieces[at(out.triangle_piece[t])].pattern_scale;
+    if (scale > 0) {
+      cut_from_pattern(triangle_uvs[t], scale, t, out);
+      weigh(t, out);
+      continue;
+    }
     const Vec3 e1 = rest[at(tri[1])] - rest[at(tri[0])], e2 = rest[at(tri[2])] - rest[at(tri[0])];
     const Vec3 n = e1.cross(e2);
     const double area2 = n.norm();
@@ -81,8 +110,7 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
     const double det = a * d - b * c;  // = area2
     out.rest_inverse[t] = {d / det, -b / det, -c / det, a / det};
     out.rest_area[t] = 0.5 * area2;
-    const double third = out.fabric_of_triangle(t).mass_per_area * out.rest_area[t] / 3;
-    for (const int v : tri) out.mass[at(v)] += third;
+    weigh(t, out);
   }
 
   add_hinges(out);

@@ -1,7 +1,7 @@
 // The rest shape of a cloth system as the energies need it: triangles with material axes, hinges with rest angles, lumped masses.
 // Several garments share one numbering; each piece has its own fabric. Never changes after it is built.
-// Caution: uvs give only the direction of the yarns; lengths are those of the rest positions. Material axis 1 is weft (pattern u),
-// axis 2 is warp (pattern v).
+// Caution: uvs give only the direction of the yarns, and lengths are those of the rest positions, unless a piece is cut from its
+// pattern. Material axis 1 is weft (pattern u), axis 2 is warp (pattern v).
 #pragma once
 
 #include <array>
@@ -18,6 +18,9 @@ struct ClothPiece {
   int first_vertex = 0;
   int vertex_count = 0;
   Fabric fabric;
+  /// m per unit of the uvs, from which lengths, areas and masses come then; they lie flat and may be mirrored. 0: from the rest positions,
+  /// which otherwise say only what is near what.
+  double pattern_scale = 0;
 };
 
 /// Two triangles at a common edge: (v0, v1, v2) and (v1, v0, v3) in the orientation of the first.
@@ -38,6 +41,17 @@ struct BendElement {
   Mat3 stiffness = Mat3::Zero();          ///< M [N m / rad2]; rows of free edges are zero
 };
 
+/// A vertex that is sewn to the point (1 - place) x[edge[0]] + place x[edge[1]]; see seams.h.
+struct SeamPoint {
+  int vertex = 0;
+  std::array<int, 2> edge{};
+  double place = 0;
+  double start_gap = 0;              ///< distance at which the seam starts to close [m]
+  double opens_at = 0, closed_at = 0;  ///< the gap shrinks to nothing between these times [s]
+  double stiffness = 0;              ///< N/m
+  double pull = 0, hold = 0;         ///< force limit while it closes, and afterwards [N]
+};
+
 struct ClothTopology {
   int vertex_count = 0;
   std::vector<Vec3> rest;                        ///< m
@@ -50,6 +64,7 @@ struct ClothTopology {
   std::vector<BendElement> bends;                ///< one per triangle that has a hinge and resists bending
   std::vector<double> mass;                      ///< kg per vertex: a third of each triangle around it
   std::vector<ClothPiece> pieces;
+  std::vector<SeamPoint> seams;                  ///< none unless something is sewn
 
   const Fabric& fabric_of_triangle(std::size_t t) const {
     return pieces[static_cast<std::size_t>(triangle_piece[t])].fabric;
@@ -62,6 +77,9 @@ struct ClothTopology {
 ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Triangle> triangles,
                                   std::span<const ClothPiece> pieces,
                                   std::span<const std::array<Vec2, 3>> triangle_uvs = {});
+
+/// Rest length of the edge opposite to `corner` of a triangle that carries something [m].
+double rest_length(const ClothTopology& topology, std::size_t triangle, std::size_t corner);
 
 /// Signed angle between the normals of (x0, x1, x2) and (x1, x0, x3), about x1 - x0 [rad]; 0 when flat or degenerate.
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);

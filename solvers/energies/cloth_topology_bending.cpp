@@ -48,7 +48,8 @@ void add_hinges(ClothTopology& out) {
     const auto& v = hinge.vertex;
     hinge.piece = out.triangle_piece[at(u.triangle)];
     hinge.rest_area = out.rest_area[at(u.triangle)] + out.rest_area[at(w.triangle)];
-    hinge.rest_angle = hinge_angle(out.rest[at(v[0])], out.rest[at(v[1])], out.rest[at(v[2])], out.rest[at(v[3])]);
+    if (!(out.pieces[at(hinge.piece)].pattern_scale > 0))
+      hinge.rest_angle = hinge_angle(out.rest[at(v[0])], out.rest[at(v[1])], out.rest[at(v[2])], out.rest[at(v[3])]);
     hinge.triangle = {u.triangle, w.triangle};
     out.hinges.push_back(hinge);
   }

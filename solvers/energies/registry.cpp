@@ -2,6 +2,7 @@
 
 #include "solvers/energies/bending.h"
 #include "solvers/energies/membrane.h"
+#include "solvers/energies/seams.h"
 
 namespace ft {
 namespace {
@@ -19,6 +20,7 @@ constexpr ClothEnergyKind k_kinds[] = {
     {"membrane", make_plain<Membrane>, true, true},
     {"bending", make_plain<Bending>, true, false},
     {"air_drag", make_air_drag, false, true},
+    {"seams", make_plain<Seams>, false, true},
 };
 
 }  // namespace

@@ -40,7 +40,8 @@ inline std::vector<Vec3> jitter(std::vector<Vec3> x, double amplitude, std::uint
   return x;
 }
 
-/// 10 cm x 12 cm of an irregular mesh, rolled to a radius of 8 cm, as two pieces of different, orthotropic, damped fabric.
+/// 10 cm x 12 cm of an irregular mesh, rolled to a radius of 8 cm, as two pieces of different, orthotropic, damped fabric
+/// that are sewn to each other at one border.
 inline ClothTopology curved_patch(int columns, int rows) {
   const auto place = [](double s, double t) {
     const double angle = 1.25 * s;
@@ -59,7 +60,17 @@ inline ClothTopology curved_patch(int columns, int rows) {
   denim.stretch_warp = 1500, denim.stretch_weft = 900, denim.shear = 200, denim.poisson = 0.2, denim.bend_warp = 2e-4;
   denim.bend_weft = 5e-5;
   const ClothPiece pieces[] = {{0, count, jersey}, {count, count, denim}};
-  return make_cloth_topology(rest, triangles, pieces);
+  ClothTopology out = make_cloth_topology(rest, triangles, pieces);
+  // Sewn border to border, wide open, below the force limit: as stiff as the membrane.
+  for (int i = 0; i + 1 < columns; ++i) {
+    SeamPoint seam;
+    seam.vertex = i;
+    seam.edge = {count + i, count + i + 1};
+    seam.place = 0.3;
+    seam.stiffness = 200, seam.pull = seam.hold = 1e9;
+    out.seams.push_back(seam);
+  }
+  return out;
 }
 
 }  // namespace ft

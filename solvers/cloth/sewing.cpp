@@ -1,0 +1,125 @@
+#include "solvers/cloth/sewing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/energies/seams.h"
+
+namespace ft {
+namespace {
+
+/// Slows cloth down while it is sewn [1/s]: ten times the speed of seams that shrink in half a second.
+constexpr double k_drag = 10;
+/// Weight comes back over this share of the time that the seams took.
+constexpr double k_weight_back = 0.5;
+
+/// Rest length of every edge of the mesh at which a vertex lies on the border, halves added up: the seam that its stitches hold [m].
+std::vector<double> border_lengths(const ClothTopology& topology) {
+  struct Side {
+    Edge edge;
+    double length;
+  };
+  std::vector<Side> sides;
+  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+    if (topology.rest_area[t] == 0) continue;
+    const Triangle& v = topology.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+      sides.push_back({{std::min(a, b), std::max(a, b)}, rest_length(topology, t, k)});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  std::vector<double> out(at(topology.vertex_count), 0.0), any(out);
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].edge == sides[i].edge) ++end;
+    for (const int v : sides[i].edge) {
+      any[at(v)] = std::max(any[at(v)], sides[i].length);
+      if (end - i == 1) out[at(v)] += 0.5 * sides[i].length;
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (out[i] == 0) out[i] = any[i];  // inside a panel: a dart, a pocket
+  return out;
+}
+
+}  // namespace
+
+void sew(ClothModel& model) {
+  const ClothSetup& setup = model.setup;
+  std::vector<Stitch> stitches;
+  for (std::size_t g = 0; g < setup.garments.size(); ++g)
+    for (Stitch s : setup.garments[g].mesh.stitches) {
+      s.vertex += model.first_vertex[g];
+      for (int& v : s.edge) v += model.first_vertex[g];
+      s.seam = 0;
+      stitches.push_back(s);
+    }
+  if (stitches.empty()) return;
+  std::sort(stitches.begin(), stitches.end());
+  stitches.erase(std::unique(stitches.begin(), stitches.end()), stitches.end());
+  model.sewn = SewnPairs(model.vertex_count(), stitches, model.triangles);
+  const std::vector<double> length = border_lengths(*model.topology);
+  const double begin = -setup.preroll_frames / setup.fps;
+  model.sewn_until.assign(at(model.vertex_count()), begin);
+  std::vector<int> count(at(model.vertex_count()), 0);
+  for (const Stitch& s : stitches) ++count[at(s.vertex)];
+  const SeamSettings settings;
+  for (const Stitch& s : stitches) {
+    const ClothGarment& garment = setup.garments[at(model.garment_of(s.vertex))];
+    SeamPoint point;
+    point.vertex = s.vertex;
+    point.edge = s.edge;
+    point.place = s.place;
+    const auto& x = model.start;
+    point.start_gap = (x[at(s.vertex)] - (1 - s.place) * x[at(s.edge[0])] - s.place * x[at(s.edge[1])]).norm();
+    point.opens_at = begin;
+    point.closed_at = begin + (garment.sewing_time > 0 ? garment.sewing_time : -0.5 * begin);
+    const double held = std::max(length[at(s.vertex)], 1e-5) / count[at(s.vertex)];
+    point.stiffness = settings.stiffness * held;
+    point.pull = settings.pull * held;
+    point.hold = settings.hold * held;
+    model.topology->seams.push_back(point);
+  }
+  for (std::size_t g = 0; g < setup.garments.size(); ++g) {
+    if (setup.garments[g].mesh.stitches.empty()) continue;
+    const double time = setup.garments[g].sewing_time;
+    std::fill(model.sewn_until.begin() + model.first_vertex[g], model.sewn_until.begin() + model.first_vertex[g + 1],
+              begin + (time > 0 ? time : -0.5 * begin));
+  }
+}
+
+void lengths_from_pattern(const ClothTopology& topology, RestEdges& edges) {
+  std::vector<double> sum(edges.edges.size(), 0.0);
+  std::vector<int> count(edges.edges.size(), 0);
+  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+    if (!(topology.pieces[at(topology.triangle_piece[t])].pattern_scale > 0) || topology.rest_area[t] == 0) continue;
+    const Triangle& v = topology.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+      const Edge edge{std::min(a, b), std::max(a, b)};
+      const auto found = std::lower_bound(edges.edges.begin(), edges.edges.end(), edge);
+      if (found == edges.edges.end() || *found != edge) continue;
+      const auto i = static_cast<std::size_t>(found - edges.edges.begin());
+      sum[i] += rest_length(topology, t, k);
+      ++count[i];
+    }
+  }
+  for (std::size_t i = 0; i < count.size(); ++i)
+    if (count[i] > 0) edges.lengths[i] = sum[i] / count[i];
+}
+
+bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, std::span<Vec3> acceleration) {
+  const double begin = -model.setup.preroll_frames / model.setup.fps;
+  bool any = false;
+  for (std::size_t i = 0; i < model.sewn_until.size(); ++i) {
+    const double lasts = model.sewn_until[i] - begin;
+    if (!(lasts > 0) || model.unused[i]) continue;
+    const double ease = std::clamp(1 - (time - model.sewn_until[i]) / (k_weight_back * lasts), 0.0, 1.0);
+    if (ease == 0) continue;
+    acceleration[i] -= ease * (model.setup.gravity + k_drag * v[i]);
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace ft

@@ -1,0 +1,23 @@
+// Panels into garments, in the pre-roll: seams shrink from where the panels were placed until they are closed. Meanwhile the cloth
+// weighs nothing and is slowed down, so that panels come straight from their places to each other instead of falling first.
+// A function of the time alone: nothing to save.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "baker/core/edge_strain.h"
+#include "solvers/cloth/cloth_model.h"
+
+namespace ft {
+
+/// Fills topology->seams, sewn and sewn_until from the stitches of the garments, which are at `start`.
+void sew(ClothModel& model);
+
+/// Rest lengths of edges of pieces that are cut from a pattern [m]; others stay.
+void lengths_from_pattern(const ClothTopology& topology, RestEdges& edges);
+
+/// Adds, per vertex, what takes weight and speed from cloth that is being sewn at this time [m/s2]. False when there is none.
+bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, std::span<Vec3> acceleration);
+
+}  // namespace ft
