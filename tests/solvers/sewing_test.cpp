@@ -159,7 +159,7 @@ TEST(Sewing, Two_panels_become_one_that_falls_whole) {
 }
 
 TEST(Sewing, Is_the_same_when_it_is_resumed_midway_and_for_any_number_of_threads) {
-  std::uint64_t first = 0;
+  Hash128 first{};
   for (const int threads : {1, 2, 3}) {
     const ThreadLimit limit(threads);
     auto whole = make_cloth_solver(two_panels());
