@@ -73,6 +73,7 @@ bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   s.centre.resize(cloth.x.size());
   for (std::size_t i = 0; i < s.centre.size(); ++i) s.centre[i] = cloth.x[i] + s.piece.centre[i];
   step.centre = s.centre;
+  step.friction_share = in.friction_share;
   step.slack = s.piece.slack;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations * (shortened ? k_shortened_newton : 1);

@@ -230,6 +230,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     } else if (!model_->sewn_until.empty()) {
       push.assign(m.x.size(), Vec3::Zero());
     }
+    in.friction_share = sewing_friction(*model_, t0 + h);
     if (!model_->sewn_until.empty() && ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;

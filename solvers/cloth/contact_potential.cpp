@@ -37,8 +37,9 @@ ContactLaw contact_law(double d, double r, double k) {
   return {0.125 * k * r * r - a * std::log(safe / half), a / safe, a / (safe * safe)};
 }
 
-void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h) {
+void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h, double friction_share) {
   pairs_ = &pairs;
+  friction_share_ = friction_share;
   x_start_ = x_start;
   h_ = h;
   way_.assign(at(model_.cloth_vertex_count), 0.f);
@@ -140,9 +141,10 @@ void ContactPotential::update(std::span<const Vec3> x) {
 void ContactPotential::lag_friction() {
   lagged_.clear();
   for (const Contact& c : contacts_) {
-    if (c.friction <= 0) continue;
+    const double friction = friction_share_ * c.friction;
+    if (friction <= 0) continue;
     const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
-    lagged_.push_back({law.force, c.geometry.normal, c.geometry.weight, c.vertex, c.friction});
+    lagged_.push_back({law.force, c.geometry.normal, c.geometry.weight, c.vertex, friction});
   }
 }
 

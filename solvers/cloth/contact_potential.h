@@ -43,8 +43,8 @@ class ContactPotential {
   explicit ContactPotential(const ContactModel& model) : model_(model) {}
 
   /// Takes the pairs of one solve. x_start: all positions at the start of the step (friction measures slip from there), h: its
-  /// length [s].
-  void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h);
+  /// length [s], friction_share: of all friction [1].
+  void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h, double friction_share = 1);
 
   /// Finds the active contacts at x (all vertices). Distances are evaluated anew only where the pair can have come within reach.
   void update(std::span<const Vec3> x);
@@ -75,7 +75,7 @@ class ContactPotential {
   const ContactModel& model_;
   const ContactPairs* pairs_ = nullptr;
   std::span<const Vec3> x_start_;
-  double h_ = 0;
+  double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;     ///< how far each cloth vertex has gone in this solve [m]
   std::vector<Vec3> x_last_;
   /// Distance when it was last evaluated (-1: never) and what the pair's vertices had gone then, at least [m].

@@ -126,7 +126,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
 
   double smallest_radius = 1e-3;
   for (const double r : model_.contact.radius) smallest_radius = std::min(smallest_radius, r);
-  s.contact.begin(*in.pairs, in.all_start, in.h);
+  s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
   s.contact.update(s.all);
   result.seconds_contact += watch.lap();
 

@@ -30,6 +30,7 @@ struct StepInput {
   std::span<const Vec3> centre;                    ///< of the ball that each cloth vertex has to stay in; all_begin is inside
   std::span<const double> slack;                   ///< its radius [m]
   std::span<const Vec3> push;                      ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
+  double friction_share = 1;                       ///< of all friction [1]
   const ContactPairs* pairs = nullptr;             ///< complete within the slack
   int newton_iterations = 3;
 };

@@ -10,8 +10,8 @@ namespace {
 
 /// Slows cloth down while it is sewn [1/s]: ten times the speed of seams that shrink in half a second.
 constexpr double k_drag = 10;
-/// Weight comes back over this share of the time that the seams took.
-constexpr double k_weight_back = 0.5;
+/// Weight comes back over this share of the time that the seams took, friction after it over the next.
+constexpr double k_weight_back = 0.5, k_friction_back = 0.25;
 
 /// Rest length of every edge of the mesh at which a vertex lies on the border, halves added up: the seam that its stitches hold [m].
 std::vector<double> border_lengths(const ClothTopology& topology) {
@@ -120,6 +120,16 @@ bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, 
     any = true;
   }
   return any;
+}
+
+double sewing_friction(const ClothModel& model, double time) {
+  const double begin = -model.setup.preroll_frames / model.setup.fps;
+  double share = 1;
+  for (std::size_t g = 0; g < model.setup.garments.size() && !model.sewn_until.empty(); ++g) {
+    const double until = model.sewn_until[at(model.first_vertex[g])], lasts = until - begin;
+    if (lasts > 0) share = std::min(share, (time - until - k_weight_back * lasts) / (k_friction_back * lasts));
+  }
+  return std::max(share, 0.0);
 }
 
 }  // namespace ft
