@@ -152,7 +152,9 @@ TEST(Sewing, Two_panels_become_one_that_falls_whole) {
     if (f < 12) {
       EXPECT_NEAR(height, 0.5, 1e-3) << f;  // weightless while it is sewn, and both come half the way
     }
-    if (f == 13) EXPECT_LT(widest_seam(mesh, x), 1e-3);
+    if (f == 13) {
+      EXPECT_LT(widest_seam(mesh, x), 1e-3);
+    }
   }
   EXPECT_LT(widest_seam(mesh, x), 1e-4);
   EXPECT_LT(height, 0.4);  // then it falls
@@ -199,7 +201,7 @@ TEST(Sewing, Seams_do_not_depend_on_the_mass_of_the_cloth) {
 }
 
 TEST(Sewing, A_stitch_that_cannot_be_sewn_is_refused) {
-  for (const Stitch bad : {Stitch{0, {0, 1}, 0.5, 0}, Stitch{-1, {0, 1}, 0.5, 0}, Stitch{3, {0, 99999}, 0.5, 0}, Stitch{3, {0, 1}, std::nan(""), 0}}) {
+  for (const Stitch& bad : {Stitch{0, {0, 1}, 0.5, 0}, Stitch{-1, {0, 1}, 0.5, 0}, Stitch{3, {0, 99999}, 0.5, 0}, Stitch{3, {0, 1}, std::nan(""), 0}}) {
     ClothSetup setup = two_panels();
     setup.garments[0].mesh.stitches.push_back(bad);
     EXPECT_FALSE(make_cloth_solver(std::move(setup)));
