@@ -135,7 +135,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
         continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
       }
       // No room: whatever blocks is let through until the part is clear of all cloth again.
-      if (s.candidates.release_blocked(1.0, piece, cloth) > 0) continue;  // search again without them
+      if (s.candidates.release_blocked(cloth) > 0) continue;  // search again without them
       // Only cloth on cloth is left: these pairs pass this once, the certificate will say so.
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];

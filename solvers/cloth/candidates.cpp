@@ -230,18 +230,18 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
   return t;
 }
 
-int Candidates::release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth) {
+int Candidates::release_blocked(ClothMotion& cloth) {
   int freed = 0;
-  for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge}) {
-    auto& list = kind == PairKind::k_vertex_face ? pairs_.vertex_face : pairs_.edge_edge;
-    std::erase_if(list, [&](const Stencil& stencil) {
-      if (ccd_time(kind, gather(piece.start, stencil), gather(piece.all, stencil)) >= share) return false;
+  const auto release = [&](std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
+    for (const Stencil& stencil : blocked) {
       const int part = part_of(stencil);
       for (const int v : stencil.v)
         if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part) cloth.released[at(v)] = part, ++freed;
-      return true;
-    });
-  }
+    }
+    std::erase_if(pairs, [&](const Stencil& stencil) { return std::binary_search(blocked.begin(), blocked.end(), stencil); });
+  };
+  release(pairs_.vertex_face, blocked_.vertex_face);
+  release(pairs_.edge_edge, blocked_.edge_edge);
   return freed;
 }
 

@@ -36,9 +36,9 @@ class Candidates {
   double collect(const ClothMotion& cloth, double h, double fastest, PieceMotion& piece);
   /// After a collect() that gave less than 1: carries the cloth of the pairs that would touch as one.
   void join_blocked(PieceMotion& piece);
-  /// Takes out the pairs that touch within `share` of the motion: cloth vertices are let through the collider's part (noted in
+  /// Takes out the pairs that the last collect() saw touch: their cloth vertices are let through the collider's part (noted in
   /// cloth.released; returns how many), pairs of cloth with cloth are only dropped.
-  int release_blocked(double share, const PieceMotion& piece, ClothMotion& cloth);
+  int release_blocked(ClothMotion& cloth);
 
   const ContactPairs& pairs() const { return pairs_; }
 

@@ -102,6 +102,7 @@ class ClothSolver final : public Solver {
  private:
   struct Frame;
   void walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
 
   std::unique_ptr<ClothModel> model_;
@@ -221,17 +222,8 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     in.h = h;
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
-    if (any_tangled(m.tangled)) {
-      const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
-      mark_tangled(*model_, crossings, m.tangled);
-      push.resize(m.x.size());
-      untangling(m.x, model_->triangles, crossings, push);
-      in.push = push;
-    } else if (!model_->sewn_until.empty()) {
-      push.assign(m.x.size(), Vec3::Zero());
-    }
+    if (push_cloth(t0 + h, m, push)) in.push = push;
     in.friction_share = sewing_friction(*model_, t0 + h);
-    if (!model_->sewn_until.empty() && ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;
@@ -245,6 +237,21 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     body.swap(body_next);
     pins.swap(pins_next);
   }
+}
+
+/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of sewing. False when
+/// nothing does.
+bool ClothSolver::push_cloth(double time, ClothMotion& m, std::vector<Vec3>& push) const {
+  const bool tangled = any_tangled(m.tangled), sewn = !model_->sewn_until.empty();
+  if (!tangled && !sewn) return false;
+  push.assign(m.x.size(), Vec3::Zero());
+  if (tangled) {
+    const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
+    mark_tangled(*model_, crossings, m.tangled);
+    untangling(m.x, model_->triangles, crossings, push);
+  }
+  const bool eased = sewn && ease_sewing(*model_, time, m.v, push);
+  return tangled || eased;
 }
 
 FrameReport ClothSolver::advance_frame(State& state) const {

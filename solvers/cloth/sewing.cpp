@@ -13,6 +13,9 @@ constexpr double k_drag = 10;
 /// Weight comes back over this share of the time that the seams took, friction after it over the next.
 constexpr double k_weight_back = 0.5, k_friction_back = 0.25;
 
+/// Seams that do not say how long they take are closed after this share of the pre-roll.
+constexpr double k_share_of_preroll = 0.5;
+
 /// Rest length of every edge of the mesh at which a vertex lies on the border, halves added up: the seam that its stitches hold [m].
 std::vector<double> border_lengths(const ClothTopology& topology) {
   struct Side {
@@ -60,6 +63,9 @@ void sew(ClothModel& model) {
   model.sewn = SewnPairs(model.vertex_count(), stitches, model.triangles);
   const std::vector<double> length = border_lengths(*model.topology);
   const double begin = -setup.preroll_frames / setup.fps;
+  const auto closed_at = [&](const ClothGarment& garment) {
+    return begin + (garment.sewing_time > 0 ? garment.sewing_time : -k_share_of_preroll * begin);
+  };
   model.sewn_until.assign(at(model.vertex_count()), begin);
   std::vector<int> count(at(model.vertex_count()), 0);
   for (const Stitch& s : stitches) ++count[at(s.vertex)];
@@ -73,7 +79,7 @@ void sew(ClothModel& model) {
     const auto& x = model.start;
     point.start_gap = (x[at(s.vertex)] - (1 - s.place) * x[at(s.edge[0])] - s.place * x[at(s.edge[1])]).norm();
     point.opens_at = begin;
-    point.closed_at = begin + (garment.sewing_time > 0 ? garment.sewing_time : -0.5 * begin);
+    point.closed_at = closed_at(garment);
     const double held = std::max(length[at(s.vertex)], 1e-5) / count[at(s.vertex)];
     point.stiffness = settings.stiffness * held;
     point.pull = settings.pull * held;
@@ -82,9 +88,8 @@ void sew(ClothModel& model) {
   }
   for (std::size_t g = 0; g < setup.garments.size(); ++g) {
     if (setup.garments[g].mesh.stitches.empty()) continue;
-    const double time = setup.garments[g].sewing_time;
     std::fill(model.sewn_until.begin() + model.first_vertex[g], model.sewn_until.begin() + model.first_vertex[g + 1],
-              begin + (time > 0 ? time : -0.5 * begin));
+              closed_at(setup.garments[g]));
   }
 }
 

@@ -7,8 +7,10 @@
 namespace ft {
 namespace {
 
-/// Of a vertex in a tangle [m/s2]: some times what gravity presses layers together with.
+/// Of a vertex in a tangle [m/s2]: five times what gravity presses layers together with.
 constexpr double k_push = 50;
+/// An edge nearer to the face's plane than this (sine of the angle) says nothing about which way shortens.
+constexpr double k_flat = 1e-6;
 
 struct EdgeSide {
   Edge edge;
@@ -41,7 +43,7 @@ void untangling(std::span<const Vec3> x, std::span<const Triangle> triangles, st
     const Vec3 &a = x[at(c.triangle[0])], &b = x[at(c.triangle[1])], &d = x[at(c.triangle[2])];
     const Vec3 normal = (b - a).cross(d - a).normalized(), along = (q - p).normalized();
     const double across = along.dot(normal);
-    if (!(std::abs(across) > 1e-6) || !normal.allFinite()) continue;
+    if (!(std::abs(across) > k_flat) || !normal.allFinite()) continue;
     // The contour leaves the edge into each of its faces; moving the edge by m shortens it by m . (sum of way_in - 2 (E.way_in)/(E.N) N).
     Vec3 shorter = Vec3::Zero();
     const Edge key{std::min(c.edge[0], c.edge[1]), std::max(c.edge[0], c.edge[1])};
@@ -55,7 +57,7 @@ void untangling(std::span<const Vec3> x, std::span<const Triangle> triangles, st
       shorter += way_in - 2 * (along.dot(way_in) / across) * normal;
     }
     const double size = shorter.norm();
-    if (!(size > 1e-9) || !std::isfinite(size)) continue;
+    if (!(size > 0) || !std::isfinite(size)) continue;
     const Vec3 push = k_push / size * shorter;
     // Where the edge goes through the face, and which vertices hold that place.
     const double s = std::clamp((a - p).dot(normal) / (q - p).dot(normal), 0.0, 1.0);
