@@ -1,5 +1,5 @@
 // A geometry cache as a Trajectory: cubic between samples (Catmull-Rom with the samples' own times; Hermite ends are one-sided),
-// held before the first and after the last. It has no bind pose of its own: garments are modelled on its first sample of the shot.
+// held before the first and after the last; before the shot it is the first pose, set back by the run-up (run_up.h). It has no bind pose of its own: garments are modelled on its first sample of the shot.
 #pragma once
 
 #include "baker/core/trajectory.h"
