@@ -11,6 +11,8 @@ namespace {
 constexpr double k_push = 50;
 /// An edge nearer to the face's plane than this (sine of the angle) says nothing about which way shortens.
 constexpr double k_flat = 1e-6;
+/// The contour's shortening by a unit of motion that is less than this is rounding: the pulls of both sides are in balance.
+constexpr double k_balanced = 1e-9;
 
 struct EdgeSide {
   Edge edge;
@@ -57,7 +59,7 @@ void untangling(std::span<const Vec3> x, std::span<const Triangle> triangles, st
       shorter += way_in - 2 * (along.dot(way_in) / across) * normal;
     }
     const double size = shorter.norm();
-    if (!(size > 0) || !std::isfinite(size)) continue;
+    if (!(size > k_balanced) || !std::isfinite(size)) continue;
     const Vec3 push = k_push / size * shorter;
     // Where the edge goes through the face, and which vertices hold that place.
     const double s = std::clamp((a - p).dot(normal) / (q - p).dot(normal), 0.0, 1.0);
