@@ -49,9 +49,12 @@ class PairFinder {
   void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
+  /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when only their
+  /// boxes have grown or moved. Costs little where few have.
+  void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out);
 
  private:
-  void search(std::span<const VertexBox> boxes, bool self, bool edges, ContactPairs& out);
+  void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed, ContactPairs& out);
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

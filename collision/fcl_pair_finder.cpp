@@ -43,6 +43,8 @@ class Tree {
  public:
   bool built() const { return !nodes_.empty(); }
   const FclNode* nodes() const { return nodes_.data(); }
+  /// Per node: whether an element below it was among those of mark().
+  const char* marks() const { return marks_.data(); }
 
   void build(std::span<const PairElement> elements, std::span<const VertexBox> vertex_boxes) {
     std::vector<fcl::Vector3<float>> points;
@@ -66,6 +68,16 @@ class Tree {
     nodes_ = {&model_.getBV(0), at(model_.getNumBVs())};
   }
 
+  void mark(std::span<const PairElement> elements, std::span<const char> changed) {
+    marks_.resize(nodes_.size());
+    for (std::size_t k = nodes_.size(); k-- > 0;) {
+      const FclNode& node = nodes_[k];
+      const auto of_element = [&](const Triangle& v) { return changed[at(v[0])] | changed[at(v[1])] | changed[at(v[2])]; };
+      marks_[k] = static_cast<char>(is_leaf(node) ? of_element(elements[leaf_element(node)].v)
+                                                  : marks_[at(node.first_child)] | marks_[at(node.first_child + 1)]);
+    }
+  }
+
   /// Children lie behind their parents, so one pass backwards sees them first.
   void refit(std::span<const VertexBox> element_boxes) {
     for (std::size_t k = nodes_.size(); k-- > 0;) {
@@ -86,6 +98,7 @@ class Tree {
  private:
   fcl::BVHModel<FclBox> model_;
   std::span<FclNode> nodes_;
+  std::vector<char> marks_;
 };
 
 /// Keys of feature pairs (pair_sort.h), by rank.
@@ -93,21 +106,30 @@ struct Found {
   std::vector<std::uint64_t> vertex_face, edge_edge;
 };
 
-/// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap.
+/// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap. k_some: only those with a
+/// changed vertex.
+template <bool k_some>
 struct Walk {
   const PairFeatures& features;
   const FclNode *ta, *tb;
+  const char *ma, *mb;  ///< marks of the trees
+  const char* changed;  ///< per vertex
   const PairElement *ea, *eb;
   bool want_edges;
   Found& out;
 
+  bool meets(int a, int b) const {
+    if (k_some && !(ma[a] | mb[b])) return false;
+    return overlap(ta[a].bv, tb[b].bv);
+  }
+
   /// All pairs below node n of ta, which is tb.
   void within(int n) const {
     const int i = ta[n].first_child;
-    if (i < 0) return;
+    if (i < 0 || (k_some && !ma[n])) return;
     within(i);
     within(i + 1);
-    if (overlap(ta[i].bv, ta[i + 1].bv)) between(i, i + 1);
+    if (meets(i, i + 1)) between(i, i + 1);
   }
 
   /// a and b overlap. Both sides descend together: four tests in a row cost less than two visits.
@@ -118,16 +140,16 @@ struct Walk {
     if (i < 0 && j < 0) {
       meet(ea[leaf_element(na)], eb[leaf_element(nb)]);
     } else if (j < 0) {
-      if (overlap(ta[i].bv, nb.bv)) between(i, b);
-      if (overlap(ta[i + 1].bv, nb.bv)) between(i + 1, b);
+      if (meets(i, b)) between(i, b);
+      if (meets(i + 1, b)) between(i + 1, b);
     } else if (i < 0) {
-      if (overlap(na.bv, tb[j].bv)) between(a, j);
-      if (overlap(na.bv, tb[j + 1].bv)) between(a, j + 1);
+      if (meets(a, j)) between(a, j);
+      if (meets(a, j + 1)) between(a, j + 1);
     } else {
-      if (overlap(ta[i].bv, tb[j].bv)) between(i, j);
-      if (overlap(ta[i].bv, tb[j + 1].bv)) between(i, j + 1);
-      if (overlap(ta[i + 1].bv, tb[j].bv)) between(i + 1, j);
-      if (overlap(ta[i + 1].bv, tb[j + 1].bv)) between(i + 1, j + 1);
+      if (meets(i, j)) between(i, j);
+      if (meets(i, j + 1)) between(i, j + 1);
+      if (meets(i + 1, j)) between(i + 1, j);
+      if (meets(i + 1, j + 1)) between(i + 1, j + 1);
     }
   }
 
@@ -144,6 +166,7 @@ struct Walk {
         if (!overlap(box, features.edge_boxes[at(rb)])) continue;
         const Edge &va = features.edges[at(ra)], &vb = features.edges[at(rb)];
         if (va[0] == vb[0] || va[0] == vb[1] || va[1] == vb[0] || va[1] == vb[1]) continue;
+        if (k_some && !(changed[va[0]] | changed[va[1]] | changed[vb[0]] | changed[vb[1]])) continue;
         out.edge_edge.push_back(ra < rb ? pair_key(ra, rb) : pair_key(rb, ra));
       }
     }
@@ -154,8 +177,9 @@ struct Walk {
     const VertexBox& face_box = features.face_boxes[at(f.face)];
     for (int i = 0; i < p.owned_vertex_count; ++i) {
       const int v = p.owned_vertex[at(i)];
-      if (overlap(features.vertex_boxes[at(v)], face_box) && v != f.v[0] && v != f.v[1] && v != f.v[2])
-        out.vertex_face.push_back(pair_key(v, f.face));
+      if (!overlap(features.vertex_boxes[at(v)], face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
+      if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) continue;
+      out.vertex_face.push_back(pair_key(v, f.face));
     }
   }
 };
@@ -179,7 +203,8 @@ struct PairFinder::Impl {
   PairSorter sorter;
 
   void split_tasks(bool self);
-  void run_task(const Task& task, Found& out) const;
+  template <bool k_some>
+  void run_task(const Task& task, const char* changed, Found& out) const;
 };
 
 /// Tasks depend on trees and boxes only, never on threads. Every round replaces a task by those of its children.
@@ -217,16 +242,15 @@ void PairFinder::Impl::split_tasks(bool self) {
   }
 }
 
-void PairFinder::Impl::run_task(const Task& task, Found& out) const {
+template <bool k_some>
+void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& out) const {
   out.vertex_face.clear();
   out.edge_edge.clear();
-  const Walk walk{features,
-                  cloth.nodes(),
-                  task.self ? cloth.nodes() : collider.nodes(),
-                  features.cloth.data(),
-                  task.self ? features.cloth.data() : features.collider.data(),
-                  want_edges,
-                  out};
+  const Tree& other = task.self ? cloth : collider;
+  const Walk<k_some> walk{features,      cloth.nodes(),           other.nodes(),
+                          cloth.marks(), other.marks(),           changed,
+                          features.cloth.data(), task.self ? features.cloth.data() : features.collider.data(),
+                          want_edges,    out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
 
@@ -237,13 +261,19 @@ PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_t
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 
-void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) { search(boxes, self, true, out); }
+void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) { search(boxes, self, true, {}, out); }
 
 void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
-  search(boxes, self, false, out);
+  search(boxes, self, false, {}, out);
 }
 
-void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, ContactPairs& out) {
+void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out) {
+  CHECK(changed.size() == boxes.size());
+  search(boxes, self, true, changed, out);
+}
+
+/// changed empty: all pairs.
+void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed, ContactPairs& out) {
   Impl& m = *impl_;
   m.want_edges = edges;
   const PairFeatures& features = m.features;
@@ -255,7 +285,13 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
 
   m.split_tasks(self);
   if (m.found.size() < m.tasks.size()) m.found.resize(m.tasks.size());
-  parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task(m.tasks[i], m.found[i]); });
+  if (changed.empty()) {
+    parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<false>(m.tasks[i], nullptr, m.found[i]); });
+  } else {
+    m.cloth.mark(features.cloth, changed);
+    m.collider.mark(features.collider, changed);
+    parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<true>(m.tasks[i], changed.data(), m.found[i]); });
+  }
   const std::span<const Found> found(m.found.data(), m.tasks.size());
 
   m.sorter.begin(features.vertex_count);

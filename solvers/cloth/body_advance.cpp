@@ -13,11 +13,10 @@ constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
 /// Newton iterations of a shortened piece: a gap that an unconverged solve leaves closed blocks the next advance.
 constexpr int k_shortened_newton = 4;
-/// Cloth that wants to leave its slack by more than this [m] gets more and is solved anew, so often at most: what is held back
-/// loses momentum.
+/// Cloth that wants to leave its slack by more than k_negligible gets more, with some to spare: what is held back loses momentum [m].
 constexpr double k_negligible = 5e-4;
-constexpr double k_asked_margin = 5e-4;
-constexpr int k_most_asked = 1;
+constexpr double k_spare = 5e-4;
+constexpr double k_asked = 1.5;  ///< of what is missing
 /// Rounds in which cloth that would touch is joined to zones, before the piece is shortened.
 constexpr int k_joining_rounds = 4;
 
@@ -33,6 +32,7 @@ struct BodyAdvance::Scratch {
   ImplicitStep step;
   PieceMotion piece;
   std::vector<Vec3> end, centre, x, v, pins;
+  std::vector<double> more;
 };
 
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
@@ -42,19 +42,15 @@ BodyAdvance::~BodyAdvance() = default;
 /// the share of the motion that is free then.
 double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   Scratch& s = *scratch_;
-  const double fastest = s.candidates.find_near(cloth, h, s.piece);
+  s.candidates.find_near(cloth, h, s.piece);
   s.candidates.carry(cloth, h, s.piece);
-  for (int round = 0;; ++round) {
-    const double t = s.candidates.collect(cloth, h, fastest, s.piece);
-    if (t >= 1 || round == k_joining_rounds) return t;
-    s.candidates.join_blocked(s.piece);
-  }
+  double t = s.candidates.collect(cloth, h, s.piece);
+  for (int round = 0; t < 1 && round < k_joining_rounds; ++round) t = s.candidates.join_blocked(cloth, s.piece);
+  return t;
 }
 
-/// Solves for the cloth at the end of a piece and moves its history on. Unless cloth was held back by its slack and may_ask is set:
-/// then nothing changes but the slack that is asked for, and the answer is false.
-bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
-                          AdvanceReport& report) {
+/// Solves for the cloth at the end of a piece and moves its history on.
+void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, ClothMotion& cloth, AdvanceReport& report) {
   Scratch& s = *scratch_;
   s.pins.resize(in.pins_t0.size());
   for (std::size_t p = 0; p < s.pins.size(); ++p) s.pins[p] = in.pins_t0[p] + end * (in.pins_t1[p] - in.pins_t0[p]);
@@ -79,19 +75,20 @@ bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.newton_iterations = model_.setup.newton_iterations * (shortened ? k_shortened_newton : 1);
   s.x.resize(cloth.x.size());
   s.v.resize(cloth.x.size());
+  step.enough_room = k_negligible;
+  step.more_room = [&](std::span<const double> missing) {
+    const auto clock = std::chrono::steady_clock::now();
+    s.more.resize(missing.size());
+    for (std::size_t i = 0; i < missing.size(); ++i) s.more[i] = missing[i] > 0 ? k_asked * missing[i] + k_spare : 0.0;
+    s.candidates.grow(cloth, s.more, s.piece);
+    report.seconds_candidates += seconds_since(clock);
+  };
   const StepResult result = s.step.solve(step, s.x, s.v);
   report.newton_iterations += result.newton_iterations;
   report.linear_iterations += result.linear_iterations;
   report.seconds_assembly += result.seconds_assembly;
   report.seconds_linear += result.seconds_linear;
   report.seconds_contact += result.seconds_contact;
-  if (may_ask && result.held_back > k_negligible) {
-    const std::span<const double> missing = s.step.held_back();
-    s.piece.extra.resize(missing.size(), 0.0);
-    for (std::size_t i = 0; i < missing.size(); ++i)
-      if (missing[i] > 0) s.piece.extra[i] += 2 * missing[i] + k_asked_margin;
-    return false;
-  }
   report.smallest_gap = std::min(report.smallest_gap, result.smallest_gap);
   report.finite = report.finite && result.finite;
   ++report.pieces;
@@ -100,7 +97,6 @@ bool BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   cloth.x.swap(s.x);
   cloth.v.swap(s.v);
   cloth.h_previous = step.h;
-  return true;
 }
 
 AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
@@ -110,8 +106,6 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
   double done = 0, share = 1;  // share: of what is left, that this piece takes
-  int asked = 0;
-  piece.extra.clear();
   while (done < 1) {
     const auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
@@ -139,14 +133,9 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       // Only cloth on cloth is left: these pairs pass this once, the certificate will say so.
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
-    if (!solve(in, h, end, share < 1, asked < k_most_asked, cloth, report)) {
-      ++asked;
-      continue;
-    }
+    solve(in, h, end, share < 1, cloth, report);
     done = end;
     share = 1;
-    asked = 0;
-    piece.extra.clear();
   }
   return report;
 }

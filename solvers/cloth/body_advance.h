@@ -46,8 +46,7 @@ class BodyAdvance {
  private:
   struct Scratch;
   double plan(const ClothMotion& cloth, double h);
-  bool solve(const SubstepInput& input, double h, double end, bool shortened, bool may_ask, ClothMotion& cloth,
-             AdvanceReport& report);
+  void solve(const SubstepInput& in, double h, double end, bool shortened, ClothMotion& cloth, AdvanceReport& report);
 
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;

@@ -14,10 +14,10 @@ constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 
 // Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity and the
-// acceleration of the last step. Too small a ball holds cloth back (it then asks for more and is solved anew), too large a one
+// acceleration of the last step. Too small a ball holds cloth back (it then asks for more), too large a one
 // costs candidates.
 constexpr double k_slack_way = 0.6;            ///< of the way between the two; half of it reaches both
-constexpr double k_slack_acceleration = 1.25;  ///< of what the last step's acceleration makes in this one, on top
+constexpr double k_slack_acceleration = 0.6;   ///< of what the last step's acceleration makes in this one, on top
 constexpr double k_slack_gravity = 0.6;        ///< of h2 g
 constexpr double k_most_acceleration = 2e-3;   ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
 constexpr double k_slack_body = 0.03;          ///< of the body's motion near the cloth: rubbing and the carry's own error
@@ -89,10 +89,11 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
   return part >= 0 || !model_.sewn.together(v.first(split), v.subspan(split));
 }
 
-double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {
+void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   near_body_.vertex_face.clear();
-  if (nb == 0) return 0;
+  fastest_ = 0;
+  if (nb == 0) return;
   Vec3 mean = Vec3::Zero();
   Box box = bounds(cloth.x);
   for (std::size_t i = 0; i < nc; ++i) {
@@ -100,14 +101,13 @@ double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMoti
     box.include((cloth.x[i] + h * cloth.v[i]).eval());
   }
   box.inflate(2 * radius_);
-  double fastest = 0;
   for (std::size_t i = 0; i < nb; ++i) {
     Box swept;
     swept.include(piece.start[nc + i]);
     swept.include((piece.start[nc + i] + piece.body_motion[i]).eval());
-    if (swept.overlaps(box)) fastest = std::max(fastest, (piece.body_motion[i] - mean).norm());
+    if (swept.overlaps(box)) fastest_ = std::max(fastest_, (piece.body_motion[i] - mean).norm());
   }
-  range_ = 2 * radius_ + std::min(fastest, k_farthest_range);
+  range_ = 2 * radius_ + std::min(fastest_, k_farthest_range);
   boxes_.resize(nc + nb);
   // A surface matters from as far away as it comes itself; what stands still with the cloth only where it is near.
   for (std::size_t i = 0; i < nc; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], radius_);
@@ -118,7 +118,6 @@ double Candidates::find_near(const ClothMotion& cloth, double h, const PieceMoti
   finder_.find_vertex_face(boxes_, false, found_);
   for (const Stencil& stencil : found_.vertex_face)  // cloth with the body only, either way round
     if (counts(cloth, PairKind::k_vertex_face, stencil)) near_body_.vertex_face.push_back(stencil);
-  return fastest;
 }
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
@@ -139,33 +138,40 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   carry_field(input, piece.carry);
 }
 
-double Candidates::collect(const ClothMotion& cloth, double h, double fastest, PieceMotion& piece) {
+/// Where the solve may put a vertex, and the box of where it is in the meantime.
+void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& piece) {
+  // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
+  const double gained = cloth.h_previous > 0 ? h_ * h_ / cloth.h_previous : 0;
+  Vec3 acceleration = gained * (cloth.v[i] - cloth.v_previous[i]);
+  const double pull = acceleration.norm();
+  if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
+  const Vec3 way = h_ * cloth.v[i] + 0.5 * acceleration - piece.carry[i];
+  piece.centre[i] = piece.carry[i] + 0.5 * way;
+  piece.slack[i] = k_slack_way * way.norm() + k_slack_acceleration * std::min(pull, k_most_acceleration) +
+                   k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() + k_slack_body * std::min(fastest_, k_farthest_range) +
+                   k_slack_least;
+  set_box(i, cloth, piece);
+}
+
+void Candidates::set_box(std::size_t i, const ClothMotion& cloth, const PieceMotion& piece) {
+  const Vec3 centre = cloth.x[i] + piece.centre[i] - frame_;
+  boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame_, 0.5 * radius_);
+  boxes_[i].include(VertexBox::swept(centre, centre, piece.slack[i] + 0.5 * radius_));
+}
+
+double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
-  const double gravity = model_.setup.gravity.norm();
-  Vec3 frame = Vec3::Zero();
-  for (std::size_t i = 0; i < nc; ++i) frame += piece.carry[i] / static_cast<double>(nc);
+  h_ = h;
+  frame_.setZero();
+  for (std::size_t i = 0; i < nc; ++i) frame_ += piece.carry[i] / static_cast<double>(nc);
   piece.slack.resize(nc);
   piece.centre.resize(nc + nb);
   boxes_.resize(nc + nb);
-  const double gained = cloth.h_previous > 0 ? h * h / cloth.h_previous : 0;
-  for (std::size_t i = 0; i < nc; ++i) {
-    // What pulls on the cloth now pulls in this piece too: without this room, swinging cloth is held back and stretches.
-    Vec3 acceleration = gained * (cloth.v[i] - cloth.v_previous[i]);
-    const double pull = acceleration.norm();
-    if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
-    const Vec3 way = h * cloth.v[i] + 0.5 * acceleration - piece.carry[i];
-    piece.centre[i] = piece.carry[i] + 0.5 * way;
-    piece.slack[i] = k_slack_way * way.norm() + k_slack_acceleration * std::min(pull, k_most_acceleration) +
-                     k_slack_gravity * h * h * gravity + k_slack_body * std::min(fastest, k_farthest_range) + k_slack_least;
-    if (!piece.extra.empty()) piece.slack[i] += piece.extra[i];
-    const Vec3 centre = cloth.x[i] + piece.centre[i] - frame;
-    boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame, 0.5 * radius_);
-    boxes_[i].include(VertexBox::swept(centre, centre, piece.slack[i] + 0.5 * radius_));
-  }
+  for (std::size_t i = 0; i < nc; ++i) place(i, cloth, piece);
   std::copy(piece.body_motion.begin(), piece.body_motion.end(), piece.centre.begin() + static_cast<std::ptrdiff_t>(nc));
   for (std::size_t i = 0; i < nb; ++i) {
     const Vec3& start = piece.start[nc + i];
-    boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame, 0.5 * radius_);
+    boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
   }
   finder_.find(boxes_, any_self_, found_);
   piece.all = piece.carry;
@@ -174,13 +180,59 @@ double Candidates::collect(const ClothMotion& cloth, double h, double fastest, P
   return std::min(t, filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, blocked_.edge_edge));
 }
 
-void Candidates::join_blocked(PieceMotion& piece) {
+/// The pairs of changed_ vertices anew, all others as they are.
+double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
+  finder_.find_changed(boxes_, any_self_, changed_, found_);
+  double t = 1;
+  const auto renew_kind = [&](PairKind kind, const std::vector<Stencil>& found, std::vector<Stencil>& pairs,
+                              std::vector<Stencil>& blocked) {
+    const auto is_changed = [&](const Stencil& s) {
+      return std::any_of(s.v.begin(), s.v.end(), [&](int v) { return changed_[at(v)] != 0; });
+    };
+    std::vector<Stencil> fresh, fresh_blocked, joined;
+    t = std::min(t, filter(kind, found, cloth, piece, fresh, fresh_blocked));
+    std::erase_if(blocked, is_changed);
+    for (const Stencil& s : blocked) t = std::min(t, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
+    const auto join = [&](std::vector<Stencil>& old, const std::vector<Stencil>& added) {
+      joined.clear();
+      std::merge(old.begin(), old.end(), added.begin(), added.end(), std::back_inserter(joined));
+      old.swap(joined);
+    };
+    std::erase_if(pairs, is_changed);
+    join(pairs, fresh);
+    join(blocked, fresh_blocked);
+  };
+  renew_kind(PairKind::k_vertex_face, found_.vertex_face, pairs_.vertex_face, blocked_.vertex_face);
+  renew_kind(PairKind::k_edge_edge, found_.edge_edge, pairs_.edge_edge, blocked_.edge_edge);
+  return t;
+}
+
+double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
   const auto join = [&](PairKind kind, const std::vector<Stencil>& pairs) {
     for (const Stencil& s : pairs) zones_.join(kind, s, gather(piece.start, s), gather(piece.all, s));
   };
   join(PairKind::k_vertex_face, blocked_.vertex_face);
   join(PairKind::k_edge_edge, blocked_.edge_edge);
   zones_.apply(piece.carry);
+  changed_.assign(boxes_.size(), 0);
+  for (std::size_t i = 0; i < piece.carry.size(); ++i) {
+    if (piece.carry[i] == piece.all[i]) continue;
+    changed_[i] = 1;
+    piece.all[i] = piece.carry[i];
+    place(i, cloth, piece);
+  }
+  return renew(cloth, piece);
+}
+
+void Candidates::grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece) {
+  changed_.assign(boxes_.size(), 0);
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    if (!(more[i] > 0)) continue;
+    changed_[i] = 1;
+    piece.slack[i] += more[i];
+    set_box(i, cloth, piece);
+  }
+  renew(cloth, piece);
 }
 
 /// Keeps what can come nearer than the contact radius, and finds the first time of contact among it.

@@ -19,7 +19,6 @@ struct PieceMotion {
   std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
   std::vector<Vec3> carry;        ///< per cloth vertex [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
-  std::vector<double> extra;      ///< per cloth vertex: slack that an earlier try asked for [m]; empty: none
   std::vector<Vec3> centre;       ///< per vertex: from the start to the middle of where the solve may put it; the body's motion [m]
   std::vector<double> slack;      ///< per cloth vertex: how far the solve may put it from there [m]
 };
@@ -28,14 +27,17 @@ class Candidates {
  public:
   explicit Candidates(const ClothModel& model);
 
-  /// Finds the surfaces near the cloth for carry(). Returns the largest body motion near the cloth, relative to the cloth's mean [m].
-  double find_near(const ClothMotion& cloth, double h, const PieceMotion& piece);
+  /// Finds the surfaces near the cloth for carry(), and how fast they come.
+  void find_near(const ClothMotion& cloth, double h, const PieceMotion& piece);
   /// Fills piece.carry: near the body its motion, else the cloth's own. After find_near(); forgets zones.
   void carry(const ClothMotion& cloth, double h, PieceMotion& piece);
-  /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
-  double collect(const ClothMotion& cloth, double h, double fastest, PieceMotion& piece);
-  /// After a collect() that gave less than 1: carries the cloth of the pairs that would touch as one.
-  void join_blocked(PieceMotion& piece);
+  /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch. After carry().
+  double collect(const ClothMotion& cloth, double h, PieceMotion& piece);
+  /// After a collect() or join_blocked() that gave less than 1: carries the cloth of the pairs that would touch as one, brings
+  /// pairs() up to it and returns the share anew.
+  double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
+  /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is carried already.
+  void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
   /// Takes out the pairs that the last collect() saw touch: their cloth vertices are let through the collider's part (noted in
   /// cloth.released; returns how many), pairs of cloth with cloth are only dropped.
   int release_blocked(ClothMotion& cloth);
@@ -45,14 +47,23 @@ class Candidates {
  private:
   bool counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const;
   int part_of(const Stencil& stencil) const;
+  void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);
+  void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
+  double renew(const ClothMotion& cloth, const PieceMotion& piece);
   double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
                 std::vector<Stencil>& kept, std::vector<Stencil>& blocked);
 
   const ClothModel& model_;
   PairFinder finder_;
   double radius_ = 1e-3, self_radius_ = 0;
-  double range_ = 0;  ///< of near_body_ [m]
   bool any_self_ = false;
+
+  // Of the piece.
+  double range_ = 0;             ///< of near_body_ [m]
+  double fastest_ = 0;           ///< largest body motion near the cloth, relative to the cloth's mean [m]
+  double h_ = 0;                 ///< s
+  Vec3 frame_ = Vec3::Zero();    ///< mean carry: boxes move with it [m]
+  std::vector<char> changed_;    ///< per vertex: what renew() has to look at
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;
   std::vector<Vec3> inertia_;

@@ -63,7 +63,7 @@ struct ImplicitStep::Scratch {
   LinearSystem system;
   ContactPotential contact;
   std::vector<Vec3> y, gradient, direction, all, trial;
-  std::vector<double> share, held_back;
+  std::vector<double> share, missing;
   std::vector<PairTerm> terms;
   ContactPairs near;
 };
@@ -74,8 +74,6 @@ ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
   scratch_ = std::make_unique<Scratch>(model, settings);
 }
 ImplicitStep::~ImplicitStep() = default;
-
-std::span<const double> ImplicitStep::held_back() const { return scratch_->held_back; }
 
 StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::span<Vec3> v_out) {
   Scratch& s = *scratch_;
@@ -107,7 +105,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.gradient.resize(n);
   s.direction.resize(n);
   s.share.resize(n);
-  s.held_back.assign(n, 0.0);
+  s.missing.resize(n);
 
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   const auto potential = [&](std::vector<Vec3>& all) {
@@ -165,21 +163,30 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     ++result.newton_iterations;
     result.seconds_linear += watch.lap();
 
-    result.held_back = 0;
-    std::fill(s.held_back.begin(), s.held_back.end(), 0.0);
+    for (Vec3& d : s.direction)
+      if (!d.allFinite()) d.setZero(), result.finite = false;
+    // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
+    double most_missing = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!s.direction[i].allFinite()) s.direction[i].setZero(), result.finite = false;
-      // Stay in the ball inside which the list of pairs is complete.
+      s.missing[i] = std::max(0.0, (s.all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
+      most_missing = std::max(most_missing, s.missing[i]);
+    }
+    if (in.more_room && most_missing > in.enough_room) {
+      result.seconds_contact += watch.lap();
+      in.more_room(s.missing);
+      watch.lap();
+      s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
+      s.contact.update(s.all);
+      s.contact.lag_friction();
+    }
+    for (std::size_t i = 0; i < n; ++i) {
       const Vec3 from = s.all[i] - in.centre[i];
       const double room = in.slack[i];
-      if ((from + s.direction[i]).squaredNorm() > room * room) {
-        s.held_back[i] = (from + s.direction[i]).norm() - room;
-        result.held_back = std::max(result.held_back, s.held_back[i]);
-        const double dd = s.direction[i].squaredNorm(), fd = from.dot(s.direction[i]);
-        const double cc = from.squaredNorm() - room * room;
-        const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;
-        s.direction[i] *= std::clamp(t, 0.0, 1.0);
-      }
+      if ((from + s.direction[i]).squaredNorm() <= room * room) continue;
+      const double dd = s.direction[i].squaredNorm(), fd = from.dot(s.direction[i]);
+      const double cc = from.squaredNorm() - room * room;
+      const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;
+      s.direction[i] *= std::clamp(t, 0.0, 1.0);
     }
     s.contact.near_pairs(s.direction, k_floor, s.near);
     truncate_displacements(s.all, s.direction, model_.vertex_count(), s.near, k_floor, s.share);

@@ -5,6 +5,7 @@
 // beyond which BDF2 is not zero-stable).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,13 +34,16 @@ struct StepInput {
   double friction_share = 1;                       ///< of all friction [1]
   const ContactPairs* pairs = nullptr;             ///< complete within the slack
   int newton_iterations = 3;
+  /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m]. It may give
+  /// more: slack and pairs are looked at again. May be empty.
+  std::function<void(std::span<const double> missing)> more_room;
+  double enough_room = 0;  ///< m
 };
 
 struct StepResult {
   int newton_iterations = 0, linear_iterations = 0, backtracks = 0;
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
-  double held_back = 0;     ///< how far past its slack the last iteration wanted to take a vertex [m]; see held_back() for each
   bool finite = true;
   double seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
@@ -50,8 +54,6 @@ class ImplicitStep {
   ~ImplicitStep();
   /// Fills x and v of the cloth at the end of the step.
   StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
-  /// Per vertex, of the last solve: how far past its slack its last iteration wanted to go [m].
-  std::span<const double> held_back() const;
 
  private:
   struct Scratch;

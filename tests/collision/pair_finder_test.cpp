@@ -274,6 +274,34 @@ TEST(PairFinder, A_search_without_edges_finds_the_same_vertices_and_faces) {
   }
 }
 
+TEST(PairFinder, A_search_for_changed_vertices_finds_their_pairs_and_no_others) {
+  Scene scene = two_sheets(20, 0.02, 4);
+  PairFinder finder = finder_of(scene);
+  ContactPairs all, some;
+  finder.find(scene.boxes, true, all);  // the trees are of before
+  Dice dice(11);
+  for (const int every : {1, 3, 40, 1000000}) {
+    std::vector<char> changed(scene.boxes.size(), 0);
+    for (std::size_t i = 0; i < changed.size(); i += at(every)) {
+      if (i == 0 && every > 1000) continue;
+      changed[i] = 1;
+      const Vec3 p = 0.05 * dice.cube(1);
+      scene.boxes[i].include(VertexBox::swept(p, p, 0.01));
+    }
+    for (const bool self : {true, false}) {
+      finder.find_changed(scene.boxes, self, changed, some);
+      finder.find(scene.boxes, self, all);
+      const auto is_not_changed = [&](const Stencil& s) {
+        return std::none_of(s.v.begin(), s.v.end(), [&](int v) { return changed[at(v)] != 0; });
+      };
+      std::erase_if(all.vertex_face, is_not_changed);
+      std::erase_if(all.edge_edge, is_not_changed);
+      expect_same(some, all);
+      EXPECT_EQ(all.edge_edge.empty(), every > 1000);
+    }
+  }
+}
+
 TEST(PairFinder, Edges_of_a_face_with_a_vertex_that_is_nowhere_still_count) {
   // Two collider triangles share the edge 3-4; vertex 5 of the first is nowhere.
   Scene scene{3, 4, {{0, 1, 2}}, {{3, 4, 5}, {4, 3, 6}}, {}};
