@@ -29,7 +29,8 @@ build "$preset"
 # Any report of a sanitizer ends the program with an error, and so fails the test. Options of the caller's come last and win.
 case $preset in
   asan)
-    export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:${ASAN_OPTIONS:-}
+    export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:suppressions=$root/tests/asan.supp:${ASAN_OPTIONS:-}
+    export LSAN_OPTIONS=suppressions=$root/tests/lsan.supp:print_suppressions=0:${LSAN_OPTIONS:-}
     export UBSAN_OPTIONS=print_stacktrace=1:${UBSAN_OPTIONS:-}
     ;;
   tsan) export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:${TSAN_OPTIONS:-} ;;
