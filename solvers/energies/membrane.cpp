@@ -41,6 +41,20 @@ void strain(const Deformation& d, Lane* e) {
   }
 }
 
+/// Strain over which the crimp goes out of yarns and their stiffness comes in.
+constexpr double k_straightening = 0.01;
+
+struct Taut {
+  double value, slope, curvature;
+};
+
+/// Energy of unit stiffness at a strain past the limit: its curvature rises from 0 to 1, without a jump.
+inline Taut taut(double past) {
+  const double in = std::clamp(past, 0.0, k_straightening), out = std::max(past - k_straightening, 0.0);
+  constexpr double w = k_straightening;
+  return {in * in * in / (6 * w) + out * (0.5 * w + 0.5 * out), in * in / (2 * w) + out, in / w};
+}
+
 /// Area times second Piola-Kirchhoff stress with damping: S11, S22, S12.
 void stress(const Membrane::Group& g, const Membrane::Reference& ref, double inverse_rate_time, const Lane* e, Lane* s) {
   for (int l = 0; l < k_lanes; ++l) {
@@ -48,8 +62,8 @@ void stress(const Membrane::Group& g, const Membrane::Reference& ref, double inv
     const double e0 = e[0][l] + d * (e[0][l] - ref.strain[0][l]);
     const double e1 = e[1][l] + d * (e[1][l] - ref.strain[1][l]);
     const double e2 = e[2][l] + d * (e[2][l] - ref.strain[2][l]);
-    s[0][l] = g.stiffness[0][l] * e0 + g.stiffness[2][l] * e1;
-    s[1][l] = g.stiffness[2][l] * e0 + g.stiffness[1][l] * e1;
+    s[0][l] = g.stiffness[0][l] * e0 + g.stiffness[2][l] * e1 + g.limit_stiffness[l] * taut(e[0][l] - g.limit[0][l]).slope;
+    s[1][l] = g.stiffness[2][l] * e0 + g.stiffness[1][l] * e1 + g.limit_stiffness[l] * taut(e[1][l] - g.limit[1][l]).slope;
     s[2][l] = g.stiffness[3][l] * e2;
   }
 }
@@ -84,10 +98,10 @@ void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, cons
   }
 }
 
-void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* s, double inverse_rate_time,
+void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* strain, const Lane* s, double inverse_rate_time,
                     ElementBlocks& out) {
   // Positive part of the 2x2 stress: alpha S + beta I, from the eigenvalues mean +- radius.
-  alignas(32) Lane p[3], more;
+  alignas(32) Lane p[3], more, straight[2];
   for (int l = 0; l < k_lanes; ++l) {
     const double mean = 0.5 * (s[0][l] + s[1][l]), half = 0.5 * (s[0][l] - s[1][l]);
     const double radius = std::sqrt(half * half + s[2][l] * s[2][l]);
@@ -97,11 +111,13 @@ void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* 
     const double alpha = (q1 - q2) / twice, beta = q1 - alpha * l1;
     p[0][l] = alpha * s[0][l] + beta, p[1][l] = alpha * s[1][l] + beta, p[2][l] = alpha * s[2][l];
     more[l] = 1 + g.damping_time[l] * inverse_rate_time;
+    for (int k = 0; k < 2; ++k) straight[k][l] = g.limit_stiffness[l] * taut(strain[k][l] - g.limit[k][l]).curvature;
   }
   ElementParts e;
   for (int k = 0; k < 3; ++k) e.u[k] = as_lanes(d.f1[k]), e.w[k] = as_lanes(d.f2[k]);
   const Lanes factor = as_lanes(more);
-  e.c11 = factor * as_lanes(g.stiffness[0]), e.c22 = factor * as_lanes(g.stiffness[1]);
+  e.c11 = factor * as_lanes(g.stiffness[0]) + as_lanes(straight[0]);
+  e.c22 = factor * as_lanes(g.stiffness[1]) + as_lanes(straight[1]);
   e.c12 = factor * as_lanes(g.stiffness[2]), e.c33 = factor * as_lanes(g.stiffness[3]);
   e.p11 = as_lanes(p[0]), e.p22 = as_lanes(p[1]), e.p12 = as_lanes(p[2]);
   const Lanes ax = as_lanes(g.rest_inverse[0]), ay = as_lanes(g.rest_inverse[1]);
@@ -132,6 +148,9 @@ void scatter(const ElementBlocks& e, const BlockPositions<3>& positions, std::si
   add_transposed_blocks(e.b12, used, blocks, at_block(7));
   add_blocks(e.b22, used, blocks, at_block(8));
 }
+
+/// Green strain of a line that is longer by this share; a limit of 0 is none.
+double green_limit(double strain) { return strain > 0 ? strain + 0.5 * strain * strain : 1e30; }
 
 }  // namespace
 
@@ -166,6 +185,9 @@ Membrane::Membrane(const ClothTopology& topology) {
       g.stiffness[k][l] = topology.rest_area[t] * c[k];
     }
     g.damping_time[l] = fabric.damping;
+    g.limit[0][l] = green_limit(fabric.limit_weft);
+    g.limit[1][l] = green_limit(fabric.limit_warp);
+    g.limit_stiffness[l] = topology.rest_area[t] * fabric.limit_stretch;
   }
 }
 
@@ -205,7 +227,8 @@ double Membrane::value(std::span<const Vec3> x) const {
                                2 * g.stiffness[2][l] * e[0][l] * e[1][l] + g.stiffness[3][l] * e[2][l] * e[2][l];
         const double viscous = g.stiffness[0][l] * r0 * r0 + g.stiffness[1][l] * r1 * r1 + 2 * g.stiffness[2][l] * r0 * r1 +
                                g.stiffness[3][l] * r2 * r2;
-        sum[l] += 0.5 * (elastic + damping * viscous);
+        sum[l] += 0.5 * (elastic + damping * viscous) +
+                  g.limit_stiffness[l] * (taut(e[0][l] - g.limit[0][l]).value + taut(e[1][l] - g.limit[1][l]).value);
       }
     }
     double total = 0;
@@ -254,7 +277,7 @@ void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const 
       deformation(g, x, d);
       strain(d, e);
       stress(g, reference_[i], inverse_rate_time_, e, s);
-      element_blocks(g, d, s, inverse_rate_time_, blocks);
+      element_blocks(g, d, e, s, inverse_rate_time_, blocks);
       scatter(blocks, positions_, i * k_lanes, schedule_.used(i), hessian.blocks.data());
     }
   });

@@ -1,0 +1,53 @@
+// The membrane against closed forms of a sheet that is stretched evenly.
+#include "solvers/energies/membrane.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/solvers/cloth_patches.h"
+
+namespace ft {
+namespace {
+
+/// Force [N] that holds a sheet of 0.2 m x 0.3 m stretched by `strain` along its warp, its width kept; the warp is the pattern's v.
+double pull(const Fabric& fabric, double strain) {
+  auto rest = grid_points(4, 6, [](double s, double t) { return Vec3(0.2 * s, 0.3 * t, 0); });
+  const auto triangles = grid_triangles(4, 6);
+  const ClothPiece piece{0, static_cast<int>(rest.size()), fabric};
+  const ClothTopology topology = make_cloth_topology(rest, triangles, {&piece, 1});
+  const Membrane membrane(topology);
+  std::vector<Vec3> x = rest, gradient(rest.size(), Vec3::Zero());
+  for (Vec3& p : x) p.y() *= 1 + strain;
+  membrane.add_gradient(x, gradient);
+  double force = 0;
+  for (std::size_t i = gradient.size() - 5; i < gradient.size(); ++i) force += gradient[i].y();
+  return force;
+}
+
+TEST(Membrane, A_weave_pulls_straight_beyond_its_limit_and_a_knit_does_not) {
+  Fabric fabric;
+  fabric.stretch_warp = 500, fabric.stretch_weft = 400, fabric.poisson = 0.3, fabric.damping = 0;
+  for (const double limit : {0.0, 0.04})
+    for (const double strain : {-0.02, 0.01, 0.039, 0.041, 0.06, 0.1}) {
+      fabric.limit_warp = limit;
+      const double green = strain + 0.5 * strain * strain, bound = limit + 0.5 * limit * limit;
+      const double past = limit > 0 ? std::max(0.0, green - bound) : 0;
+      const double taut = past < 0.01 ? past * past / 0.02 : past - 0.005;  // the crimp goes out over 1 %
+      const double stress = 500 / (1 - 0.3 * 0.3) * green + fabric.limit_stretch * taut;
+      EXPECT_NEAR(pull(fabric, strain), 0.2 * (1 + strain) * stress, 1e-9) << limit << " " << strain;
+    }
+}
+
+TEST(Membrane, Limits_of_warp_and_weft_do_not_feel_each_other) {
+  Fabric fabric;
+  fabric.damping = 0;
+  const double soft = pull(fabric, 0.1);
+  fabric.limit_weft = 0.01;
+  EXPECT_EQ(pull(fabric, 0.1), soft);
+  fabric.limit_warp = 0.01;
+  EXPECT_GT(pull(fabric, 0.1), 3 * soft);
+}
+
+}  // namespace
+}  // namespace ft
