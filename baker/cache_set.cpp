@@ -94,8 +94,13 @@ Snapshot CacheSet::take(std::span<const State> states, const Snapshot* before) c
     if (source.garment >= 0) {
       positions_of(source, state, x);
       v.assign(x.size(), Vec3::Zero());
-      if (before)
-        for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - before->positions[i][k]) * plan_.shot().fps;
+      if (before) {
+        // Motion blur must not see the way from one place to the other.
+        std::vector<Vec3> from = before->positions[i];
+        const auto& teleports = plan_.primaries[plan_.groups[source.group].primary].scan.teleports;
+        if (const Teleport* teleport = teleport_into(teleports, out.frame)) carry(*teleport, std::span(from));
+        for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - from[k]) * plan_.shot().fps;
+      }
     } else if (source.collider) {
       solvers_[source.group]->collider_positions(state, x);
     } else {

@@ -66,6 +66,17 @@ Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory
   return {};
 }
 
+TeleportScan scan_of(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory) {
+  TeleportScanSettings settings;
+  settings.first_frame = shot.first_frame;
+  settings.last_frame = shot.last_frame;
+  settings.preroll_frames = shot.preroll;
+  settings.fps = shot.fps;
+  settings.detect = spec.teleports == Teleports::k_detect;
+  settings.frames = spec.teleport_frames;
+  return scan_teleports(trajectory, settings);
+}
+
 /// A pin on vertices of the file -> on joined ones; the strongest weight counts.
 ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
   std::map<int, double> weight_of;
@@ -188,13 +199,16 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     CHECK(imported->trajectory);
     if (const Status checked = check_primary(shot, spec, *imported->trajectory); !checked) return checked.error();
     for (const std::string& note : imported->info.notes) plan.notes.push_back("primary \"" + spec.name + "\": " + note);
-    plan.primaries.push_back({spec.name, std::move(imported->trajectory), std::move(imported->info)});
+    TeleportScan scan = scan_of(shot, spec, *imported->trajectory);
+    for (std::string& note : teleport_notes(scan, spec.name)) plan.notes.push_back(std::move(note));
+    plan.primaries.push_back({spec.name, std::move(imported->trajectory), std::move(imported->info), std::move(scan)});
   }
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
     GroupPlan group{p, common_setup(shot), {}};
     group.setup.primary = plan.primaries[p].trajectory;
+    group.setup.teleports = plan.primaries[p].scan.teleports;
     for (const ClothSpec& spec : shot.cloths) {
       if (spec.on != plan.primaries[p].name) continue;
       if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added) return added.error();

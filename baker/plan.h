@@ -10,6 +10,7 @@
 
 #include "baker/inputs.h"
 #include "io/import/import.h"
+#include "io/import/teleport_scan.h"
 #include "solvers/cloth/cloth_solver.h"
 
 namespace ft {
@@ -18,6 +19,7 @@ struct PrimaryPlan {
   std::string name;
   std::shared_ptr<const Trajectory> trajectory;
   CharacterInfo info;
+  TeleportScan scan;
 };
 
 /// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation.

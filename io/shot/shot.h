@@ -16,6 +16,9 @@
 
 namespace ft {
 
+/// What is done about a primary that jumps to another place between two frames.
+enum class Teleports { k_detect, k_ignore, k_frames };
+
 /// [primary.NAME]: what drives.
 struct PrimarySpec {
   std::string name;
@@ -33,6 +36,8 @@ struct PrimarySpec {
   std::string body;                  ///< BVH: "blended" (default) or "capsules"
   std::optional<double> height;      ///< BVH and others: scale so that the bind pose is this tall [m]
   std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all
+  Teleports teleports = Teleports::k_detect;
+  std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
 };
 
 /// One way to hold a garment to its primary.

@@ -42,6 +42,9 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "Scales the character so that its bind pose is this tall"},
       {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects",
        "Names of the meshes that make the collider; without it all"},
+      {"teleports", TeleportsKey{}, 0, 9'999'999, "", "", false, "teleport cuts jumps",
+       "What is done about a character that jumps to another place between two frames: `\"detect\"` carries the cloth "
+       "along, `\"ignore\"` simulates it as motion, `[1041]` names the first frame at each new place"},
   };
   return keys;
 }

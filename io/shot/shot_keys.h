@@ -11,16 +11,18 @@
 
 namespace ft {
 
-/// Types without a plain member: frames fill two, pins have a grammar of their own.
+/// Types without a plain member: frames and teleports fill two, pins have a grammar of their own.
 struct FramesKey {};
 struct PinsKey {};
 struct SinglePinKey {};
+struct TeleportsKey {};
 
 template <class Spec>
 struct ShotKey {
   using Target = std::variant<int Spec::*, double Spec::*, bool Spec::*, std::string Spec::*,
                               std::filesystem::path Spec::*, std::optional<double> Spec::*, Vec3 Spec::*,
-                              std::vector<std::string> Spec::*, FramesKey, PinsKey, SinglePinKey>;
+                              std::vector<std::string> Spec::*, FramesKey, PinsKey, SinglePinKey,
+                              TeleportsKey>;
   std::string_view name;
   Target target;
   double lowest = 0, highest = 0;  ///< of numbers, and of every component of vectors; both 0: no range

@@ -254,6 +254,29 @@ class ShotReader {
     }
   }
 
+  template <class Spec>
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, TeleportsKey) {
+    if constexpr (std::is_same_v<Spec, PrimarySpec>) {
+      const Value& value = member.value;
+      const bool number = value.kind == Value::Kind::k_integer || value.kind == Value::Kind::k_number;
+      if (value.kind == Value::Kind::k_text) {
+        if (!reader.is_one_of(value, value.text, std::vector<std::string>{"detect", "ignore"})) return;
+        spec.teleports = value.text == "detect" ? Teleports::k_detect : Teleports::k_ignore;
+      } else if (value.kind == Value::Kind::k_list || number) {
+        spec.teleports = Teleports::k_frames;
+        for (const Value& item : number ? std::vector<Value>{value} : value.items)
+          if (const auto frame = reader.number(item, allowed(key, true))) spec.teleport_frames.push_back(static_cast<int>(*frame));
+        auto& frames = spec.teleport_frames;
+        std::sort(frames.begin(), frames.end());
+        frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+      } else {
+        reader.fault(value, "needs \"detect\", \"ignore\" or a list of frames like [1041], not " + describe(value));
+      }
+    } else {
+      CHECK(false);
+    }
+  }
+
   void read_pin(const std::string& owner, const Value& value, ClothSpec& cloth) {
     PinSpec pin;
     if (value.kind == Value::Kind::k_text) {

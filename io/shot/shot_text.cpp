@@ -102,6 +102,15 @@ struct ValueText {
     return out.append("]");
   }
   std::string operator()(SinglePinKey) const { return {}; }
+  std::string operator()(TeleportsKey) const {
+    if constexpr (std::is_same_v<Spec, PrimarySpec>) {
+      if (spec.teleports != Teleports::k_frames) return in_quotes(spec.teleports == Teleports::k_detect ? "detect" : "ignore");
+      std::string out = "[";
+      for (const int frame : spec.teleport_frames) out.append(out.size() > 1 ? ", " : "").append(std::to_string(frame));
+      return out.append("]");
+    }
+    return {};
+  }
 };
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -129,6 +138,7 @@ std::string type_text(const ShotKey<Spec>& key) {
     std::string operator()(FramesKey) const { return "frames"; }
     std::string operator()(PinsKey) const { return std::is_same_v<Spec, PinSpec> ? "vertices" : "list of pins"; }
     std::string operator()(SinglePinKey) const { return "text"; }
+    std::string operator()(TeleportsKey) const { return "text or list of frames"; }
   };
   return std::visit(Names{}, key.target);
 }

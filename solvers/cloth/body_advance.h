@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/teleport.h"
 #include "solvers/cloth/implicit_step.h"
 
 namespace ft {
@@ -18,6 +19,9 @@ struct ClothMotion {
   std::vector<double> released;     ///< per cloth vertex: collider part that it may pass, -1 none
   std::vector<double> tangled;      ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
 };
+
+/// Position, velocity and history to the new place.
+void carry(const Teleport& teleport, ClothMotion& motion);
 
 /// What one substep knows of the outside.
 struct SubstepInput {

@@ -1,5 +1,5 @@
 // The walk of a frame:
-//   collider at both ends -> substeps from the body's speed near the cloth
+//   collider at both ends (where the primary is cut to another place, cloth and collider at t0 go there first) -> substeps from the body's speed near the cloth
 //     per substep: collider and pins at its end -> BodyAdvance (carry, CCD, Newton, truncation)
 //   certificate.cpp: exact crossings; any that released cloth does not explain: back to the frame's start, twice the substeps,
 //   at most three times and as long as it helps
@@ -122,6 +122,7 @@ class ClothSolver final : public Solver {
 struct ClothSolver::Frame {
   int number = 0;  ///< of its end
   double t0 = 0, t1 = 0;
+  bool cut = false;  ///< a teleport lies within: what the trajectory says between the ends is not to be used
   std::vector<Vec3> drawn_t0, drawn_t1, body_t0, body_t1;
 };
 
@@ -208,7 +209,12 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
         drawn = frame.drawn_t1;
         body_next = frame.body_t1;
       } else {
-        model_->collider->drawn(t0 + h, drawn);
+        if (frame.cut) {
+          const double share = (k + 1.0) / substeps;
+          for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i] = frame.drawn_t0[i] + share * (frame.drawn_t1[i] - frame.drawn_t0[i]);
+        } else {
+          model_->collider->drawn(t0 + h, drawn);
+        }
         model_->collider->feasible(t0 + h, drawn, body_next);
       }
     }
@@ -275,7 +281,13 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     model_->collider->feasible(frame.t1, frame.drawn_t1, frame.body_t1);
     body_at_ = {frame.t1, frame.drawn_t1, frame.body_t1};
   }
-  const ClothMotion start = load(state, at(model_->vertex_count()));
+  ClothMotion start = load(state, at(model_->vertex_count()));
+  if (const Teleport* teleport = teleport_into(setup.teleports, frame.number)) {
+    carry(*teleport, start);
+    carry(*teleport, std::span(frame.drawn_t0));
+    carry(*teleport, std::span(frame.body_t0));
+    frame.cut = true;
+  }
   const int substeps = choose_substeps(frame, start);
   FrameReport report, best_report;
   ClothMotion motion, best;

@@ -9,6 +9,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/result.h"
+#include "baker/core/teleport.h"
 #include "baker/core/trajectory.h"
 #include "collision/feasible_collider.h"
 #include "solvers/energies/fabric.h"
@@ -51,6 +52,7 @@ struct ClothSetup {
   double linear_tolerance = 3e-2;
   bool bdf2 = true;                           ///< false: implicit Euler
   FeasibleSettings feasible;
+  std::vector<Teleport> teleports;            ///< of the primary: the cloth goes along
 };
 
 /// Checks the setup (pins in range, garments not empty) and builds the model.

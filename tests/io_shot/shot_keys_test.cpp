@@ -59,6 +59,8 @@ TEST_F(ShotFile, Every_key_of_the_table_can_be_set_and_changes_the_canonical_tex
         value = "5-6";
       else if (key.name == "pins")
         value = "[{within=0.5}]";
+      else if (key.name == "teleports")
+        value = "[5, 7]";
       else if (key.name == "pin")
         value = "elbow";
       else if (key.name == "formats")
@@ -99,6 +101,18 @@ TEST_F(ShotFile, Canonical_text_is_the_same_for_the_same_shot_written_differentl
   const auto b = parse(text);
   ASSERT_TRUE(a.ok() && b.ok());
   EXPECT_EQ(canonical(*a), canonical(*b));
+}
+
+TEST_F(ShotFile, Teleports_are_a_word_or_frames) {
+  const auto shot = parse(k_good, {"primary.mannequin.teleports=[1041, 1003, 1041]"});
+  ASSERT_TRUE(shot.ok()) << shot.error().text();
+  EXPECT_EQ(shot->primaries[0].teleports, Teleports::k_frames);
+  EXPECT_EQ(shot->primaries[0].teleport_frames, (std::vector<int>{1003, 1041}));
+  EXPECT_EQ(parse(k_good)->primaries[0].teleports, Teleports::k_detect);
+  EXPECT_EQ(parse(k_good, {"primary.mannequin.teleports=ignore"})->primaries[0].teleports, Teleports::k_ignore);
+  EXPECT_EQ(parse(k_good, {"primary.mannequin.teleports=1041"})->primaries[0].teleport_frames, std::vector<int>{1041});
+  for (const char* wrong : {"detekt", "true", "[1.5]", "[-3]", "[\"1041\"]"})
+    EXPECT_EQ(faults_of(k_good, {std::string("primary.mannequin.teleports=") + wrong}).size(), 1u) << wrong;
 }
 
 TEST_F(ShotFile, Paths_of_settings_are_relative_to_the_shot_file) {
