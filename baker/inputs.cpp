@@ -92,6 +92,13 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
   }
   for (const ClothSpec& cloth : s.cloths) {
     if (const Status added = add_file(inputs, "cloth." + cloth.name + ".mesh", cloth.mesh); !added) return added.error();
+    const auto add_values = [&](const char* list, std::size_t number, const std::filesystem::path& path) {
+      return add_file(inputs, "cloth." + cloth.name + "." + list + "." + std::to_string(number + 1) + ".file", path);
+    };
+    for (std::size_t i = 0; i < cloth.maps.size(); ++i)
+      if (const Status added = add_values("maps", i, cloth.maps[i].file); !added) return added.error();
+    for (std::size_t i = 0; i < cloth.pins.size(); ++i)
+      if (const Status added = add_values("pins", i, cloth.pins[i].file); !added) return added.error();
     for (const PrimarySpec& primary : s.primaries)
       if (primary.name + ".collider" == cloth.name)
         return usage_error("cloth \"" + cloth.name + "\" has the name of a cache of primary \"" + primary.name + "\"",

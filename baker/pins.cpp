@@ -6,6 +6,7 @@
 
 #include "baker/core/parallel.h"
 #include "collision/pair_geometry.h"
+#include "io/shot/vertex_values.h"
 
 namespace ft {
 namespace {
@@ -87,6 +88,14 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
         return usage_error(fmt::format("pin within = {} m selects nothing: the nearest vertex is {:.4g} m from the body",
                                        spec.within, smallest),
                            {}, "unit_scale, up and offset place the mesh");
+      break;
+    }
+    case PinSpec::Select::k_file: {
+      auto weights = vertex_column(spec.file, spec.column, garment.vertex_count(), 0, 1, "1");
+      if (!weights) return weights.error();
+      for (std::size_t i = 0; i < weights->size(); ++i)
+        if ((*weights)[i] > 0) pin.vertices.push_back(static_cast<int>(i)), pin.weights.push_back((*weights)[i]);
+      if (pin.vertices.empty()) return usage_error("has no weight above 0: this pin holds nothing", spec.file.filename().string());
       break;
     }
     case PinSpec::Select::k_vertices:

@@ -1,4 +1,4 @@
-// Pins of the shot file -> vertices: a painted group, everything near the body, or named vertices.
+// Pins of the shot file -> vertices: a painted group, weights from a file, everything near the body, or named vertices.
 #pragma once
 
 #include <span>

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "baker/pins.h"
+#include "baker/vertex_maps.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
 
@@ -142,6 +143,9 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     if (!pin) return located(pin.error());
     garment.pins.push_back(output.joined_of.empty() ? std::move(*pin) : on_joined(*pin, output.joined_of));
   }
+  auto maps = resolve_maps(spec.maps, output.mesh);
+  if (!maps) return located(maps.error());
+  garment.maps = output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
   garment.thickness = spec.thickness;
   garment.friction = spec.friction;
   garment.self_friction = spec.self_friction;

@@ -42,13 +42,24 @@ struct PrimarySpec {
 
 /// One way to hold a garment to its primary.
 struct PinSpec {
-  enum class Select { k_group, k_within, k_vertices };
+  enum class Select { k_group, k_within, k_vertices, k_file };
   Select select = Select::k_group;
   std::string group;          ///< vertex group of the garment's mesh
   double within = 0;          ///< garment vertices nearer than this to the body in the bind pose [m]
   std::vector<int> vertices;  ///< garment vertices, from 0, file order
+  std::filesystem::path file;  ///< values file with a weight per vertex, see vertex_values.h
+  std::string column;          ///< of `file`; empty: the only one
   double stiffness = 1e6;  ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
   double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
+};
+
+/// What varies over a garment, and where its values come from: see shot_maps.h for what can vary.
+struct MapSpec {
+  std::string of;                   ///< "thickness", "stretch", ...
+  std::string from;                 ///< vertex group or colour channel, whose weights run from 0 to 1; or
+  std::filesystem::path file;       ///< values file
+  std::string column;               ///< of `file`; empty: the only one
+  std::optional<double> low, high;  ///< value at 0 and at 1; without them the file's numbers are the values
 };
 
 /// [cloth.NAME]: what follows.
@@ -58,6 +69,7 @@ struct ClothSpec {
   std::string fabric = "cotton";  ///< name of a measured fabric
   std::string on;                 ///< name of the primary
   std::vector<PinSpec> pins;
+  std::vector<MapSpec> maps;
   std::vector<std::pair<std::string, double>> fabric_overrides;  ///< "mass_per_area" = 0.2 ...: keys of solvers' Fabric
   double weld = 0;        ///< garment vertices nearer than this are joined for the simulation [m]; 0: none, see weld.h
   double unit_scale = 1;  ///< m per mesh unit

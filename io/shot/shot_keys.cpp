@@ -60,6 +60,8 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"pins", PinsKey{}, 0, 0, "", "", false, "attach attachments constraints hold",
        "What holds it to the primary: a list of pins, see below"},
       {"pin", SinglePinKey{}, 0, 0, "", "", false, "pin_group", "Short for one pin: the name of a vertex group"},
+      {"maps", MapsKey{}, 0, 0, "", "", false, "map vertex_maps textures paint",
+       "What varies over its surface, painted or from a file: a list of maps, see below"},
       {"weld", &ClothSpec::weld, 0, 0.05, "m", "", false, "merge merge_distance",
        "Joins vertices nearer than this (open seams); 0 joins none"},
       {"unit_scale", &ClothSpec::unit_scale, 1e-6, 1000, "m per mesh unit", "", false, "scale units unit",
@@ -92,10 +94,29 @@ std::span<const ShotKey<PinSpec>> pin_keys() {
        "Vertices nearer than this to the body in the bind pose"},
       {"vertices", PinsKey{}, 0, 0, "", "", false, "points indices",
        "Vertices from 0 in the file's order: `\"0-199, 250\"` or `[0, 1, 2]`"},
+      {"file", &PinSpec::file, 0, 0, "", "", false, "weights weight_file map",
+       "A weight from 0 to 1 for every vertex of the mesh: text or CSV, a line each; 0 is not held"},
+      {"column", &PinSpec::column, 0, 0, "", "", false, "field header", "Column of `file`, where it has several"},
       {"stiffness", &PinSpec::stiffness, 1, 1e12, "N/m3", "", false, "strength",
        "Spring stiffness per area and displacement: 1e5 loose, 1e6 firm, 1e8 hard"},
       {"max_pull", &PinSpec::max_pull, 0, 1e9, "Pa", "", false, "max_force limit",
        "Force limit per area, so that contact wins over pins"},
+  };
+  return keys;
+}
+
+std::span<const ShotKey<MapSpec>> map_keys() {
+  static const ShotKey<MapSpec> keys[] = {
+      {"from", &MapSpec::from, 0, 0, "", "", false, "group vertex_group channel colour color",
+       "Vertex group of the mesh, or colour channel `red`, `green`, `blue`; weights run from 0 to 1"},
+      {"file", &MapSpec::file, 0, 0, "", "", false, "values path csv",
+       "A number for every vertex of the mesh: text or CSV, a line each; a first line with words names the columns"},
+      {"of", &MapSpec::of, 0, 0, "", "@maps", true, "what name kind property target",
+       "What varies: factors of the fabric's stiffness (`stretch`, which includes shear; `bend`), `thickness` [m], `mass_per_area` [kg/m2]"},
+      {"column", &MapSpec::column, 0, 0, "", "", false, "field header", "Column of `file`, where it has several"},
+      {"low", &MapSpec::low, 0, 0, "", "", false, "min minimum black zero", "Value where the weight is 0; linear between"},
+      {"high", &MapSpec::high, 0, 0, "", "", false, "max maximum white one",
+       "Value where the weight is 1. A file may do without both: its numbers are the values then"},
   };
   return keys;
 }

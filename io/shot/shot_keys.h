@@ -11,18 +11,18 @@
 
 namespace ft {
 
-/// Types without a plain member: frames and teleports fill two, pins have a grammar of their own.
+/// Types without a plain member: frames and teleports fill two, pins and maps have grammars of their own.
 struct FramesKey {};
 struct PinsKey {};
 struct SinglePinKey {};
+struct MapsKey {};
 struct TeleportsKey {};
 
 template <class Spec>
 struct ShotKey {
   using Target = std::variant<int Spec::*, double Spec::*, bool Spec::*, std::string Spec::*,
                               std::filesystem::path Spec::*, std::optional<double> Spec::*, Vec3 Spec::*,
-                              std::vector<std::string> Spec::*, FramesKey, PinsKey, SinglePinKey,
-                              TeleportsKey>;
+                              std::vector<std::string> Spec::*, FramesKey, PinsKey, SinglePinKey, MapsKey, TeleportsKey>;
   std::string_view name;
   Target target;
   double lowest = 0, highest = 0;  ///< of numbers, and of every component of vectors; both 0: no range
@@ -36,7 +36,8 @@ struct ShotKey {
 std::span<const ShotKey<Shot>> shot_keys();            ///< [shot]
 std::span<const ShotKey<PrimarySpec>> primary_keys();  ///< [primary.NAME]
 std::span<const ShotKey<ClothSpec>> cloth_keys();      ///< [cloth.NAME], beside the fabric's keys
-std::span<const ShotKey<PinSpec>> pin_keys();          ///< one table of pins; group, within, vertices choose
+std::span<const ShotKey<PinSpec>> pin_keys();          ///< one table of pins; group, within, vertices, file choose
+std::span<const ShotKey<MapSpec>> map_keys();          ///< one table of maps; from, file choose
 std::span<const ShotKey<WindSpec>> wind_keys();        ///< [wind]
 std::span<const ShotKey<SolverSpec>> solver_keys();    ///< [solver]
 std::span<const ShotKey<Shot>> cache_keys();           ///< [cache]

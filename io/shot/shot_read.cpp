@@ -6,6 +6,7 @@
 #include "baker/core/file.h"
 #include "io/shot/shot_judge.h"
 #include "io/shot/shot_keys.h"
+#include "io/shot/shot_maps.h"
 #include "io/shot/shot_override.h"
 #include "io/shot/shot_values.h"
 #include "io/shot/words.h"
@@ -52,6 +53,7 @@ class ShotReader {
     if (member.value.kind == Value::Kind::k_table || member.value.kind == Value::Kind::k_list) {
       std::string hint = suggestion(member.key, sections);
       if (member.key == "pins" || member.key == "pin") hint = "pins belong under [cloth.NAME]";
+      if (member.key == "maps" || member.key == "map") hint = "maps belong under [cloth.NAME]";
       faults_.add(member.place, with_hint("unknown section [" + printable(member.key) + "]", hint));
     } else {
       const std::string home = home_of(member.key);
@@ -277,6 +279,32 @@ class ShotReader {
     }
   }
 
+  template <class Spec>
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>&, Spec& spec, MapsKey) {
+    if constexpr (std::is_same_v<Spec, ClothSpec>) {
+      const Value& value = member.value;
+      const bool list = value.kind == Value::Kind::k_list;
+      int number = 0;
+      for (const Value& item : list ? std::span(value.items) : std::span(&value, 1))
+        read_map(reader.owner + (list ? ", map " + std::to_string(++number) : ", maps"), item, spec);
+      judge_maps(reader.owner, value, spec.maps, faults_);
+    } else {
+      CHECK(false);
+    }
+  }
+
+  void read_map(const std::string& owner, const Value& value, ClothSpec& cloth) {
+    MapSpec& map = cloth.maps.emplace_back();
+    if (value.kind != Value::Kind::k_table) {
+      faults_.add(value.place,
+                  owner + " needs a table like { of = \"thickness\", from = \"red\", low = 1e-3, high = 4e-3 }, not " +
+                      describe(value));
+      return;
+    }
+    read_keys(owner, value, map, map_keys());
+    judge_map(owner, value, map, faults_);
+  }
+
   void read_pin(const std::string& owner, const Value& value, ClothSpec& cloth) {
     PinSpec pin;
     if (value.kind == Value::Kind::k_text) {
@@ -292,14 +320,19 @@ class ShotReader {
     }
     read_keys(owner, value, pin, pin_keys());
     const bool group = value.find("group") != nullptr, within = value.find("within") != nullptr,
-               vertices = value.find("vertices") != nullptr;
-    if (group + within + vertices != 1)
+               vertices = value.find("vertices") != nullptr, file = value.find("file") != nullptr;
+    const int selections = group + within + vertices + file;
+    if (selections != 1)
       faults_.add(value.place,
-                  owner + ": needs one of group, within, vertices, and has " +
-                      (group + within + vertices == 0 ? "none" : std::to_string(group + within + vertices)) +
+                  owner + ": needs one of group, within, vertices, file, and has " +
+                      (selections == 0 ? "none" : std::to_string(selections)) +
                       " (several pins are written as several { } in the list)");
     if (group && pin.group.empty()) faults_.add(value.place, owner + ": the name of a vertex group is empty");
-    pin.select = within ? PinSpec::Select::k_within : vertices ? PinSpec::Select::k_vertices : PinSpec::Select::k_group;
+    judge_column(owner, value, faults_);
+    pin.select = within     ? PinSpec::Select::k_within
+                 : vertices ? PinSpec::Select::k_vertices
+                 : file     ? PinSpec::Select::k_file
+                            : PinSpec::Select::k_group;
     cloth.pins.push_back(std::move(pin));
   }
 

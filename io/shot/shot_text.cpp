@@ -5,6 +5,7 @@
 
 #include "io/shot/ranges.h"
 #include "io/shot/shot_keys.h"
+#include "io/shot/shot_maps.h"
 #include "io/shot/words.h"
 
 namespace ft {
@@ -47,7 +48,16 @@ std::string vector_text(const Vec3& v) {
   return out.append("]");
 }
 
-std::string pin_text(const PinSpec& pin) {
+std::string relative_text(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  if (path.empty()) return in_quotes("");
+  std::error_code ignored;  // without a current folder, absolute() gives nothing and the path stands as it is
+  const auto relative =
+      std::filesystem::absolute(path, ignored)
+          .lexically_relative(std::filesystem::absolute(folder.empty() ? "." : folder, ignored).lexically_normal());
+  return in_quotes(relative.empty() ? path.generic_string() : relative.generic_string());
+}
+
+std::string pin_text(const PinSpec& pin, const std::filesystem::path& folder) {
   std::string out = "{ ";
   switch (pin.select) {
     case PinSpec::Select::k_group:
@@ -59,7 +69,11 @@ std::string pin_text(const PinSpec& pin) {
     case PinSpec::Select::k_vertices:
       out.append("vertices = ").append(in_quotes(vertices_text(pin.vertices)));
       break;
+    case PinSpec::Select::k_file:
+      out.append("file = ").append(relative_text(pin.file, folder));
+      break;
   }
+  if (!pin.column.empty()) out.append(", column = ").append(in_quotes(pin.column));
   out.append(", stiffness = ")
       .append(number_text(pin.stiffness))
       .append(", max_pull = ")
@@ -67,16 +81,17 @@ std::string pin_text(const PinSpec& pin) {
   return out.append(" }");
 }
 
-std::string relative_text(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  if (path.empty()) return in_quotes("");
-  std::error_code ignored;  // without a current folder, absolute() gives nothing and the path stands as it is
-  const auto relative =
-      std::filesystem::absolute(path, ignored)
-          .lexically_relative(std::filesystem::absolute(folder.empty() ? "." : folder, ignored).lexically_normal());
-  return in_quotes(relative.empty() ? path.generic_string() : relative.generic_string());
+std::string map_text(const MapSpec& map, const std::filesystem::path& folder) {
+  std::string out = "{ of = " + in_quotes(map.of);
+  if (!map.from.empty()) out.append(", from = ").append(in_quotes(map.from));
+  if (!map.file.empty()) out.append(", file = ").append(relative_text(map.file, folder));
+  if (!map.column.empty()) out.append(", column = ").append(in_quotes(map.column));
+  if (map.low) out.append(", low = ").append(number_text(*map.low));
+  if (map.high) out.append(", high = ").append(number_text(*map.high));
+  return out.append(" }");
 }
 
-/// Text of one key's value; empty when the key only repeats another (pin).
+/// Text of one key's value; empty when the key only repeats another (pin), or adds nothing (no maps).
 template <class Spec>
 struct ValueText {
   const Spec& spec;
@@ -98,7 +113,7 @@ struct ValueText {
   std::string operator()(PinsKey) const {
     std::string out = "[";
     if constexpr (std::is_same_v<Spec, ClothSpec>)
-      for (const PinSpec& pin : spec.pins) out.append(out.size() > 1 ? ", " : "").append(pin_text(pin));
+      for (const PinSpec& pin : spec.pins) out.append(out.size() > 1 ? ", " : "").append(pin_text(pin, folder));
     return out.append("]");
   }
   std::string operator()(SinglePinKey) const { return {}; }
@@ -110,6 +125,12 @@ struct ValueText {
       return out.append("]");
     }
     return {};
+  }
+  std::string operator()(MapsKey) const {
+    std::string out;
+    if constexpr (std::is_same_v<Spec, ClothSpec>)
+      for (const MapSpec& map : spec.maps) out.append(out.empty() ? "[" : ", ").append(map_text(map, folder));
+    return out.empty() ? out : out.append("]");
   }
 };
 
@@ -139,6 +160,7 @@ std::string type_text(const ShotKey<Spec>& key) {
     std::string operator()(PinsKey) const { return std::is_same_v<Spec, PinSpec> ? "vertices" : "list of pins"; }
     std::string operator()(SinglePinKey) const { return "text"; }
     std::string operator()(TeleportsKey) const { return "text or list of frames"; }
+    std::string operator()(MapsKey) const { return "list of maps"; }
   };
   return std::visit(Names{}, key.target);
 }
@@ -173,11 +195,14 @@ void append_reference(std::string& out, std::string_view heading, std::span<cons
       allowed = known_words(vocabulary.cache_formats, "cache formats");
     else if (key.choices == "@primaries")
       allowed = "name of a primary";
+    else if (key.choices == "@maps")
+      allowed = known_words(map_words(), "");
     else if (!key.choices.empty())
       allowed = known_words(split_words(key.choices), "");
     std::string fallback = key.required ? "**required**" : std::visit(ValueText<Spec>{defaults, nowhere}, key.target);
-    const bool chooses =
-        std::is_same_v<Spec, PinSpec> && &key < keys.data() + 3;  // one of the first three says which vertices
+    // One of the first keys says which vertices, or where values come from.
+    const std::ptrdiff_t choosing = std::is_same_v<Spec, PinSpec> ? 4 : std::is_same_v<Spec, MapSpec> ? 2 : 0;
+    const bool chooses = &key < keys.data() + choosing;
     if (chooses)
       fallback = "one of these";
     else if (fallback == "\"\"" || fallback == "none" || fallback == "[]" || fallback.empty())
@@ -253,6 +278,7 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
         .append(" |\n");
   out.append("\n");
   append_reference(out, "pins = [ { ... } ]", pin_keys(), vocabulary);
+  append_reference(out, "maps = [ { ... } ]", map_keys(), vocabulary);
   append_reference(out, "[wind]", wind_keys(), vocabulary);
   append_reference(out, "[solver]", solver_keys(), vocabulary);
   append_reference(out, "[cache]", cache_keys(), vocabulary);

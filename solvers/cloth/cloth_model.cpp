@@ -1,6 +1,7 @@
 #include "solvers/cloth/cloth_model.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solvers/cloth/sewing.h"
 #include "solvers/energies/registry.h"
@@ -40,6 +41,16 @@ Status check(const ClothSetup& setup) {
       for (const int v : {s.vertex, s.edge[0], s.edge[1]})
         if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] || !(s.place >= 0 && s.place <= 1))
           return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) + " cannot be sewn");
+    for (const auto map : {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness}) {
+      const std::vector<double>& values = g.maps.*map;
+      if (!values.empty() && values.size() != g.mesh.positions.size())
+        return input_error("cloth \"" + g.name + "\": a map needs one value per vertex");
+      // Cloth folds without resistance where it likes, but it has mass, thickness and a length.
+      const bool may_vanish = map == &VertexMaps::bend;
+      for (const double value : values)
+        if (!std::isfinite(value) || value < 0 || (value == 0 && !may_vanish))
+          return input_error("cloth \"" + g.name + "\": a map has a value that is no number or not above 0");
+    }
     for (const ClothPin& pin : g.pins) {
       for (const int v : pin.vertices)
         if (v < 0 || v >= g.mesh.vertex_count())
@@ -65,7 +76,7 @@ void concatenate(ClothModel& model) {
     const int first = static_cast<int>(contact.rest.size());
     const std::size_t count = garment.mesh.positions.size();
     model.first_vertex.push_back(first);
-    pieces.push_back({first, static_cast<int>(count), garment.fabric, garment.pattern_scale});
+    pieces.push_back({first, static_cast<int>(count), garment.fabric, garment.pattern_scale, garment.maps});
     contact.rest.insert(contact.rest.end(), garment.mesh.positions.begin(), garment.mesh.positions.end());
     const auto triangles = triangulate(garment.mesh);
     const auto own_uvs = corner_uvs(garment.mesh, triangles);
@@ -76,8 +87,11 @@ void concatenate(ClothModel& model) {
       for (int& v : t) v += first;
       model.triangles.push_back(t);
     }
-    contact.radius.resize(contact.radius.size() + count, garment.thickness);
-    contact.self_radius.resize(contact.self_radius.size() + count, garment.thickness * 2 / 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double thickness = garment.maps.thickness.empty() ? garment.thickness : garment.maps.thickness[i];
+      contact.radius.push_back(thickness);
+      contact.self_radius.push_back(thickness * 2 / 3);
+    }
     contact.friction.resize(contact.friction.size() + count, garment.friction);
     contact.self_friction.resize(contact.self_friction.size() + count, garment.self_friction);
     contact.garment.resize(contact.garment.size() + count, static_cast<int>(g));
@@ -157,7 +171,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   if (s.primary) {
     model->collider = std::make_unique<MovingCollider>(s.primary, s.feasible);
     double thickness = 0;
-    for (const ClothGarment& g : s.garments) thickness = std::max(thickness, g.thickness);
+    for (const double radius : model->contact.radius) thickness = std::max(thickness, radius);
     model->start_depth = model->collider->draw_in_for(model->start, model->triangles, thickness);
   }
   return model;

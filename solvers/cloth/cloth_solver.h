@@ -12,7 +12,7 @@
 #include "baker/core/teleport.h"
 #include "baker/core/trajectory.h"
 #include "collision/feasible_collider.h"
-#include "solvers/energies/fabric.h"
+#include "solvers/energies/cloth_topology.h"
 #include "solvers/solver.h"
 
 namespace ft {
@@ -36,6 +36,7 @@ struct ClothGarment {
   double friction = 0.4;         ///< Coulomb, against the body [1]
   double self_friction = 0.3;    ///< among cloths [1]
   bool self_collision = true;
+  VertexMaps maps;               ///< one value per vertex of `mesh`, or empty
 };
 
 struct ClothSetup {

@@ -19,6 +19,15 @@ PairGeometry geometry_of(bool vertex_face, const std::array<int, 4>& v, std::spa
                      : edge_edge_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])]);
 }
 
+/// At the closest point of the vertices [begin, end) of a pair. Where they agree it is exactly their value.
+double side_radius(const std::array<int, 4>& v, const PairGeometry& geometry, std::span<const double> radius, std::size_t begin,
+                   std::size_t end) {
+  const double first = radius[at(v[begin])];
+  double r = first;
+  for (std::size_t k = begin + 1; k < end; ++k) r += std::abs(geometry.weight[k]) * (radius[at(v[k])] - first);
+  return r;
+}
+
 Vec3 slip(const std::array<int, 4>& v, const std::array<double, 4>& weight, std::span<const Vec3> x,
           std::span<const Vec3> x_start) {
   Vec3 u = Vec3::Zero();
@@ -50,17 +59,18 @@ void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_
   lagged_.clear();
 }
 
-double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_face, double* friction, double* area) const {
+double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry,
+                                     double* friction, double* area) const {
   const int n = model_.cloth_vertex_count;
+  const std::size_t split = vertex_face ? 1 : 2;
   const bool first_cloth = v[0] < n, second_cloth = v[3] < n;
   double r = 0, mu = 0, a = 0;
   if (first_cloth && second_cloth) {
-    r = 1e9;
     for (const int i : v) {
-      r = std::min(r, model_.self_radius[at(i)]);
       mu = std::max(mu, model_.self_friction[at(i)]);
       a += 0.25 * model_.area[at(i)];
     }
+    r = std::min(side_radius(v, geometry, model_.self_radius, 0, split), side_radius(v, geometry, model_.self_radius, split, 4));
     if (model_.garment[at(v[0])] == model_.garment[at(v[3])]) {
       const double rest = geometry_of(vertex_face, v, model_.rest).distance;
       r = std::min(r, 0.5 * rest);
@@ -69,12 +79,12 @@ double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_fa
     int count = 0;
     for (const int i : v) {
       if (i >= n) continue;
-      r = std::max(r, model_.radius[at(i)]);
       mu = std::max(mu, model_.friction[at(i)]);
       a += model_.area[at(i)];
       ++count;
     }
     a /= std::max(count, 1);
+    r = first_cloth ? side_radius(v, geometry, model_.radius, 0, split) : side_radius(v, geometry, model_.radius, split, 4);
   }
   *friction = mu;
   *area = a;
@@ -119,7 +129,7 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x) {
       c.vertex = v;
       c.geometry = g;
       double area = 0;
-      c.radius = pair_radius(v, vertex_face, &c.friction, &area);
+      c.radius = pair_radius(v, vertex_face, g, &c.friction, &area);
       if (g.distance >= c.radius) continue;
       c.stiffness = model_.stiffness_per_area * area;
       out.push_back(c);

@@ -16,7 +16,9 @@
 
 namespace ft {
 
-/// Per vertex of the common numbering (cloth first); the pair takes the mean, or for friction the larger.
+/// Per vertex of the common numbering (cloth first). A side of a pair takes the radius at its closest point, linear between its vertices, so
+/// that a contact feels no step where it slides from one triangle to the next; between two cloths the smaller of the sides counts.
+/// Of areas the pair takes the mean, of friction the larger.
 struct ContactModel {
   int cloth_vertex_count = 0;
   /// N/m3. 1e5 soft as flesh, 1e7 hard; gravity on cotton is 1.5 Pa, so 5e5 rests 3 um deep. Much harder contacts hold cloth between
@@ -68,7 +70,7 @@ class ContactPotential {
     std::array<int, 4> vertex;
     double friction;
   };
-  double pair_radius(const std::array<int, 4>& v, bool vertex_face, double* friction, double* area) const;
+  double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction, double* area) const;
   void update_kind(bool vertex_face, std::span<const Vec3> x);
   float way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const;
 

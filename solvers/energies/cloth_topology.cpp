@@ -43,11 +43,23 @@ void cut_from_pattern(const std::array<Vec2, 3>& uv, double scale, std::size_t t
 }
 
 void weigh(std::size_t t, ClothTopology& out) {
-  const double third = out.fabric_of_triangle(t).mass_per_area * out.rest_area[t] / 3;
-  for (const int v : out.triangles[t]) out.mass[at(v)] += third;
+  const ClothPiece& piece = out.pieces[at(out.triangle_piece[t])];
+  const std::vector<double>& map = piece.maps.mass_per_area;
+  for (const int v : out.triangles[t]) {
+    const double density = map.empty() ? piece.fabric.mass_per_area : map[at(v - piece.first_vertex)];
+    out.mass[at(v)] += density * out.rest_area[t] / 3;
+  }
 }
 
 }  // namespace
+
+double ClothTopology::factor(std::size_t t, std::vector<double> VertexMaps::*map) const {
+  const ClothPiece& piece = pieces[at(triangle_piece[t])];
+  const std::vector<double>& values = piece.maps.*map;
+  if (values.empty()) return 1;
+  const auto value = [&](std::size_t corner) { return values[at(triangles[t][corner] - piece.first_vertex)]; };
+  return value(0) + ((value(1) - value(0)) + (value(2) - value(0))) / 3;
+}
 
 double rest_length(const ClothTopology& topology, std::size_t triangle, std::size_t corner) {
   const auto& r = topology.rest_inverse[triangle];
@@ -78,6 +90,8 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
   std::vector<int> piece_of(rest.size(), -1);
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     CHECK(pieces[p].first_vertex >= 0 && pieces[p].first_vertex + pieces[p].vertex_count <= out.vertex_count);
+    for (const auto map : {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness})
+      CHECK((pieces[p].maps.*map).empty() || (pieces[p].maps.*map).size() == at(pieces[p].vertex_count));
     std::fill_n(piece_of.begin() + pieces[p].first_vertex, pieces[p].vertex_count, static_cast<int>(p));
   }
 

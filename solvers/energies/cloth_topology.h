@@ -13,6 +13,15 @@
 
 namespace ft {
 
+/// What varies over a garment, one value per vertex of it; an empty list changes nothing. Between vertices values run linearly: a triangle
+/// takes the mean of its corners.
+struct VertexMaps {
+  std::vector<double> stretch;        ///< factor of the fabric's stretch and shear stiffness [1]; above 0
+  std::vector<double> bend;           ///< factor of the fabric's bending rigidity [1]; 0 folds freely
+  std::vector<double> mass_per_area;  ///< kg/m2, instead of the fabric's
+  std::vector<double> thickness;      ///< m, instead of the garment's; for contact
+};
+
 /// A garment: a range of vertices of one fabric.
 struct ClothPiece {
   int first_vertex = 0;
@@ -21,6 +30,7 @@ struct ClothPiece {
   /// m per unit of the uvs, from which lengths, areas and masses come then; they lie flat and may be mirrored. 0: from the rest positions,
   /// which otherwise say only what is near what.
   double pattern_scale = 0;
+  VertexMaps maps{};
 };
 
 /// Two triangles at a common edge: (v0, v1, v2) and (v1, v0, v3) in the orientation of the first.
@@ -69,6 +79,8 @@ struct ClothTopology {
   const Fabric& fabric_of_triangle(std::size_t t) const {
     return pieces[static_cast<std::size_t>(triangle_piece[t])].fabric;
   }
+  /// Mean of a map of factors over a triangle [1], exactly the value of the corners where they agree; 1 without a map.
+  double factor(std::size_t t, std::vector<double> VertexMaps::*map) const;
 };
 
 /// triangle_uvs: pattern coordinates of the three corners of each triangle, or empty. Without them (or where they are degenerate)

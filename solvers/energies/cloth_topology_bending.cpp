@@ -93,6 +93,7 @@ void add_bend_elements(ClothTopology& out) {
     Mat3 rigidity = Mat3::Zero();
     rigidity(0, 0) = fabric.bend_weft, rigidity(1, 1) = fabric.bend_warp;
     rigidity(2, 2) = 0.5 * std::sqrt(fabric.bend_weft * fabric.bend_warp);
+    rigidity *= out.factor(t, &VertexMaps::bend);
     Mat3 m = out.rest_area[t] * modes.transpose() * rigidity * modes;
     for (int k = 0; k < 3; ++k)
       if (element.hinge[at(k)] < 0) {  // eliminate the free edge

@@ -177,12 +177,13 @@ Membrane::Membrane(const ClothTopology& topology) {
     const std::size_t t = element[at(schedule_.slot[slot])];
     const Fabric& fabric = topology.fabric_of_triangle(t);
     const auto c = membrane_stiffness(fabric);
+    const double factor = topology.factor(t, &VertexMaps::stretch);
     Group& g = groups_[slot / k_lanes];
     const std::size_t l = slot % k_lanes;
     for (std::size_t k = 0; k < 3; ++k) g.vertex[k][l] = topology.triangles[t][k];
     for (std::size_t k = 0; k < 4; ++k) {
       g.rest_inverse[k][l] = topology.rest_inverse[t][k];
-      g.stiffness[k][l] = topology.rest_area[t] * c[k];
+      g.stiffness[k][l] = topology.rest_area[t] * (factor * c[k]);
     }
     g.damping_time[l] = fabric.damping;
     g.limit[0][l] = green_limit(fabric.limit_weft);

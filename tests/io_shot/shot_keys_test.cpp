@@ -61,6 +61,8 @@ TEST_F(ShotFile, Every_key_of_the_table_can_be_set_and_changes_the_canonical_tex
         value = "[{within=0.5}]";
       else if (key.name == "teleports")
         value = "[5, 7]";
+      else if (key.name == "maps")
+        value = "[{of=\"bend\",from=\"red\",low=1,high=2}]";
       else if (key.name == "pin")
         value = "elbow";
       else if (key.name == "formats")
