@@ -78,6 +78,15 @@ TeleportScan scan_of(const Shot& shot, const PrimarySpec& spec, const Trajectory
   return scan_teleports(trajectory, settings);
 }
 
+/// Frames of the shot -> seconds from its first frame.
+HoldSpan hold_span(const PinSpec& pin, const Shot& shot) {
+  HoldSpan out;
+  if (pin.from) out.from = (*pin.from - shot.first_frame) / shot.fps;
+  if (pin.until) out.until = (*pin.until - shot.first_frame) / shot.fps;
+  out.fade = pin.fade / shot.fps;
+  return out;
+}
+
 /// A pin on vertices of the file -> on joined ones; the strongest weight counts.
 ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
   std::map<int, double> weight_of;
@@ -88,6 +97,7 @@ ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
   ClothPin out;
   out.stiffness = pin.stiffness;
   out.max_pull = pin.max_pull;
+  out.hold = pin.hold;
   for (const auto& [vertex, weight] : weight_of) out.vertices.push_back(vertex), out.weights.push_back(weight);
   return out;
 }
@@ -141,6 +151,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   for (const PinSpec& pin_spec : spec.pins) {
     auto pin = resolve_pin(pin_spec, output.mesh, body, primary.trajectory->surface().triangles);
     if (!pin) return located(pin.error());
+    pin->hold = hold_span(pin_spec, shot);
     garment.pins.push_back(output.joined_of.empty() ? std::move(*pin) : on_joined(*pin, output.joined_of));
   }
   auto maps = resolve_maps(spec.maps, output.mesh);

@@ -51,6 +51,8 @@ struct PinSpec {
   std::string column;          ///< of `file`; empty: the only one
   double stiffness = 1e6;  ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
   double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
+  std::optional<double> from, until;  ///< frames of the shot: it holds after the one, and up to and including the other
+  double fade = 0;                    ///< frames that its force takes to come after `from` and to go after `until`
 };
 
 /// What varies over a garment, and where its values come from: see shot_maps.h for what can vary.

@@ -89,6 +89,15 @@ void read_vertices(const ValueReader& reader, const Value& value, std::vector<in
     reader.fault(value, fault);
 }
 
+void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin, FaultList& faults) {
+  const Member *until = value.find("until"), *fade = value.find("fade");
+  if (until && pin.from && pin.until && !(*pin.from < *pin.until))
+    faults.add(until->place, owner + ": until = " + number_text(*pin.until) + " is not after from = " + number_text(*pin.from) +
+                                 ": it would never hold");
+  if (fade && !until && !value.find("from"))
+    faults.add(fade->place, owner + ": fade needs until (or from), the frame at which it begins");
+}
+
 void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
   if (root.find("shot") == nullptr) faults.add({}, "has no [shot] section: frames = \"1-100\" is needed");
   if (shot.primaries.empty()) faults.add({}, "has no [primary.NAME] section: the character that the cloth is worn by");

@@ -17,6 +17,9 @@ std::optional<FrameRange> read_frames(const ValueReader& reader, const Value& va
 /// "0-199, 250" or [0, 1, "5-9"]; nothing is changed by a fault.
 void read_vertices(const ValueReader& reader, const Value& value, std::vector<int>& out);
 
+/// A pin that never holds, or fades without an end to do it at.
+void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin, FaultList& faults);
+
 /// Who wears what, names that would overwrite each other, limits that contradict. Fills in `on` when there is one
 /// primary.
 void judge_whole(const Value& root, Shot& shot, FaultList& faults);

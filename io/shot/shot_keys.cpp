@@ -101,6 +101,12 @@ std::span<const ShotKey<PinSpec>> pin_keys() {
        "Spring stiffness per area and displacement: 1e5 loose, 1e6 firm, 1e8 hard"},
       {"max_pull", &PinSpec::max_pull, 0, 1e9, "Pa", "", false, "max_force limit",
        "Force limit per area, so that contact wins over pins"},
+      {"until", &PinSpec::until, 0, 9'999'999, "frame", "", false, "release release_frame end to stop last",
+       "Frame at which it lets go; without it never"},
+      {"from", &PinSpec::from, 0, 9'999'999, "frame", "", false, "start begin since first",
+       "Frame after which it holds, and draws to its place what is elsewhere by then; without it from the start"},
+      {"fade", &PinSpec::fade, 0, 100'000, "frames", "", false, "blend ease fade_out release_time",
+       "Its force takes so long to vanish after `until` and to grow after `from`; 0 is at once"},
   };
   return keys;
 }

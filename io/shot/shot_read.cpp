@@ -329,6 +329,7 @@ class ShotReader {
                       " (several pins are written as several { } in the list)");
     if (group && pin.group.empty()) faults_.add(value.place, owner + ": the name of a vertex group is empty");
     judge_column(owner, value, faults_);
+    judge_hold(owner, value, pin, faults_);
     pin.select = within     ? PinSpec::Select::k_within
                  : vertices ? PinSpec::Select::k_vertices
                  : file     ? PinSpec::Select::k_file

@@ -78,6 +78,9 @@ std::string pin_text(const PinSpec& pin, const std::filesystem::path& folder) {
       .append(number_text(pin.stiffness))
       .append(", max_pull = ")
       .append(number_text(pin.max_pull));
+  if (pin.from) out.append(", from = ").append(number_text(*pin.from));
+  if (pin.until) out.append(", until = ").append(number_text(*pin.until));
+  if (pin.fade > 0) out.append(", fade = ").append(number_text(pin.fade));
   return out.append(" }");
 }
 

@@ -146,6 +146,7 @@ void place_and_pin(ClothModel& model) {
         const double area = model.contact.area[at(v)];
         point.stiffness = weight * pin.stiffness * area;
         point.max_pull = weight * pin.max_pull * area;
+        point.hold = pin.hold;
         model.pins.push_back(point);
       }
 }

@@ -26,6 +26,7 @@ struct PinPoint {
   Vec3 offset = Vec3::Zero();      ///< in the triangle's frame [m]; the place itself when triangle is -1 [m]
   double stiffness = 0;            ///< N/m
   double max_pull = 0;             ///< N
+  HoldSpan hold{};                 ///< when
 };
 
 struct ClothModel {

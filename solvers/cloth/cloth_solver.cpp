@@ -102,6 +102,7 @@ class ClothSolver final : public Solver {
  private:
   struct Frame;
   void walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  bool hold_jumps(double time_t0, double time_t1) const;
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
 
@@ -146,6 +147,7 @@ State ClothSolver::initial_state() const {
     m.v_previous[i] -= h * setup.gravity;
   }
   for (const PinPoint& pin : model_->pins) {
+    if (pin.hold.share(state.time) == 0) continue;
     m.x_previous[at(pin.vertex)] = m.x[at(pin.vertex)];
     m.v_previous[at(pin.vertex)] = m.v[at(pin.vertex)];
   }
@@ -229,6 +231,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
     if (push_cloth(t0 + h, m, push)) in.push = push;
+    if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
     const AdvanceReport step = advance_.substep(in, m);
     report.substeps += step.pieces;
@@ -243,6 +246,12 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     body.swap(body_next);
     pins.swap(pins_next);
   }
+}
+
+/// Something lets go or takes hold at once. BDF2 is then started anew by a step of implicit Euler: the history knows nothing of the new
+/// force, and cloth that is let go would stay behind free fall by half a substep for good.
+bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
+  return std::any_of(model_->pins.begin(), model_->pins.end(), [&](const PinPoint& pin) { return pin.hold.jumps(time_t0, time_t1); });
 }
 
 /// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of sewing. False when

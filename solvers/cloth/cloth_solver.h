@@ -13,6 +13,7 @@
 #include "baker/core/trajectory.h"
 #include "collision/feasible_collider.h"
 #include "solvers/energies/cloth_topology.h"
+#include "solvers/energies/hold_span.h"
 #include "solvers/solver.h"
 
 namespace ft {
@@ -23,6 +24,7 @@ struct ClothPin {
   std::vector<double> weights;   ///< 0..1 each, scales the stiffness; empty: all 1
   double stiffness = 1e6;        ///< N/m3: spring per garment area and displacement
   double max_pull = 5e3;         ///< Pa: force limit per garment area; contact wins over pins
+  HoldSpan hold{};               ///< when
 };
 
 struct ClothGarment {

@@ -39,14 +39,15 @@ struct PinForce {
   double stiffness, energy;
 };
 
-/// Spring with a force limit: quadratic up to the limit, linear beyond.
-PinForce pin_force(const PinPoint& pin, const Vec3& x, const Vec3& target) {
+/// Spring with a force limit: quadratic up to the limit, linear beyond. `share` of it holds.
+PinForce pin_force(const PinPoint& pin, double share, const Vec3& x, const Vec3& target) {
   const Vec3 d = x - target;
   const double length = d.norm();
-  const double pull = pin.stiffness * length;
-  if (pull <= pin.max_pull) return {pin.stiffness * d, pin.stiffness, 0.5 * pin.stiffness * length * length};
-  const double elastic = pin.max_pull / pin.stiffness;
-  return {pin.max_pull / length * d, pin.max_pull / length, pin.max_pull * (length - 0.5 * elastic)};
+  const double stiffness = share * pin.stiffness, max_pull = share * pin.max_pull;
+  const double pull = stiffness * length;
+  if (pull <= max_pull) return {stiffness * d, stiffness, 0.5 * stiffness * length * length};
+  const double elastic = max_pull / stiffness;
+  return {max_pull / length * d, max_pull / length, max_pull * (length - 0.5 * elastic)};
 }
 
 }  // namespace
@@ -64,6 +65,7 @@ struct ImplicitStep::Scratch {
   ContactPotential contact;
   std::vector<Vec3> y, gradient, direction, all, trial;
   std::vector<double> share, missing;
+  std::vector<double> pin_share;  // of each pin\'s force, at the end of the step
   std::vector<PairTerm> terms;
   ContactPairs near;
 };
@@ -107,6 +109,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.share.resize(n);
   s.missing.resize(n);
 
+  s.pin_share.resize(model_.pins.size());
+  for (std::size_t p = 0; p < s.pin_share.size(); ++p) s.pin_share[p] = model_.pins[p].hold.share(in.time);
+
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   const auto potential = [&](std::vector<Vec3>& all) {
     const std::span<const Vec3> x(all.data(), n);
@@ -118,7 +123,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     e *= 0.5 * inertia;
     for (const auto& energy : model_.energies) e += energy->value(x);
     for (std::size_t p = 0; p < model_.pins.size(); ++p)
-      e += pin_force(model_.pins[p], x[at(model_.pins[p].vertex)], in.pin_target[p]).energy;
+      if (s.pin_share[p] > 0) e += pin_force(model_.pins[p], s.pin_share[p], x[at(model_.pins[p].vertex)], in.pin_target[p]).energy;
     return e + s.contact.value(all);
   };
 
@@ -144,7 +149,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     s.terms.clear();
     for (std::size_t p = 0; p < model_.pins.size(); ++p) {
       const PinPoint& pin = model_.pins[p];
-      const PinForce f = pin_force(pin, x[at(pin.vertex)], in.pin_target[p]);
+      if (s.pin_share[p] == 0) continue;
+      const PinForce f = pin_force(pin, s.pin_share[p], x[at(pin.vertex)], in.pin_target[p]);
       s.gradient[at(pin.vertex)] += f.gradient;
       PairTerm term;
       term.vertex[0] = pin.vertex;

@@ -68,6 +68,25 @@ TEST_F(ShotFile, Faults_of_maps_name_place_range_and_what_was_meant) {
   EXPECT_NE(fault_with("[cache]", "[[maps]]\n[cache]").find("maps belong under [cloth.NAME]"), std::string::npos);
 }
 
+TEST_F(ShotFile, Pins_say_from_when_until_when_and_how_gently_they_hold) {
+  const auto shot = parse(k_good, {"cloth.cape.pins=[{within=0.01, from=1010, until=1050.5, fade=12}]"});
+  ASSERT_TRUE(shot.ok()) << shot.error().text();
+  const PinSpec& pin = shot->cloths[1].pins.back();
+  EXPECT_EQ(pin.from, 1010);
+  EXPECT_EQ(pin.until, 1050.5);
+  EXPECT_EQ(pin.fade, 12);
+  EXPECT_NE(canonical(*shot).find("max_pull = 5000, from = 1010, until = 1050.5, fade = 12 }"), std::string::npos) << canonical(*shot);
+  EXPECT_EQ(canonical(*parse(k_good)).find("until"), std::string::npos) << "a shot without them is what it was";
+  const auto fault = [&](const std::string& keys) {
+    return fault_with(k_pin_line, std::string("pins = [ { group = \"neck\", ").append(keys).append(" } ]"));
+  };
+  EXPECT_EQ(fault("from = 1050, until = 1010"),
+            "shot.toml:19:41: cloth \"cape\", pin 1: until = 1010 is not after from = 1050: it would never hold");
+  EXPECT_NE(fault("fade = 5").find("fade needs until (or from), the frame at which it begins"), std::string::npos);
+  EXPECT_NE(fault("until = -3").find("until = -3 is outside [0, 9999999] frame"), std::string::npos);
+  EXPECT_NE(fault("release = 1010").find("did you mean \"until\"?"), std::string::npos);
+}
+
 TEST_F(ShotFile, Every_kind_of_map_has_a_range_that_the_reference_prints) {
   const std::string reference = shot_file_reference(words());
   for (const MapKind& kind : map_kinds()) {
