@@ -18,6 +18,9 @@
 namespace ft {
 namespace {
 
+/// Of the places without room, so many are told before the first frame; report.json has them all.
+constexpr std::size_t k_room_lines = 5;
+
 /// An error, or after a signal the interruption that is behind it (Ctrl-C reaches the import's child, too).
 BakeResult failed(const Error& error, const ShotFaults& faults = {}) {
   BakeResult out;
@@ -134,6 +137,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   if (!plan) return failed(plan.error());
   for (const std::string& note : plan->notes) progress.note(note);
   manifest.notes = plan->notes;
+  const RoomReport room = find_room(*plan);
+  for (const std::string& line : room_lines(room, k_room_lines)) progress.note(line);
   auto solvers = make_solvers(*plan, services.make_solver);
   if (!solvers) return failed(solvers.error());
   if (const int signal = signal_received(); signal != 0) return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
@@ -145,7 +150,7 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   WalkResult result = walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), progress);
   Status status = result.status;
   if (status || status.error().kind == ErrorKind::k_interrupted)
-    if (const Status written = write_report(folder, *plan, result); !written) status = written;
+    if (const Status written = write_report(folder, *plan, room, result); !written) status = written;
   if (status) status = judge(result.manifest, {plan->shot().gate_p99_strain, plan->shot().gate_crossings});
   BakeResult out;
   if (!status) out = failed(status.error());
@@ -172,6 +177,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
     auto plan = make_plan(std::move(*inputs), services.importer, cached ? folder.import_cache() : std::filesystem::path());
     if (!plan) return failed(plan.error());
     BakeResult out{0, plan_lines(*plan, folder.path), {}};
+    for (std::string& line : room_lines(find_room(*plan), k_room_lines)) out.lines.push_back(std::move(line));
     out.lines.push_back(describe(standing, folder));
     return out;
   }

@@ -224,7 +224,7 @@ WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, 
   return Walk(plan, solvers, caches, folder, std::move(manifest), progress).run(std::move(from));
 }
 
-Status write_report(const BakeFolder& folder, const BakePlan& plan, const WalkResult& result) {
+Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomReport& room, const WalkResult& result) {
   FrameProfile sum;
   std::vector<double> totals;
   Json frames = Json::array();
@@ -243,6 +243,7 @@ Status write_report(const BakeFolder& folder, const BakePlan& plan, const WalkRe
   out["median_frame_seconds"] = totals.empty() ? 0.0 : totals[totals.size() / 2];
   out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   out["profile"] = to_json(sum);
+  out["room"] = to_json(room);
   out["frames"] = std::move(frames);
   return write_text_durably(folder.report(), to_text(out));
 }

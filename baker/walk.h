@@ -8,6 +8,7 @@
 #include "baker/checkpoint.h"
 #include "baker/manifest.h"
 #include "baker/progress.h"
+#include "baker/room_report.h"
 
 namespace ft {
 
@@ -25,6 +26,6 @@ WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, 
 FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states);
 
 /// Writes report.json: times, per frame and phase; and the memory that was used.
-Status write_report(const BakeFolder& folder, const BakePlan& plan, const WalkResult& result);
+Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomReport& room, const WalkResult& result);
 
 }  // namespace ft

@@ -10,7 +10,9 @@
 #include "baker/commands/command_line.h"
 #include "baker/inputs.h"
 #include "baker/manifest.h"
+#include "baker/plan.h"
 #include "baker/plan_text.h"
+#include "baker/room_report.h"
 #include "io/cache/cache.h"
 #include "io/import/import.h"
 #include "io/shot/mesh_file.h"
@@ -55,7 +57,22 @@ Result<Lines> folder_info(const std::filesystem::path& path) {
   return out;
 }
 
-Result<Lines> shot_info(const std::filesystem::path& path) {
+/// What the clips hold that a bake would stumble over: jumps, places without room. Imports the characters.
+Result<Lines> scan_lines(const std::filesystem::path& path) {
+  ShotFaults faults;
+  auto inputs = read_inputs(path, {}, std::nullopt, faults);
+  if (!inputs) return inputs.error();
+  auto plan = make_plan(std::move(*inputs), import_primary, {});
+  if (!plan) return plan.error();
+  const RoomReport room = find_room(*plan);
+  Lines out;
+  for (const std::string& note : plan->notes) out.push_back("note: " + note);
+  for (std::string& line : room_lines(room, room.places.size())) out.push_back(std::move(line));
+  out.push_back(fmt::format("looked at {} frames in {:.2f} s", room.frame_count, room.seconds));
+  return out;
+}
+
+Result<Lines> shot_info(const std::filesystem::path& path, bool scan) {
   ShotFaults faults;
   auto shot = read_shot(path, shot_vocabulary(), {}, faults);
   if (!shot) {
@@ -65,6 +82,10 @@ Result<Lines> shot_info(const std::filesystem::path& path) {
   Lines out{fmt::format("shot: frames {}-{} at {:g} fps, {} primaries, {} cloths", shot->first_frame, shot->last_frame, shot->fps,
                         shot->primaries.size(), shot->cloths.size())};
   for (const auto& [key, value] : settings(*shot)) out.push_back("  " + key + " = " + value);
+  if (!scan) return out;
+  auto found = scan_lines(path);
+  if (!found) return found.error();
+  for (std::string& line : *found) out.push_back("  " + line);
   return out;
 }
 
@@ -100,13 +121,13 @@ Lines cache_info(CacheReader& reader) {
   return out;
 }
 
-Result<Lines> file_info(const std::filesystem::path& path) {
+Result<Lines> file_info(const std::filesystem::path& path, bool scan) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return input_error("does not exist", path.string());
   if (std::filesystem::is_directory(path, error)) return folder_info(path);
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".toml") return shot_info(path);
+  if (extension == ".toml") return shot_info(path, scan);
   if (extension == ".obj") return mesh_info(path);
   for (const CacheFormat& format : cache_formats())
     if (extension == format.extension) {
@@ -124,7 +145,7 @@ Result<Lines> file_info(const std::filesystem::path& path) {
 
 struct InfoArguments {
   std::filesystem::path file;
-  bool shot_keys = false;
+  bool shot_keys = false, scan = false;
 };
 
 int run(const InfoArguments& a) {
@@ -136,7 +157,7 @@ int run(const InfoArguments& a) {
     complain("info needs a file (or --shot-keys)");
     return exit_code(ErrorKind::k_usage);
   }
-  auto lines = file_info(a.file);
+  auto lines = file_info(a.file, a.scan);
   if (!lines) {
     complain(lines.error().text());
     return exit_code(lines.error().kind);
@@ -152,6 +173,7 @@ void add_info_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<InfoArguments>();
   command->add_option("file", a->file, "The file or folder")->type_name("FILE");
   command->add_flag("--shot-keys", a->shot_keys, "Print the keys of a shot file as Markdown");
+  command->add_flag("--scan", a->scan, "Of a shot: look at every frame of its characters for jumps and for places without room");
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 

@@ -35,7 +35,7 @@ class FakeSolver final : public Solver {
   }
   std::span<const Triangle> collider_triangles() const override { return setup_.primary->surface().triangles; }
   void collider_positions(const State& state, std::vector<Vec3>& out) const override {
-    out.resize(8);
+    out.resize(at(setup_.primary->surface().vertex_count()));
     setup_.primary->sample(state.time, out);
   }
   State initial_state() const override {

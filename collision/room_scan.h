@@ -1,0 +1,34 @@
+// Where a pose leaves no room for cloth: pairs of body parts that overlap or come nearer to each other than the gap that the feasible
+// collider keeps. For a look at the whole clip before the bake: there the cloth will lie on a collider that is not the drawn body.
+// Measured on the drawn pose, at the vertices that the feasible collider has to move. Thread-safe; deterministic.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "baker/core/trajectory.h"
+#include "collision/feasible_collider.h"
+
+namespace ft {
+
+/// Part `a` gives way to part `b`.
+struct TightPlace {
+  int part_a = -1, part_b = -1;
+  double clearance = 0;         ///< smallest distance of a's vertices to b [m]; negative: a is inside b so deep
+  Vec3 place = Vec3::Zero();    ///< of that vertex as drawn [m]
+};
+
+class RoomScanner {
+ public:
+  RoomScanner(const Surface& surface, std::span<const Vec3> bind_pose, const FeasibleSettings& settings);
+  ~RoomScanner();
+  /// Pairs nearer than the gap in this pose, by parts.
+  std::vector<TightPlace> look(std::span<const Vec3> drawn) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ft
