@@ -188,7 +188,7 @@ Membrane::Membrane(const ClothTopology& topology) {
     g.damping_time[l] = fabric.damping;
     g.limit[0][l] = green_limit(fabric.limit_weft);
     g.limit[1][l] = green_limit(fabric.limit_warp);
-    g.limit_stiffness[l] = topology.rest_area[t] * fabric.limit_stretch;
+    g.limit_stiffness[l] = topology.rest_area[t] * (factor * fabric.limit_stretch);
   }
 }
 
