@@ -19,6 +19,18 @@ inline constexpr bool k_sanitized = false;
 inline constexpr bool k_sanitized = false;
 #endif
 
+#if defined(__SANITIZE_THREAD__)
+inline constexpr bool k_thread_sanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+inline constexpr bool k_thread_sanitized = true;
+#else
+inline constexpr bool k_thread_sanitized = false;
+#endif
+#else
+inline constexpr bool k_thread_sanitized = false;
+#endif
+
 /// 1, and in a sanitized build `step`: only every step-th case is tried, which is printed.
 inline std::size_t every(std::size_t step, const char* what) {
   if (!k_sanitized) return 1;
