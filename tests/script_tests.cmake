@@ -3,7 +3,9 @@ function(ft_script_test name script)
   if(TARGET followthrough AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${script})
     add_test(NAME ${name} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/${script} $<TARGET_FILE:followthrough> ${ARGN})
     set_tests_properties(${name} PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 1800)
-    if(FOLLOWTHROUGH_SANITIZE)  # slower by far; every 11th call fails instead of every one
+    if(FOLLOWTHROUGH_SANITIZE STREQUAL "thread")  # slowest of all: every 31st call fails instead of every one, 6 kills for 25
+      set_tests_properties(${name} PROPERTIES TIMEOUT 3600 ENVIRONMENT "STEP=31;KILLS=6")
+    elseif(FOLLOWTHROUGH_SANITIZE)
       set_tests_properties(${name} PROPERTIES TIMEOUT 3600 ENVIRONMENT STEP=11)
     endif()
   endif()
