@@ -14,8 +14,7 @@ constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 
 // Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity and the
-// acceleration of the last step. Too small a ball holds cloth back (it then asks for more), too large a one
-// costs candidates.
+// acceleration of the last step. Too small a ball holds cloth back (it then asks for more), too large a one costs candidates.
 constexpr double k_slack_way = 0.6;            ///< of the way between the two; half of it reaches both
 constexpr double k_slack_acceleration = 0.6;   ///< of what the last step's acceleration makes in this one, on top
 constexpr double k_slack_gravity = 0.6;        ///< of h2 g
@@ -234,7 +233,10 @@ void Candidates::grow(const ClothMotion& cloth, std::span<const double> more, Pi
     piece.slack[i] += more[i];
     set_box(i, cloth, piece);
   }
+  const ContactPairs let_pass = blocked_;  // none, unless there was no room: then release_blocked() has dropped them
   renew(cloth, piece);
+  blocked_ = let_pass;
+  drop_blocked();
 }
 
 /// Keeps what can come nearer than the contact radius, and finds the first time of contact among it.
@@ -286,17 +288,23 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
 
 int Candidates::release_blocked(ClothMotion& cloth) {
   int freed = 0;
-  const auto release = [&](std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
-    for (const Stencil& stencil : blocked) {
+  for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge})
+    for (const Stencil& stencil : *blocked) {
       const int part = part_of(stencil);
       for (const int v : stencil.v)
         if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part) cloth.released[at(v)] = part, ++freed;
     }
+  drop_blocked();
+  return freed;
+}
+
+void Candidates::drop_blocked() {
+  const auto drop = [](std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
+    if (blocked.empty()) return;
     std::erase_if(pairs, [&](const Stencil& stencil) { return std::binary_search(blocked.begin(), blocked.end(), stencil); });
   };
-  release(pairs_.vertex_face, blocked_.vertex_face);
-  release(pairs_.edge_edge, blocked_.edge_edge);
-  return freed;
+  drop(pairs_.vertex_face, blocked_.vertex_face);
+  drop(pairs_.edge_edge, blocked_.edge_edge);
 }
 
 }  // namespace ft

@@ -37,8 +37,9 @@ class Candidates {
   /// pairs() up to it and returns the share anew.
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
   /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is carried already.
+  /// What release_blocked() has dropped stays out.
   void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
-  /// Takes out the pairs that the last collect() saw touch: their cloth vertices are let through the collider's part (noted in
+  /// Takes out the pairs that collect() or join_blocked() last saw touch: their cloth vertices are let through the collider's part (noted in
   /// cloth.released; returns how many), pairs of cloth with cloth are only dropped.
   int release_blocked(ClothMotion& cloth);
 
@@ -50,6 +51,7 @@ class Candidates {
   void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);
   void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
+  void drop_blocked();
   double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
                 std::vector<Stencil>& kept, std::vector<Stencil>& blocked);
 

@@ -1,0 +1,136 @@
+// The pairs of one piece of a substep: complete for all that the solve may do, also after it got more room; what was let pass stays out.
+#include "solvers/cloth/candidates.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "baker/core/random.h"
+#include "tests/support/scripted_body.h"
+
+namespace ft {
+namespace {
+
+constexpr double k_step = 0.01;
+constexpr std::uint64_t k_seed = 5;
+
+/// Two sheets, 10 mm above each other; the upper one moves at `speed` along y.
+struct TwoSheets {
+  std::unique_ptr<ClothModel> model;
+  ClothMotion cloth;
+  PieceMotion piece;
+
+  explicit TwoSheets(double speed) {
+    ClothSetup setup;
+    setup.preroll_frames = 0;
+    for (const double height : {0.0, 0.01}) {
+      ClothGarment sheet;
+      sheet.name = height > 0 ? "upper" : "lower";
+      sheet.mesh = make_sheet(0.2, 8, height);
+      setup.garments.push_back(std::move(sheet));
+    }
+    auto built = build_cloth_model(std::move(setup));
+    EXPECT_TRUE(built);
+    model = std::move(*built);
+    const std::size_t n = model->start.size();
+    cloth.x = cloth.x_previous = piece.start = model->start;
+    cloth.v.assign(n, Vec3::Zero());
+    for (std::size_t i = n / 2; i < n; ++i) cloth.v[i].y() = speed;
+    cloth.v_previous = cloth.v;
+    cloth.h_previous = k_step;
+    cloth.released.assign(n, -1);
+    cloth.tangled.assign(n, 0);
+  }
+  double collect(Candidates& candidates) {
+    candidates.find_near(cloth, k_step, piece);
+    candidates.carry(cloth, k_step, piece);
+    return candidates.collect(cloth, k_step, piece);
+  }
+};
+
+std::vector<Vec3> somewhere_in_reach(const TwoSheets& s, std::uint64_t draw) {
+  std::vector<Vec3> out(s.cloth.x.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    Vec3 d;
+    for (int k = 0; k < 3; ++k) d[k] = 2 * random_uniform({k_seed, 0, draw, i}, static_cast<std::uint64_t>(k)) - 1;
+    out[i] = s.cloth.x[i] + s.piece.centre[i] + s.piece.slack[i] / std::max(1.0, d.norm()) * d;
+  }
+  return out;
+}
+
+bool contains(const std::vector<Stencil>& sorted, const Stencil& s) { return std::binary_search(sorted.begin(), sorted.end(), s); }
+
+/// Pairs of vertices with faces, and of edges, that touch at some of the places where the solve may put them.
+ContactPairs touching(const TwoSheets& s) {
+  ContactPairs out;
+  const double radius = s.model->contact.self_radius.front();
+  const auto edges = unique_edges(s.model->triangles);
+  for (std::uint64_t draw = 0; draw < 6; ++draw) {
+    const auto x = somewhere_in_reach(s, draw);
+    for (int v = 0; v < s.model->vertex_count(); ++v)
+      for (const Triangle& t : s.model->triangles)
+        if (v != t[0] && v != t[1] && v != t[2] && vertex_face_geometry(x[at(v)], x[at(t[0])], x[at(t[1])], x[at(t[2])]).distance < radius)
+          out.vertex_face.push_back({{v, t[0], t[1], t[2]}});
+    for (std::size_t a = 0; a < edges.size(); ++a)
+      for (std::size_t b = a + 1; b < edges.size(); ++b) {
+        const Edge &p = edges[a], &q = edges[b];
+        if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1]) continue;
+        if (edge_edge_geometry(x[at(p[0])], x[at(p[1])], x[at(q[0])], x[at(q[1])]).distance < radius)
+          out.edge_edge.push_back({{p[0], p[1], q[0], q[1]}});
+      }
+  }
+  return out;
+}
+
+int missing_in(const ContactPairs& list, const ContactPairs& needed) {
+  int out = 0;
+  for (const Stencil& s : needed.vertex_face) out += !contains(list.vertex_face, s);
+  for (const Stencil& s : needed.edge_edge) out += !contains(list.edge_edge, s);
+  return out;
+}
+
+TEST(Candidates, are_complete_before_and_after_the_room_grows) {
+  TwoSheets s(0);
+  Candidates candidates(*s.model);
+  EXPECT_EQ(s.collect(candidates), 1);
+  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
+  const ContactPairs before = candidates.pairs();
+  std::vector<double> more(s.cloth.x.size(), 0.0);
+  for (std::size_t i = 0; i < more.size(); i += 3) more[i] = 0.015 * random_uniform({k_seed, 1, 0, i}, 0);
+  candidates.grow(s.cloth, more, s.piece);
+  const ContactPairs needed = touching(s);
+  EXPECT_EQ(missing_in(candidates.pairs(), needed), 0);
+  EXPECT_GT(missing_in(before, needed), 100) << "the list of before would have done";
+  EXPECT_TRUE(std::is_sorted(candidates.pairs().edge_edge.begin(), candidates.pairs().edge_edge.end()));
+  EXPECT_TRUE(std::is_sorted(candidates.pairs().vertex_face.begin(), candidates.pairs().vertex_face.end()));
+}
+
+TEST(Candidates, are_complete_when_what_would_meet_is_carried_as_one) {
+  TwoSheets s(-2);  // 20 mm in a step: through the lower sheet
+  Candidates candidates(*s.model);
+  ASSERT_LT(s.collect(candidates), 1);
+  double t = 0;
+  for (int round = 0; t < 1 && round < 4; ++round) t = candidates.join_blocked(s.cloth, s.piece);
+  EXPECT_EQ(t, 1);
+  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
+}
+
+TEST(Candidates, that_were_let_pass_stay_out_when_the_room_grows) {
+  TwoSheets s(-2);
+  Candidates candidates(*s.model);
+  ASSERT_LT(s.collect(candidates), 1);
+  const ContactPairs all = candidates.pairs();
+  EXPECT_EQ(candidates.release_blocked(s.cloth), 0) << "there is no body to be let through";
+  const ContactPairs left = candidates.pairs();
+  ASSERT_LT(left.vertex_face.size(), all.vertex_face.size());
+  ASSERT_LT(left.edge_edge.size(), all.edge_edge.size());
+  candidates.grow(s.cloth, std::vector<double>(s.cloth.x.size(), 1e-3), s.piece);
+  const auto back = [](const std::vector<Stencil>& before, const std::vector<Stencil>& without, const std::vector<Stencil>& now) {
+    return std::count_if(before.begin(), before.end(), [&](const Stencil& p) { return !contains(without, p) && contains(now, p); });
+  };
+  EXPECT_EQ(back(all.vertex_face, left.vertex_face, candidates.pairs().vertex_face), 0);
+  EXPECT_EQ(back(all.edge_edge, left.edge_edge, candidates.pairs().edge_edge), 0);
+}
+
+}  // namespace
+}  // namespace ft
