@@ -1,10 +1,10 @@
 #include "baker/bake.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
-#include <fmt/format.h>
 
 #include "baker/bake_folder.h"
 #include "baker/cache_set.h"
@@ -39,9 +39,11 @@ BakeResult failed(const Error& error, const ShotFaults& faults = {}) {
 Status check_writable(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::path nearest = std::filesystem::absolute(folder, error);
-  while (!nearest.empty() && !std::filesystem::exists(nearest, error) && nearest != nearest.parent_path()) nearest = nearest.parent_path();
+  while (!nearest.empty() && !std::filesystem::exists(nearest, error) && nearest != nearest.parent_path())
+    nearest = nearest.parent_path();
   if (!std::filesystem::is_directory(nearest, error))
-    return output_error("the output folder cannot be made: " + nearest.string() + " is not a folder", folder.string(), "choose another with --out");
+    return output_error("the output folder cannot be made: " + nearest.string() + " is not a folder", folder.string(),
+                        "choose another with --out");
   if (::access(nearest.c_str(), W_OK | X_OK) != 0)
     return output_error("the output folder cannot be written", folder.string(), "choose another with --out");
   return {};
@@ -51,8 +53,8 @@ void warn_of_space(const BakeFolder& folder, std::uint64_t expected, Progress& p
   std::error_code error;
   const auto space = std::filesystem::space(folder.path, error);
   if (!error && space.available < expected)
-    progress.note(fmt::format("the caches need about {}, and {} has only {} free", size_text(expected), folder.path.string(),
-                              size_text(space.available)));
+    progress.note(fmt::format("the caches need about {}, and {} has only {} free", size_text(expected),
+                              folder.path.string(), size_text(space.available)));
 }
 
 /// Files of an earlier bake that this one does not write: a cache that stays behind would be taken for a new one.
@@ -73,14 +75,17 @@ Status remove_left_behind(const BakeFolder& folder, const Manifest& before, cons
     if (std::find(keep.begin(), keep.end(), file) != keep.end()) continue;
     std::error_code error;
     std::filesystem::remove(folder.path / file, error);
-    if (error) return output_error("cannot remove a cache of the earlier bake: " + error.message(), (folder.path / file).string());
+    if (error)
+      return output_error("cannot remove a cache of the earlier bake: " + error.message(),
+                          (folder.path / file).string());
   }
   return {};
 }
 
 /// The checkpoint to go on from, if the user wants that and it can be.
-Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, const BakeFolder& folder, const BakeInputs& inputs,
-                                                  const Standing& standing, Progress& progress) {
+Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, const BakeFolder& folder,
+                                                  const BakeInputs& inputs, const Standing& standing,
+                                                  Progress& progress) {
   std::error_code error;
   if (!options.resume || !std::filesystem::exists(folder.checkpoint(), error)) return std::optional<Checkpoint>();
   auto bytes = read_file(folder.checkpoint());
@@ -121,8 +126,8 @@ std::string closing(const Manifest& manifest, const BakeFolder& folder) {
   return text;
 }
 
-BakeResult run(const BakeOptions& options, const BakeServices& services, const BakeFolder& folder, BakeInputs inputs, Standing standing,
-               Progress& progress) {
+BakeResult run(const BakeOptions& options, const BakeServices& services, const BakeFolder& folder, BakeInputs inputs,
+               Standing standing, Progress& progress) {
   if (const Status made = make_folders(folder.state()); !made) {
     Error error = made.error();
     if (error.hint.empty()) error.hint = "choose another folder with --out";
@@ -141,12 +146,14 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   for (const std::string& line : room_lines(room, k_room_lines)) progress.note(line);
   auto solvers = make_solvers(*plan, services.make_solver);
   if (!solvers) return failed(solvers.error());
-  if (const int signal = signal_received(); signal != 0) return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
+  if (const int signal = signal_received(); signal != 0)
+    return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
 
   CacheSet caches(*plan, *solvers, folder.path);
   warn_of_space(folder, caches.expected_bytes(), progress);
   if (!*checkpoint)
-    if (const Status removed = remove_left_behind(folder, standing.before, caches.systems()); !removed) return failed(removed.error());
+    if (const Status removed = remove_left_behind(folder, standing.before, caches.systems()); !removed)
+      return failed(removed.error());
   WalkResult result = walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), progress);
   Status status = result.status;
   if (status || status.error().kind == ErrorKind::k_interrupted)
@@ -174,7 +181,8 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   if (options.dry_run) {
     std::error_code error;
     const bool cached = std::filesystem::is_directory(folder.import_cache(), error);
-    auto plan = make_plan(std::move(*inputs), services.importer, cached ? folder.import_cache() : std::filesystem::path());
+    auto plan =
+        make_plan(std::move(*inputs), services.importer, cached ? folder.import_cache() : std::filesystem::path());
     if (!plan) return failed(plan.error());
     BakeResult out{0, plan_lines(*plan, folder.path), {}};
     for (std::string& line : room_lines(find_room(*plan), k_room_lines)) out.lines.push_back(std::move(line));
@@ -183,7 +191,9 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   }
   if (standing.kind == Standing::Kind::k_up_to_date && !options.force) {
     BakeResult out;
-    if (const Status judged = judge(standing.before, {inputs->shot.gate_p99_strain, inputs->shot.gate_crossings}); !judged) out = failed(judged.error());
+    if (const Status judged = judge(standing.before, {inputs->shot.gate_p99_strain, inputs->shot.gate_crossings});
+        !judged)
+      out = failed(judged.error());
     out.lines.push_back(describe(standing, folder));
     return out;
   }

@@ -29,7 +29,8 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
           primary.name + ".collider", "collider", false);
     std::vector<Vec3> body(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
     primary.trajectory->bind_pose(body);
-    add({g, -1, false, make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles)}, primary.name, "body", false);
+    add({g, -1, false, make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles)}, primary.name,
+        "body", false);
   }
 }
 
@@ -115,7 +116,8 @@ Snapshot CacheSet::take(std::span<const State> states, const Snapshot* before) c
 Status CacheSet::write(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < writers_.size(); ++i)
     for (auto& writer : writers_[i])
-      if (const Status written = writer->write_frame(snapshot.positions[i], snapshot.velocities[i]); !written) return written;
+      if (const Status written = writer->write_frame(snapshot.positions[i], snapshot.velocities[i]); !written)
+        return written;
   return {};
 }
 
@@ -140,7 +142,8 @@ std::uint64_t CacheSet::expected_bytes() const {
   for (const ManifestSystem& system : systems_) {
     const auto vertices = static_cast<std::uint64_t>(system.vertex_count);
     // 12 bytes a position; as much again for velocities where the format has them.
-    for (const ManifestCache& cache : system.caches) sum += vertices * frames * (cache.format == "pc2" || system.role != "cloth" ? 12 : 24);
+    for (const ManifestCache& cache : system.caches)
+      sum += vertices * frames * (cache.format == "pc2" || system.role != "cloth" ? 12 : 24);
   }
   return sum;
 }

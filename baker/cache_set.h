@@ -1,5 +1,5 @@
-// All caches of one bake: every garment in every format, the feasible collider and the drawn body of each primary in the first
-// format. The walk takes a snapshot of a frame; the writer thread writes it.
+// All caches of one bake: every garment in every format, the feasible collider and the drawn body of each primary in
+// the first format. The walk takes a snapshot of a frame; the writer thread writes it.
 #pragma once
 
 #include <filesystem>
@@ -41,9 +41,9 @@ class CacheSet {
  private:
   struct Source {
     std::size_t group = 0;
-    int garment = -1;   ///< -1: the collider or the body
+    int garment = -1;  ///< -1: the collider or the body
     bool collider = false;
-    Mesh mesh;          ///< rest shape
+    Mesh mesh;  ///< rest shape
   };
   /// Of a garment, in the order of its file.
   void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;

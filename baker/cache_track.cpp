@@ -13,7 +13,8 @@ Status CacheTrack::read(int index, std::vector<Vec3>& out) const {
   return {};
 }
 
-Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system, const Manifest& manifest) {
+Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
+                              const Manifest& manifest) {
   if (system.caches.empty()) return input_error("system \"" + system.name + "\" has no cache", folder.string());
   const auto path = folder / system.caches[0].file;
   auto reader = open_cache(path);
@@ -24,10 +25,12 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   track.rest = std::move(*rest);
   const CacheInfo& info = track.reader->info();
   if (info.vertex_count != track.rest.vertex_count())
-    return input_error(fmt::format("has {} vertices, {} has {}", info.vertex_count, system.topology, track.rest.vertex_count()),
-                       path.string());
+    return input_error(
+        fmt::format("has {} vertices, {} has {}", info.vertex_count, system.topology, track.rest.vertex_count()),
+        path.string());
   if (info.frame_count != manifest.written_count() && manifest.complete)
-    return input_error(fmt::format("has {} frames, the manifest says {}", info.frame_count, manifest.written_count()), path.string());
+    return input_error(fmt::format("has {} frames, the manifest says {}", info.frame_count, manifest.written_count()),
+                       path.string());
   track.triangles = triangulate(track.rest);
   return track;
 }

@@ -22,6 +22,7 @@ struct CacheTrack {
 };
 
 /// Opens the first cache of a system; refuses one whose topology or number of frames is not what the manifest says.
-Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system, const Manifest& manifest);
+Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
+                              const Manifest& manifest);
 
 }  // namespace ft

@@ -54,7 +54,8 @@ Result<Checkpoint> load_checkpoint(std::span<const std::byte> data) {
     out.states.push_back(std::move(*state));
   }
   auto reports = parse_json(in.read_string(), "checkpoint");
-  if (!in.ok() || in.remaining() != 0 || !reports || !reports->is_array()) return refuse("does not hold what it states");
+  if (!in.ok() || in.remaining() != 0 || !reports || !reports->is_array())
+    return refuse("does not hold what it states");
   for (const Json& row : *reports) {
     auto report = frame_report_from_json(row);
     if (!report) return report.error();

@@ -1,5 +1,6 @@
-// .state/checkpoint: all that a bake needs to go on as if it had never stopped: the solvers' states, and the reports of the frames
-// so far. One file, replaced whole, written after the caches of its frame; so caches may be ahead of it, never behind.
+// .state/checkpoint: all that a bake needs to go on as if it had never stopped: the solvers' states, and the reports of
+// the frames so far. One file, replaced whole, written after the caches of its frame; so caches may be ahead of it,
+// never behind.
 #pragma once
 
 #include <filesystem>

@@ -44,8 +44,8 @@ Status add_file(BakeInputs& inputs, const std::string& role, const std::filesyst
   return {};
 }
 
-/// A path is no setting: what counts is the bytes behind it, and they are in `files`. Nor is a gate: it judges a bake and changes
-/// nothing of it.
+/// A path is no setting: what counts is the bytes behind it, and they are in `files`. Nor is a gate: it judges a bake
+/// and changes nothing of it.
 bool shapes_the_bake(const std::string& key) {
   if (key.starts_with("gate.")) return false;
   for (const char* end : {".file", ".mesh", ".animation", ".topology"})
@@ -91,7 +91,8 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
       if (const Status added = add_file(inputs, role + key, path); !added) return added.error();
   }
   for (const ClothSpec& cloth : s.cloths) {
-    if (const Status added = add_file(inputs, "cloth." + cloth.name + ".mesh", cloth.mesh); !added) return added.error();
+    if (const Status added = add_file(inputs, "cloth." + cloth.name + ".mesh", cloth.mesh); !added)
+      return added.error();
     const auto add_values = [&](const char* list, std::size_t number, const std::filesystem::path& path) {
       return add_file(inputs, "cloth." + cloth.name + "." + list + "." + std::to_string(number + 1) + ".file", path);
     };

@@ -1,5 +1,5 @@
-// What a bake depends on, found out without importing anything: the shot file with its overrides, the bytes of every file that
-// it names, and the program. Two bakes with the same fingerprint write the same bytes.
+// What a bake depends on, found out without importing anything: the shot file with its overrides, the bytes of every
+// file that it names, and the program. Two bakes with the same fingerprint write the same bytes.
 #pragma once
 
 #include <filesystem>
@@ -16,23 +16,24 @@
 namespace ft {
 
 struct InputFile {
-  std::string role;             ///< "primary.mannequin.file"
+  std::string role;  ///< "primary.mannequin.file"
   std::filesystem::path path;
-  Hash128 content;              ///< of the bytes, buffers that a glTF keeps beside itself included
+  Hash128 content;  ///< of the bytes, buffers that a glTF keeps beside itself included
 };
 
 struct BakeInputs {
   Shot shot;
-  std::vector<InputFile> files;                               ///< in the order of the shot file
-  std::vector<std::pair<std::string, std::string>> settings;  ///< "cloth.dress.fabric" -> "\"cotton\""; neither paths nor gates
+  std::vector<InputFile> files;  ///< in the order of the shot file
+  std::vector<std::pair<std::string, std::string>>
+      settings;  ///< "cloth.dress.fabric" -> "\"cotton\""; neither paths nor gates
   Hash128 fingerprint;
 };
 
 /// What the registries of the floors below know, for read_shot().
 ShotVocabulary shot_vocabulary();
 
-/// frames: overrides the shot's range; the clip then starts that much later, so that a frame has the same pose in any range.
-/// faults: every fault of the shot file, for printing.
+/// frames: overrides the shot's range; the clip then starts that much later, so that a frame has the same pose in any
+/// range. faults: every fault of the shot file, for printing.
 Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std::vector<std::string>& overrides,
                                std::optional<FrameRange> frames, ShotFaults& faults);
 

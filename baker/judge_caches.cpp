@@ -1,7 +1,8 @@
 #include "baker/judge_caches.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
 
 #include "baker/cache_track.h"
@@ -17,7 +18,7 @@ namespace {
 /// What moves with one primary.
 struct Group {
   std::vector<CacheTrack> cloths;
-  std::vector<CacheTrack> collider, body;   ///< none or one
+  std::vector<CacheTrack> collider, body;  ///< none or one
   std::vector<Triangle> cloth_triangles;
   RestEdges rest_edges;
   SewnPairs sewn;
@@ -30,7 +31,8 @@ void prepare(Group& group) {
   std::vector<Stitch> stitches;
   for (const CacheTrack& cloth : group.cloths) {
     group.first_vertex.push_back(first);
-    for (const Triangle& t : cloth.triangles) group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Triangle& t : cloth.triangles)
+      group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     for (Stitch s : cloth.rest.stitches) {
       s.vertex += first, s.edge[0] += first, s.edge[1] += first;
       stitches.push_back(s);
@@ -77,13 +79,14 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
     const auto crossings = crossings_between(x, group.cloth_triangles, y, collider.triangles);
     report.crossings_body = static_cast<int>(crossings.size());
     if (!crossings.empty())
-      incident(Incident::Kind::k_crossing, crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0], 0,
-               fmt::format("{} crossings with the feasible collider", crossings.size()));
+      incident(Incident::Kind::k_crossing, crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0],
+               0, fmt::format("{} crossings with the feasible collider", crossings.size()));
   }
   auto own = crossings_within(x, group.cloth_triangles);
   std::erase_if(own, [&](const Crossing& c) { return group.sewn.together(c); });
   report.crossings_self = static_cast<int>(own.size());
-  if (!own.empty()) incident(Incident::Kind::k_crossing, own[0].edge[0], 0, fmt::format("{} crossings among cloths", own.size()));
+  if (!own.empty())
+    incident(Incident::Kind::k_crossing, own[0].edge[0], 0, fmt::format("{} crossings among cloths", own.size()));
   for (const CacheTrack& body : group.body) {
     std::vector<Vec3> y;
     if (const Status read = body.read(index, y); !read) return read.error();
@@ -92,7 +95,8 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
     for (const Penetration& p : penetrations(x, y, body.triangles))
       if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
     if (worst >= 0)
-      incident(Incident::Kind::k_penetration, worst, report.deepest_drawn, fmt::format("{:.2f} mm inside the drawn body", 1e3 * report.deepest_drawn));
+      incident(Incident::Kind::k_penetration, worst, report.deepest_drawn,
+               fmt::format("{:.2f} mm inside the drawn body", 1e3 * report.deepest_drawn));
   }
   return report;
 }
@@ -109,18 +113,25 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
     Group& group = groups[system.primary];
-    (system.role == "cloth" ? group.cloths : system.role == "collider" ? group.collider : group.body).push_back(std::move(*track));
+    (system.role == "cloth"      ? group.cloths
+     : system.role == "collider" ? group.collider
+                                 : group.body)
+        .push_back(std::move(*track));
   }
   int frames = manifest->written_count();
   for (auto& [primary, group] : groups) {
     prepare(group);
     out.has_collider = out.has_collider || !group.collider.empty();
     out.has_body = out.has_body || !group.body.empty();
-    if (group.collider.empty()) out.notes.push_back("the feasible collider of \"" + primary + "\" is not cached: crossings with it are not judged");
+    if (group.collider.empty())
+      out.notes.push_back("the feasible collider of \"" + primary +
+                          "\" is not cached: crossings with it are not judged");
     for (const auto* tracks : {&group.cloths, &group.collider, &group.body})
       for (const CacheTrack& track : *tracks) frames = std::min(frames, track.reader->info().frame_count);
   }
-  if (!manifest->complete) out.notes.push_back(fmt::format("the bake is not finished: {} of {} frames are judged", frames, manifest->written_count()));
+  if (!manifest->complete)
+    out.notes.push_back(
+        fmt::format("the bake is not finished: {} of {} frames are judged", frames, manifest->written_count()));
   for (int i = 0; i < frames; ++i) {
     bool first = true;
     FrameReport all;

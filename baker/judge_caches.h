@@ -1,4 +1,5 @@
-// Judges a bake from its caches alone, as any other program would see them: nothing that the solver said of itself is believed.
+// Judges a bake from its caches alone, as any other program would see them: nothing that the solver said of itself is
+// believed.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +13,9 @@ namespace ft {
 
 struct CacheJudgement {
   std::string shot;
-  std::vector<FrameReport> frames;   ///< crossings, penetration, strain; gap and energy are not judged
+  std::vector<FrameReport> frames;  ///< crossings, penetration, strain; gap and energy are not judged
   bool has_collider = false, has_body = false;
-  std::vector<std::string> notes;    ///< what could not be judged
+  std::vector<std::string> notes;  ///< what could not be judged
 };
 
 /// Reads every frame of every cache in the first format of each system. Garments on one primary are judged together.

@@ -1,5 +1,5 @@
-// One bake at a time writes a folder. The lock is the kernel's (flock), so a killed bake leaves none behind; the file says
-// which process holds it. Where the file system knows no locks, the bake goes on without.
+// One bake at a time writes a folder. The lock is the kernel's (flock), so a killed bake leaves none behind; the file
+// says which process holds it. Where the file system knows no locks, the bake goes on without.
 #pragma once
 
 #include <filesystem>

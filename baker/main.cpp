@@ -1,5 +1,5 @@
-// followthrough. The order matters: first the machine (a program built for AVX2 dies without a word elsewhere), then the
-// import child (it must not touch anything else), then the command line.
+// followthrough. The order matters: first the machine (a program built for AVX2 dies without a word elsewhere), then
+// the import child (it must not touch anything else), then the command line.
 #include <unistd.h>
 
 #include <cstdlib>

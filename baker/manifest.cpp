@@ -1,8 +1,9 @@
 #include "baker/manifest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "baker/core/file.h"
 #include "baker/report_json.h"
@@ -17,8 +18,10 @@ Json system_json(const ManifestSystem& system) {
   Json caches = Json::array();
   for (const ManifestCache& c : system.caches)
     caches.push_back({{"format", c.format}, {"file", c.file}, {"bytes", c.bytes}, {"content", c.content}});
-  return Json{{"name", system.name}, {"role", system.role}, {"primary", system.primary}, {"vertices", system.vertex_count},
-              {"faces", system.face_count}, {"topology", system.topology}, {"caches", std::move(caches)}};
+  return Json{{"name", system.name},        {"role", system.role},
+              {"primary", system.primary},  {"vertices", system.vertex_count},
+              {"faces", system.face_count}, {"topology", system.topology},
+              {"caches", std::move(caches)}};
 }
 
 ManifestSystem system_from(const Json& json) {
@@ -30,8 +33,8 @@ ManifestSystem system_from(const Json& json) {
   out.face_count = json.at("faces").get<int>();
   out.topology = json.at("topology").get<std::string>();
   for (const Json& c : json.at("caches"))
-    out.caches.push_back({c.at("format").get<std::string>(), c.at("file").get<std::string>(), c.at("bytes").get<std::uint64_t>(),
-                          c.at("content").get<std::string>()});
+    out.caches.push_back({c.at("format").get<std::string>(), c.at("file").get<std::string>(),
+                          c.at("bytes").get<std::uint64_t>(), c.at("content").get<std::string>()});
   return out;
 }
 
@@ -51,23 +54,36 @@ Json certificate(const Manifest& manifest) {
     worst = any ? merge(worst, same) : same;
     any = true;
   }
-  return Json{{"frames", written}, {"frames_with_crossings", crossing_frames}, {"crossings_body", worst.crossings_body},
-              {"crossings_self", worst.crossings_self}, {"smallest_gap", std::isfinite(worst.smallest_gap) ? Json(worst.smallest_gap) : Json(nullptr)}, {"deepest_drawn", worst.deepest_drawn},
-              {"strain_p99", worst.strain_p99}, {"strain_max", worst.strain_max}, {"rewinds", worst.rewinds}, {"finite", worst.finite}};
+  return Json{{"frames", written},
+              {"frames_with_crossings", crossing_frames},
+              {"crossings_body", worst.crossings_body},
+              {"crossings_self", worst.crossings_self},
+              {"smallest_gap", std::isfinite(worst.smallest_gap) ? Json(worst.smallest_gap) : Json(nullptr)},
+              {"deepest_drawn", worst.deepest_drawn},
+              {"strain_p99", worst.strain_p99},
+              {"strain_max", worst.strain_max},
+              {"rewinds", worst.rewinds},
+              {"finite", worst.finite}};
 }
 
 }  // namespace
 
 std::string to_text(const Manifest& m) {
   Json out = Json::object();
-  out["program"] = {{"name", "followthrough"}, {"version", m.version}, {"build", m.build}, {"manifest", k_manifest_version}};
+  out["program"] = {
+      {"name", "followthrough"}, {"version", m.version}, {"build", m.build}, {"manifest", k_manifest_version}};
   out["shot"] = m.shot;
   out["complete"] = m.complete;
   out["fingerprint"] = m.fingerprint;
-  out["range"] = {{"first", m.first_frame}, {"last", m.last_frame}, {"first_written", m.first_written}, {"fps", m.fps}, {"preroll", m.preroll}};
+  out["range"] = {{"first", m.first_frame},
+                  {"last", m.last_frame},
+                  {"first_written", m.first_written},
+                  {"fps", m.fps},
+                  {"preroll", m.preroll}};
   out["units"] = {{"length", "m"}, {"time", "s"}, {"mass", "kg"}, {"up", "y"}, {"strain", "1"}};
   Json inputs = Json::array();
-  for (const ManifestInput& i : m.inputs) inputs.push_back({{"role", i.role}, {"name", i.name}, {"content", i.content}});
+  for (const ManifestInput& i : m.inputs)
+    inputs.push_back({{"role", i.role}, {"name", i.name}, {"content", i.content}});
   out["inputs"] = std::move(inputs);
   Json settings = Json::object();
   for (const auto& [key, value] : m.settings) settings[key] = value;
@@ -97,7 +113,8 @@ Result<Manifest> manifest_from_text(const std::string& text, const std::string& 
     const Json& in = *json;
     Manifest m;
     const Json& program = in.at("program");
-    if (program.at("manifest").get<int>() != k_manifest_version) return input_error("is a manifest of another version", where);
+    if (program.at("manifest").get<int>() != k_manifest_version)
+      return input_error("is a manifest of another version", where);
     m.version = program.at("version").get<std::string>();
     m.build = program.at("build").get<std::string>();
     m.shot = in.at("shot").get<std::string>();
@@ -110,8 +127,10 @@ Result<Manifest> manifest_from_text(const std::string& text, const std::string& 
     m.fps = range.at("fps").get<double>();
     m.preroll = range.at("preroll").get<int>();
     for (const Json& i : in.at("inputs"))
-      m.inputs.push_back({i.at("role").get<std::string>(), i.at("name").get<std::string>(), i.at("content").get<std::string>()});
-    for (const auto& item : in.at("settings").items()) m.settings.emplace_back(item.key(), item.value().get<std::string>());
+      m.inputs.push_back(
+          {i.at("role").get<std::string>(), i.at("name").get<std::string>(), i.at("content").get<std::string>()});
+    for (const auto& item : in.at("settings").items())
+      m.settings.emplace_back(item.key(), item.value().get<std::string>());
     for (const Json& s : in.at("systems")) m.systems.push_back(system_from(s));
     m.notes = in.at("notes").get<std::vector<std::string>>();
     for (const char* part : {"preroll", "frames"})
@@ -134,7 +153,8 @@ Result<Manifest> manifest_from_text(const std::string& text, const std::string& 
 
 Result<Manifest> read_manifest(const std::filesystem::path& bake_folder) {
   const auto path = bake_folder / k_manifest_name;
-  if (!std::filesystem::exists(path)) return input_error("is not a bake folder: it has no manifest.json", bake_folder.string());
+  if (!std::filesystem::exists(path))
+    return input_error("is not a bake folder: it has no manifest.json", bake_folder.string());
   auto text = read_text(path);
   if (!text) return text.error();
   return manifest_from_text(*text, path.string());
@@ -154,7 +174,8 @@ std::vector<std::string> stale_reasons(const Manifest& before, const Manifest& n
     if (old == before.inputs.end())
       out.push_back(i.role + " (" + i.name + ") is new");
     else if (old->content != i.content)
-      out.push_back(old->name == i.name ? i.name + " changed" : i.role + " changed from " + old->name + " to " + i.name);
+      out.push_back(old->name == i.name ? i.name + " changed"
+                                        : i.role + " changed from " + old->name + " to " + i.name);
   }
   for (const ManifestInput& i : before.inputs)
     if (input(now, i.role) == now.inputs.end()) out.push_back(i.role + " (" + i.name + ") is gone");
@@ -172,11 +193,13 @@ Status judge(const Manifest& manifest, const Gates& gates) {
                    "the caches are complete; try more substeps ([solver] max_substeps) from this frame on"};
     if (frame.frame < manifest.first_written) continue;
     if (gates.crossings && frame.crossings_body + frame.crossings_self > 0)
-      return Error{ErrorKind::k_quality, fmt::format("quality gate: {} crossings", frame.crossings_body + frame.crossings_self), where,
+      return Error{ErrorKind::k_quality,
+                   fmt::format("quality gate: {} crossings", frame.crossings_body + frame.crossings_self), where,
                    "the manifest lists the places; [solver] gap leaves the cloth more room"};
     if (gates.p99_strain > 0 && frame.strain_p99 > gates.p99_strain)
-      return Error{ErrorKind::k_quality, fmt::format("quality gate: p99 strain {:.4g} is above {:.4g}", frame.strain_p99, gates.p99_strain), where,
-                   "a stiffer fabric or more newton_iterations stretches less"};
+      return Error{ErrorKind::k_quality,
+                   fmt::format("quality gate: p99 strain {:.4g} is above {:.4g}", frame.strain_p99, gates.p99_strain),
+                   where, "a stiffer fabric or more newton_iterations stretches less"};
   }
   return {};
 }

@@ -1,5 +1,5 @@
-// manifest.json: what a bake is made of and what is promised of it. No times, hosts, paths or thread counts: the same bake
-// gives the same bytes. Written when a bake begins, when it is interrupted, and when it is complete.
+// manifest.json: what a bake is made of and what is promised of it. No times, hosts, paths or thread counts: the same
+// bake gives the same bytes. Written when a bake begins, when it is interrupted, and when it is complete.
 #pragma once
 
 #include <filesystem>
@@ -25,26 +25,26 @@ struct ManifestCache {
 
 struct ManifestSystem {
   std::string name;
-  std::string role;         ///< "cloth", "collider" (the feasible one), "body" (as drawn)
-  std::string primary;      ///< whom it belongs to
+  std::string role;     ///< "cloth", "collider" (the feasible one), "body" (as drawn)
+  std::string primary;  ///< whom it belongs to
   int vertex_count = 0, face_count = 0;
-  std::string topology;     ///< OBJ of the rest shape, for formats that hold points only
+  std::string topology;  ///< OBJ of the rest shape, for formats that hold points only
   std::vector<ManifestCache> caches;
 };
 
 struct Manifest {
   std::string version, build, fingerprint;
-  std::string shot;                     ///< name of the shot file
+  std::string shot;  ///< name of the shot file
   bool complete = false;
   int first_frame = 1, last_frame = 1;  ///< of the shot
   int first_written = 1;                ///< of the caches; before first_frame when the pre-roll is written
   double fps = 24;
-  int preroll = 0;                      ///< frames
+  int preroll = 0;  ///< frames
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::string>> settings;
   std::vector<ManifestSystem> systems;
   std::vector<std::string> notes;
-  std::vector<FrameReport> frames;      ///< pre-roll frames first; as far as the bake has come
+  std::vector<FrameReport> frames;  ///< pre-roll frames first; as far as the bake has come
 
   int written_count() const { return last_frame - first_written + 1; }
 };
@@ -60,7 +60,7 @@ std::vector<std::string> stale_reasons(const Manifest& before, const Manifest& n
 
 /// The gates of the shot file, judged on the written frames.
 struct Gates {
-  double p99_strain = 0;   ///< 1; 0: off
+  double p99_strain = 0;  ///< 1; 0: off
   bool crossings = false;
 };
 /// Error k_quality or k_diverged with the first frame that fails.

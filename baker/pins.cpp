@@ -1,8 +1,9 @@
 #include "baker/pins.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "baker/core/parallel.h"
 #include "collision/pair_geometry.h"
@@ -29,7 +30,9 @@ std::string group_list(const Mesh& garment) {
 std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span<const Vec3> body,
                                          std::span<const Triangle> triangles) {
   std::vector<Box> boxes(block_count(triangles.size(), k_bundle));
-  const auto corner = [&](const Triangle& t, std::size_t k) -> const Vec3& { return body[static_cast<std::size_t>(t[k])]; };
+  const auto corner = [&](const Triangle& t, std::size_t k) -> const Vec3& {
+    return body[static_cast<std::size_t>(t[k])];
+  };
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) boxes[i / k_bundle].include(corner(triangles[i], k));
   std::vector<double> out(points.size(), std::numeric_limits<double>::infinity());
@@ -41,8 +44,9 @@ std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span
       const auto visit = [&](std::size_t b) {
         if (distance_to_box(points[i], boxes[b]) >= best) return;
         for (std::size_t t = b * k_bundle; t < std::min(triangles.size(), (b + 1) * k_bundle); ++t) {
-          const double d = vertex_face_geometry(points[i], corner(triangles[t], 0), corner(triangles[t], 1),
-                                                corner(triangles[t], 2)).distance;
+          const double d =
+              vertex_face_geometry(points[i], corner(triangles[t], 0), corner(triangles[t], 1), corner(triangles[t], 2))
+                  .distance;
           if (d < best) best = d, best_bundle = b;
         }
       };
@@ -74,7 +78,8 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
         pin.weights.push_back(std::min(weight, 1.0));
       }
       if (pin.vertices.empty())
-        return usage_error("pin group \"" + spec.group + "\" has no vertex with a weight above 0", {}, group_list(garment));
+        return usage_error("pin group \"" + spec.group + "\" has no vertex with a weight above 0", {},
+                           group_list(garment));
       break;
     }
     case PinSpec::Select::k_within: {
@@ -85,9 +90,10 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
         if (distance[i] <= spec.within) pin.vertices.push_back(static_cast<int>(i));
       }
       if (pin.vertices.empty())
-        return usage_error(fmt::format("pin within = {} m selects nothing: the nearest vertex is {:.4g} m from the body",
-                                       spec.within, smallest),
-                           {}, "unit_scale, up and offset place the mesh");
+        return usage_error(
+            fmt::format("pin within = {} m selects nothing: the nearest vertex is {:.4g} m from the body", spec.within,
+                        smallest),
+            {}, "unit_scale, up and offset place the mesh");
       break;
     }
     case PinSpec::Select::k_file: {
@@ -95,13 +101,15 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
       if (!weights) return weights.error();
       for (std::size_t i = 0; i < weights->size(); ++i)
         if ((*weights)[i] > 0) pin.vertices.push_back(static_cast<int>(i)), pin.weights.push_back((*weights)[i]);
-      if (pin.vertices.empty()) return usage_error("has no weight above 0: this pin holds nothing", spec.file.filename().string());
+      if (pin.vertices.empty())
+        return usage_error("has no weight above 0: this pin holds nothing", spec.file.filename().string());
       break;
     }
     case PinSpec::Select::k_vertices:
       for (const int v : spec.vertices)
         if (v < 0 || v >= garment.vertex_count())
-          return usage_error(fmt::format("pin vertex {} does not exist: the mesh has vertices 0-{}", v, garment.vertex_count() - 1));
+          return usage_error(
+              fmt::format("pin vertex {} does not exist: the mesh has vertices 0-{}", v, garment.vertex_count() - 1));
       if (spec.vertices.empty()) return usage_error("pin vertices = [] selects nothing");
       pin.vertices = spec.vertices;
       break;

@@ -1,7 +1,8 @@
 #include "baker/plan.h"
 
-#include <chrono>
 #include <fmt/format.h>
+
+#include <chrono>
 #include <map>
 
 #include "baker/pins.h"
@@ -12,7 +13,8 @@
 namespace ft {
 namespace {
 
-// A primary outside these sizes is a slip of units, nearly always: said, unless the shot file sets the scale itself [m].
+// A primary outside these sizes is a slip of units, nearly always: said, unless the shot file sets the scale itself
+// [m].
 constexpr double k_smallest_primary = 0.05, k_largest_primary = 30;
 
 std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
@@ -55,9 +57,11 @@ Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory
   if (!all_finite(pose)) return input_error("the bind pose has positions that are not finite", where);
   const double size = bounds(pose).size().maxCoeff();
   if (!spec.unit_scale && !spec.height && !(size >= k_smallest_primary && size <= k_largest_primary))
-    return input_error(fmt::format("the character is {:.4g} m in size", size), where,
-                       size > k_largest_primary ? "if the file is in centimetres, write unit_scale = 0.01; any unit_scale or height silences this"
-                                                : "write unit_scale, in metres per unit of the file, or height");
+    return input_error(
+        fmt::format("the character is {:.4g} m in size", size), where,
+        size > k_largest_primary
+            ? "if the file is in centimetres, write unit_scale = 0.01; any unit_scale or height silences this"
+            : "write unit_scale, in metres per unit of the file, or height");
   // Every frame's pose is looked at once before the first is solved: a pose that is not finite must not reach a solver.
   std::vector<Vec3> sample(pose.size());
   for (int frame = shot.first_frame; frame <= shot.last_frame; ++frame) {
@@ -102,7 +106,8 @@ ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
   return out;
 }
 
-Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, GroupPlan& group, std::vector<std::string>& notes) {
+Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, GroupPlan& group,
+                   std::vector<std::string>& notes) {
   const auto located = [&](Error error) {
     error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
     return error;
@@ -130,14 +135,16 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
 
   if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
     std::vector<std::string> pattern_notes;
-    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes); !cut) return located(cut.error());
+    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes); !cut)
+      return located(cut.error());
     for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
     garment.pattern_scale = spec.pattern_scale;
   }
   garment.sewing_time = spec.sewing_time;
   if (!garment.mesh.stitches.empty() && spec.sewing_time > shot.preroll / shot.fps)
-    notes.push_back(fmt::format("cloth \"{}\": its seams close {:.3g} s after the shot's first frame: sewing_time is longer than the pre-roll",
-                                spec.name, spec.sewing_time - shot.preroll / shot.fps));
+    notes.push_back(fmt::format(
+        "cloth \"{}\": its seams close {:.3g} s after the shot's first frame: sewing_time is longer than the pre-roll",
+        spec.name, spec.sewing_time - shot.preroll / shot.fps));
   if (!garment.mesh.stitches.empty() && shot.preroll == 0)
     notes.push_back(fmt::format("cloth \"{}\" is sewn in the shot's first frames: there is no pre-roll", spec.name));
 
@@ -145,7 +152,8 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   if (!fabric) return located(usage_error("fabric \"" + spec.fabric + "\" does not exist"));
   garment.fabric = *fabric;
   for (const auto& [key, value] : spec.fabric_overrides)
-    if (!set_fabric_value(garment.fabric, key, value)) return located(usage_error("fabric has no value \"" + key + "\""));
+    if (!set_fabric_value(garment.fabric, key, value))
+      return located(usage_error("fabric has no value \"" + key + "\""));
 
   const auto body = bind_pose(*primary.trajectory);
   for (const PinSpec& pin_spec : spec.pins) {
@@ -156,7 +164,8 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   }
   auto maps = resolve_maps(spec.maps, output.mesh);
   if (!maps) return located(maps.error());
-  garment.maps = output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
+  garment.maps =
+      output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
   garment.thickness = spec.thickness;
   garment.friction = spec.friction;
   garment.self_friction = spec.self_friction;
@@ -166,11 +175,12 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   Box body_box = bounds(body);
   const double ratio = cloth_box.size().maxCoeff() / body_box.size().maxCoeff();
   if (ratio > 10 || ratio < 0.01)
-    notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?", spec.name,
-                                cloth_box.size().maxCoeff(), body_box.size().maxCoeff()));
+    notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?",
+                                spec.name, cloth_box.size().maxCoeff(), body_box.size().maxCoeff()));
   body_box.inflate(0.1 * body_box.size().maxCoeff());
   if (!cloth_box.overlaps(body_box))
-    notes.push_back(fmt::format("cloth \"{}\" is nowhere near \"{}\" in the bind pose: are offset and up right?", spec.name, primary.name));
+    notes.push_back(fmt::format("cloth \"{}\" is nowhere near \"{}\" in the bind pose: are offset and up right?",
+                                spec.name, primary.name));
   group.setup.garments.push_back(std::move(garment));
   group.outputs.push_back(std::move(output));
   return {};
@@ -226,7 +236,8 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     group.setup.teleports = plan.primaries[p].scan.teleports;
     for (const ClothSpec& spec : shot.cloths) {
       if (spec.on != plan.primaries[p].name) continue;
-      if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added) return added.error();
+      if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added)
+        return added.error();
     }
     if (!group.setup.garments.empty()) plan.groups.push_back(std::move(group));
   }

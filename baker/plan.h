@@ -1,5 +1,5 @@
-// The plan of a bake: everything read, imported, placed and checked before the first frame, so that a fault shows in the first
-// second and not after the night. --dry-run stops here and prints it.
+// The plan of a bake: everything read, imported, placed and checked before the first frame, so that a fault shows in
+// the first second and not after the night. --dry-run stops here and prints it.
 #pragma once
 
 #include <filesystem>
@@ -39,8 +39,8 @@ struct BakePlan {
   BakeInputs inputs;
   std::vector<PrimaryPlan> primaries;
   std::vector<GroupPlan> groups;
-  std::vector<std::string> notes;      ///< what is odd and yet allowed; the same for the same inputs
-  double import_seconds = 0;           ///< wall
+  std::vector<std::string> notes;  ///< what is odd and yet allowed; the same for the same inputs
+  double import_seconds = 0;       ///< wall
 
   const Shot& shot() const { return inputs.shot; }
   /// First frame that is written; frames before it are pre-roll.

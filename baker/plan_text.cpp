@@ -19,7 +19,8 @@ std::uint64_t cache_bytes(const BakePlan& plan) {
         sum += frames * static_cast<std::uint64_t>(garment.mesh.vertex_count()) * (format == "pc2" ? 12 : 24);
     // Body as drawn, and the collider: about as many vertices again before refinement.
     if (plan.shot().cache_collider)
-      sum += 2 * 12 * frames * static_cast<std::uint64_t>(plan.primaries[group.primary].trajectory->surface().vertex_count());
+      sum += 2 * 12 * frames *
+             static_cast<std::uint64_t>(plan.primaries[group.primary].trajectory->surface().vertex_count());
   }
   return sum;
 }
@@ -42,12 +43,14 @@ std::string size_text(std::uint64_t bytes) {
 
 std::vector<std::string> character_lines(const CharacterInfo& info) {
   std::vector<std::string> out;
-  out.push_back(fmt::format("  {}: {} vertices, {} triangles, {} bones, {} morph targets", info.format, info.vertex_count, info.triangle_count,
-                            info.bone_count, info.morph_count));
-  out.push_back(fmt::format("  bind pose {}, from y = {:.4g} to {:.4g} m; {:.6g} m per file unit, up {}", box_text(info.bind_bounds),
-                            info.bind_bounds.lo.y(), info.bind_bounds.hi.y(), info.unit_scale, info.up.empty() ? "y" : info.up));
+  out.push_back(fmt::format("  {}: {} vertices, {} triangles, {} bones, {} morph targets", info.format,
+                            info.vertex_count, info.triangle_count, info.bone_count, info.morph_count));
+  out.push_back(fmt::format("  bind pose {}, from y = {:.4g} to {:.4g} m; {:.6g} m per file unit, up {}",
+                            box_text(info.bind_bounds), info.bind_bounds.lo.y(), info.bind_bounds.hi.y(),
+                            info.unit_scale, info.up.empty() ? "y" : info.up));
   for (const ClipInfo& clip : info.clips)
-    out.push_back(fmt::format("  clip \"{}\": {:.4g} s from {:.4g} s, {} channels", clip.name, clip.duration, clip.start, clip.channel_count));
+    out.push_back(fmt::format("  clip \"{}\": {:.4g} s from {:.4g} s, {} channels", clip.name, clip.duration,
+                              clip.start, clip.channel_count));
   if (info.clips.empty()) out.push_back("  no clips");
   for (const std::string& name : info.mesh_names) out.push_back("  mesh \"" + name + "\"");
   return out;
@@ -56,30 +59,35 @@ std::vector<std::string> character_lines(const CharacterInfo& info) {
 std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder) {
   const Shot& shot = plan.shot();
   std::vector<std::string> out;
-  out.push_back(fmt::format("{}: frames {}-{} at {:g} fps ({:.4g} s), {} frames of pre-roll{}", shot.file.filename().string(), shot.first_frame,
-                            shot.last_frame, shot.fps, (shot.last_frame - shot.first_frame) / shot.fps, shot.preroll,
+  out.push_back(fmt::format("{}: frames {}-{} at {:g} fps ({:.4g} s), {} frames of pre-roll{}",
+                            shot.file.filename().string(), shot.first_frame, shot.last_frame, shot.fps,
+                            (shot.last_frame - shot.first_frame) / shot.fps, shot.preroll,
                             shot.write_preroll ? ", written" : ""));
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
     const PrimaryPlan& primary = plan.primaries[p];
     const PrimarySpec& spec = shot.primaries[p];
-    out.push_back(fmt::format("primary \"{}\": {}{}, {:.3g} m tall, {} parts", primary.name, spec.file.filename().string(),
-                              spec.clip.empty() ? std::string() : ", clip \"" + spec.clip + "\"", primary.info.bind_bounds.size().y(),
-                              primary.trajectory->surface().parts.size()));
+    out.push_back(fmt::format("primary \"{}\": {}{}, {:.3g} m tall, {} parts", primary.name,
+                              spec.file.filename().string(),
+                              spec.clip.empty() ? std::string() : ", clip \"" + spec.clip + "\"",
+                              primary.info.bind_bounds.size().y(), primary.trajectory->surface().parts.size()));
     for (const std::string& line : character_lines(primary.info)) out.push_back(line);
   }
   for (const GroupPlan& group : plan.groups)
     for (const ClothGarment& garment : group.setup.garments) {
       std::size_t pinned = 0;
       for (const ClothPin& pin : garment.pins) pinned += pin.vertices.size();
-      out.push_back(fmt::format("cloth \"{}\" on \"{}\": {} vertices, {} faces, {} pinned, {}, {} at {:g} kg/m2", garment.name,
-                                plan.primaries[group.primary].name, garment.mesh.vertex_count(), garment.mesh.face_count(), pinned,
-                                box_text(bounds(garment.mesh.positions)), garment.fabric.name, garment.fabric.mass_per_area));
-      if (!garment.mesh.stitches.empty()) out.push_back("  " + sewing_text(garment.mesh) + (garment.pattern_scale > 0 ? ", cut from its pattern" : ""));
+      out.push_back(fmt::format("cloth \"{}\" on \"{}\": {} vertices, {} faces, {} pinned, {}, {} at {:g} kg/m2",
+                                garment.name, plan.primaries[group.primary].name, garment.mesh.vertex_count(),
+                                garment.mesh.face_count(), pinned, box_text(bounds(garment.mesh.positions)),
+                                garment.fabric.name, garment.fabric.mass_per_area));
+      if (!garment.mesh.stitches.empty())
+        out.push_back("  " + sewing_text(garment.mesh) + (garment.pattern_scale > 0 ? ", cut from its pattern" : ""));
     }
   for (const std::string& note : plan.notes) out.push_back("note: " + note);
   std::string formats;
   for (const std::string& f : shot.cache_formats) formats += (formats.empty() ? "" : ", ") + f;
-  out.push_back(fmt::format("caches: {} frames as {}, about {}, in {}", plan.written_count(), formats, size_text(cache_bytes(plan)), folder.string()));
+  out.push_back(fmt::format("caches: {} frames as {}, about {}, in {}", plan.written_count(), formats,
+                            size_text(cache_bytes(plan)), folder.string()));
   return out;
 }
 

@@ -1,7 +1,8 @@
 #include "baker/profile_text.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <functional>
 
 namespace ft {
@@ -45,15 +46,19 @@ std::vector<std::string> ProfileText::lines() const {
   const double total = sums_->total, count = static_cast<double>(sums_->seconds.size());
   auto sorted = sums_->seconds;
   std::sort(sorted.begin(), sorted.end());
-  out.push_back(fmt::format("{} frames in {}: mean {:.1f} ms, median {:.1f} ms, slowest {:.1f} ms", sorted.size(), clock_text(total),
-                            1e3 * total / count, 1e3 * sorted[sorted.size() / 2], 1e3 * sorted.back()));
-  out.push_back(fmt::format("a frame: {:.1f} substeps, {:.1f} Newton steps, {:.1f} CG iterations", static_cast<double>(sums_->substeps) / count,
-                            static_cast<double>(sums_->newton) / count, static_cast<double>(sums_->linear) / count));
+  out.push_back(fmt::format("{} frames in {}: mean {:.1f} ms, median {:.1f} ms, slowest {:.1f} ms", sorted.size(),
+                            clock_text(total), 1e3 * total / count, 1e3 * sorted[sorted.size() / 2],
+                            1e3 * sorted.back()));
+  out.push_back(fmt::format("a frame: {:.1f} substeps, {:.1f} Newton steps, {:.1f} CG iterations",
+                            static_cast<double>(sums_->substeps) / count, static_cast<double>(sums_->newton) / count,
+                            static_cast<double>(sums_->linear) / count));
   double known = 0;
   const auto row = [&](const char* name, double seconds) {
-    out.push_back(fmt::format("  {:<16} {:8.1f} ms a frame {:5.1f} %", name, 1e3 * seconds / count, 100 * seconds / total));
+    out.push_back(
+        fmt::format("  {:<16} {:8.1f} ms a frame {:5.1f} %", name, 1e3 * seconds / count, 100 * seconds / total));
   };
-  for (const ProfilePhase& phase : profile_phases()) row(phase.title, sums_->sum.*phase.time), known += sums_->sum.*phase.time;
+  for (const ProfilePhase& phase : profile_phases())
+    row(phase.title, sums_->sum.*phase.time), known += sums_->sum.*phase.time;
   row("other", std::max(0.0, total - known));
   return out;
 }

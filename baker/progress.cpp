@@ -1,11 +1,11 @@
 #include "baker/progress.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <fmt/format.h>
 #include <functional>
 
 #include "baker/report_json.h"
@@ -26,13 +26,16 @@ class TextProgress : public Progress {
 };
 
 std::string opening(const ProgressStart& s) {
-  const std::string resumed =
-      s.from_frame > s.first_frame - s.preroll + 1 ? fmt::format(", resuming at frame {}", s.from_frame) : std::string();
-  return fmt::format("baking {}: frames {}-{} after {} of pre-roll, {} cloth vertices, {} threads{}", s.shot, s.first_frame,
-                     s.last_frame, s.preroll, s.vertex_count, s.threads, resumed);
+  const std::string resumed = s.from_frame > s.first_frame - s.preroll + 1
+                                  ? fmt::format(", resuming at frame {}", s.from_frame)
+                                  : std::string();
+  return fmt::format("baking {}: frames {}-{} after {} of pre-roll, {} cloth vertices, {} threads{}", s.shot,
+                     s.first_frame, s.last_frame, s.preroll, s.vertex_count, s.threads, resumed);
 }
 
-double percent(const ProgressFrame& f) { return f.total > 0 ? 100.0 * f.done / f.total : 100.0; }
+double percent(const ProgressFrame& f) {
+  return f.total > 0 ? 100.0 * f.done / f.total : 100.0;
+}
 
 class Plain final : public TextProgress {
  public:
@@ -40,8 +43,9 @@ class Plain final : public TextProgress {
   void begin(const ProgressStart& s) override { line(opening(s)); }
   void note(const std::string& text) override { line("note: " + text); }
   void frame(const ProgressFrame& f) override {
-    line(fmt::format("frame {}{}  {}/{}  {:.0f} ms  {} left  strain p99 {:.2f} %  {}", f.report.frame, f.preroll ? " (pre-roll)" : "",
-                     f.done, f.total, 1e3 * f.seconds, clock_text(f.seconds_left), 100 * f.report.strain_p99, health(f.report)));
+    line(fmt::format("frame {}{}  {}/{}  {:.0f} ms  {} left  strain p99 {:.2f} %  {}", f.report.frame,
+                     f.preroll ? " (pre-roll)" : "", f.done, f.total, 1e3 * f.seconds, clock_text(f.seconds_left),
+                     100 * f.report.strain_p99, health(f.report)));
   }
   void end(const ProgressEnd& e) override { line(fmt::format("{} ({})", e.text, clock_text(e.seconds))); }
 };
@@ -62,8 +66,8 @@ class Bar final : public TextProgress {
     for (int i = 0; i < k_width; ++i) bar += i < full ? "█" : "░";
     const std::string state = health(f.report);
     if (state != "ok") ++troubled_;
-    shown_ = fmt::format("{} {:3.0f} %  frame {}{}  {} left  {:.0f} ms  {}", bar, percent(f), f.report.frame, f.preroll ? " pre-roll" : "",
-                         clock_text(f.seconds_left), 1e3 * f.seconds, state);
+    shown_ = fmt::format("{} {:3.0f} %  frame {}{}  {} left  {:.0f} ms  {}", bar, percent(f), f.report.frame,
+                         f.preroll ? " pre-roll" : "", clock_text(f.seconds_left), 1e3 * f.seconds, state);
     if (troubled_ > 0 && state == "ok") shown_ += fmt::format(" ({} frames to look at)", troubled_);
     redraw();
   }
@@ -86,7 +90,9 @@ class Tractor final : public TextProgress {
  public:
   using TextProgress::TextProgress;
   void note(const std::string& text) override { line("note: " + text); }
-  void frame(const ProgressFrame& f) override { line(fmt::format("TR_PROGRESS {:03d}%", static_cast<int>(percent(f)))); }
+  void frame(const ProgressFrame& f) override {
+    line(fmt::format("TR_PROGRESS {:03d}%", static_cast<int>(percent(f))));
+  }
   void end(const ProgressEnd& e) override { line(e.text); }
 };
 
@@ -105,7 +111,8 @@ class OpenJd final : public TextProgress {
   void note(const std::string& text) override { line("note: " + text); }
   void frame(const ProgressFrame& f) override {
     line(fmt::format("openjd_progress: {:.1f}", percent(f)));
-    line(fmt::format("openjd_status: frame {}, {} left, {}", f.report.frame, clock_text(f.seconds_left), health(f.report)));
+    line(fmt::format("openjd_status: frame {}, {} left, {}", f.report.frame, clock_text(f.seconds_left),
+                     health(f.report)));
   }
   void end(const ProgressEnd& e) override { line((e.exit_code == 0 ? "openjd_status: " : "openjd_fail: ") + e.text); }
 };
@@ -120,16 +127,30 @@ class JsonLines final : public TextProgress {
     if (owns_) std::fclose(out_);
   }
   void begin(const ProgressStart& s) override {
-    write("begin", {{"shot", s.shot}, {"folder", s.folder}, {"first", s.first_frame}, {"last", s.last_frame}, {"preroll", s.preroll},
-                    {"from", s.from_frame}, {"vertices", s.vertex_count}, {"threads", s.threads}});
+    write("begin", {{"shot", s.shot},
+                    {"folder", s.folder},
+                    {"first", s.first_frame},
+                    {"last", s.last_frame},
+                    {"preroll", s.preroll},
+                    {"from", s.from_frame},
+                    {"vertices", s.vertex_count},
+                    {"threads", s.threads}});
   }
   void note(const std::string& text) override { write("note", {{"text", text}}); }
   void frame(const ProgressFrame& f) override {
-    write("frame", {{"done", f.done}, {"total", f.total}, {"percent", percent(f)}, {"is_preroll", f.preroll}, {"seconds", f.seconds},
-                    {"seconds_left", f.seconds_left}, {"health", health(f.report)}, {"report", to_json(f.report)},
+    write("frame", {{"done", f.done},
+                    {"total", f.total},
+                    {"percent", percent(f)},
+                    {"is_preroll", f.preroll},
+                    {"seconds", f.seconds},
+                    {"seconds_left", f.seconds_left},
+                    {"health", health(f.report)},
+                    {"report", to_json(f.report)},
                     {"profile", to_json(f.report.profile)}});
   }
-  void end(const ProgressEnd& e) override { write("end", {{"exit_code", e.exit_code}, {"text", e.text}, {"seconds", e.seconds}}); }
+  void end(const ProgressEnd& e) override {
+    write("end", {{"exit_code", e.exit_code}, {"text", e.text}, {"seconds", e.seconds}});
+  }
 
  private:
   void write(const char* event, Json fields) {
@@ -150,10 +171,18 @@ class JsonLines final : public TextProgress {
 class Combined final : public Progress {
  public:
   explicit Combined(std::vector<std::unique_ptr<Progress>> all) : all_(std::move(all)) {}
-  void begin(const ProgressStart& s) override { for (auto& p : all_) p->begin(s); }
-  void note(const std::string& t) override { for (auto& p : all_) p->note(t); }
-  void frame(const ProgressFrame& f) override { for (auto& p : all_) p->frame(f); }
-  void end(const ProgressEnd& e) override { for (auto& p : all_) p->end(e); }
+  void begin(const ProgressStart& s) override {
+    for (auto& p : all_) p->begin(s);
+  }
+  void note(const std::string& t) override {
+    for (auto& p : all_) p->note(t);
+  }
+  void frame(const ProgressFrame& f) override {
+    for (auto& p : all_) p->frame(f);
+  }
+  void end(const ProgressEnd& e) override {
+    for (auto& p : all_) p->end(e);
+  }
 
  private:
   std::vector<std::unique_ptr<Progress>> all_;
@@ -172,7 +201,8 @@ std::unique_ptr<Progress> make(std::FILE* out) {
 constexpr std::array<Mode, 7> k_modes = {{
     {"bar", make<Bar>},
     {"plain", make<Plain>},
-    {"json", [](std::FILE* out) -> std::unique_ptr<Progress> { return std::make_unique<JsonLines>(out, false, false); }},
+    {"json",
+     [](std::FILE* out) -> std::unique_ptr<Progress> { return std::make_unique<JsonLines>(out, false, false); }},
     {"tractor", make<Tractor>},
     {"deadline", make<Deadline>},
     {"openjd", make<OpenJd>},
@@ -203,7 +233,9 @@ Result<std::unique_ptr<Progress>> make_json_log(const std::filesystem::path& fil
   return std::unique_ptr<Progress>(std::make_unique<JsonLines>(out, true, true));
 }
 
-std::unique_ptr<Progress> combine(std::vector<std::unique_ptr<Progress>> all) { return std::make_unique<Combined>(std::move(all)); }
+std::unique_ptr<Progress> combine(std::vector<std::unique_ptr<Progress>> all) {
+  return std::make_unique<Combined>(std::move(all));
+}
 
 std::string health(const FrameReport& r) {
   std::string out;

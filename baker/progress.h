@@ -1,5 +1,5 @@
-// How a bake tells where it is: to a person, to a log, to a render farm. One event stream; each mode is one small class in
-// progress.cpp and one line in its list.
+// How a bake tells where it is: to a person, to a log, to a render farm. One event stream; each mode is one small class
+// in progress.cpp and one line in its list.
 //   bar       one line that redraws itself: frame, time left, health
 //   plain     one line per frame
 //   json      one JSON object per event and line
@@ -24,23 +24,23 @@ namespace ft {
 struct ProgressStart {
   std::string shot, folder;
   int first_frame = 0, last_frame = 0, preroll = 0;  ///< preroll: frames before the first, not written
-  int from_frame = 0;                                ///< first frame that is computed now; later than the start on resume
+  int from_frame = 0;  ///< first frame that is computed now; later than the start on resume
   int vertex_count = 0;
   int threads = 1;
 };
 
 struct ProgressFrame {
   FrameReport report;
-  int done = 0, total = 0;      ///< frames, pre-roll included; done counts this one and those before a resume
+  int done = 0, total = 0;  ///< frames, pre-roll included; done counts this one and those before a resume
   bool preroll = false;
-  double seconds = 0;           ///< wall, this frame
-  double seconds_left = 0;      ///< estimate
+  double seconds = 0;       ///< wall, this frame
+  double seconds_left = 0;  ///< estimate
 };
 
 struct ProgressEnd {
   int exit_code = 0;
-  std::string text;             ///< one sentence
-  double seconds = 0;           ///< wall, whole bake
+  std::string text;    ///< one sentence
+  double seconds = 0;  ///< wall, whole bake
 };
 
 class Progress {

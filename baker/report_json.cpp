@@ -7,8 +7,9 @@
 namespace ft {
 namespace {
 
-constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing, Incident::Kind::k_penetration, Incident::Kind::k_released,
-                                         Incident::Kind::k_strain, Incident::Kind::k_start_inside, Incident::Kind::k_rewind};
+constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing,     Incident::Kind::k_penetration,
+                                         Incident::Kind::k_released,     Incident::Kind::k_strain,
+                                         Incident::Kind::k_start_inside, Incident::Kind::k_rewind};
 
 /// The one list of a report's fields: visit(name, member).
 template <class Report, class Visit>
@@ -38,9 +39,15 @@ void for_each_time(Profile& p, Visit&& visit) {
 }
 
 /// JSON has no infinity: null stands for it, both ways.
-Json value_of(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
-Json value_of(int v) { return v; }
-Json value_of(bool v) { return v; }
+Json value_of(double v) {
+  return std::isfinite(v) ? Json(v) : Json(nullptr);
+}
+Json value_of(int v) {
+  return v;
+}
+Json value_of(bool v) {
+  return v;
+}
 
 struct Faulty {
   const char* name;
@@ -89,7 +96,8 @@ Incident incident_from(const Json& json) {
   if (const auto place = json.find("place"); place != json.end()) {
     if (!place->is_array() || place->size() != 3) throw Faulty{"place"};
     for (int k = 0; k < 3; ++k)
-      if (!(*place)[static_cast<std::size_t>(k)].is_null()) take((*place)[static_cast<std::size_t>(k)], "place", out.place[k]);
+      if (!(*place)[static_cast<std::size_t>(k)].is_null())
+        take((*place)[static_cast<std::size_t>(k)], "place", out.place[k]);
   }
   take_field(json, "depth", out.depth);
   take_field(json, "text", out.text);
@@ -109,7 +117,8 @@ void write_value(std::string& out, const Json& json, int depth) {
     out += first ? "\n" : ",\n";
     first = false;
     out += indent;
-    if (json.is_object()) out.append(Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace)).append(": ");
+    if (json.is_object())
+      out.append(Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace)).append(": ");
     write_value(out, item.value(), depth + 1);
   }
   out.append("\n").append(indent, 1).append(json.is_object() ? "}" : "]");
@@ -118,9 +127,13 @@ void write_value(std::string& out, const Json& json, int depth) {
 }  // namespace
 
 Json to_json(const Incident& i) {
-  return Json{{"kind", name(i.kind)}, {"frame", i.frame}, {"system", i.system}, {"vertex", i.vertex},
+  return Json{{"kind", name(i.kind)},
+              {"frame", i.frame},
+              {"system", i.system},
+              {"vertex", i.vertex},
               {"place", Json::array({value_of(i.place.x()), value_of(i.place.y()), value_of(i.place.z())})},
-              {"depth", value_of(i.depth)}, {"text", i.text}};
+              {"depth", value_of(i.depth)},
+              {"text", i.text}};
 }
 
 Json to_json(const FrameReport& report) {

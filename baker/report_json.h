@@ -1,5 +1,5 @@
-// A frame's certificate as JSON and back, exactly (shortest digits that give the same double). The manifest, the checkpoint, the
-// log and `check` all speak through these, so a field is named once.
+// A frame's certificate as JSON and back, exactly (shortest digits that give the same double). The manifest, the
+// checkpoint, the log and `check` all speak through these, so a field is named once.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,7 +24,8 @@ Result<FrameProfile> frame_profile_from_json(const Json& json);
 /// Text -> JSON; a fault names `where`.
 Result<Json> parse_json(const std::string& text, const std::string& where);
 
-/// One indent level for the outer structure, frames and other small objects on one line each: small files that diff well.
+/// One indent level for the outer structure, frames and other small objects on one line each: small files that diff
+/// well.
 std::string to_text(const Json& json);
 
 /// Worst of several systems in one frame: counts add up, depths and strains take the largest, gaps the smallest.

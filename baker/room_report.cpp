@@ -1,8 +1,9 @@
 #include "baker/room_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
-#include <fmt/format.h>
 #include <limits>
 #include <map>
 
@@ -29,7 +30,8 @@ std::vector<char> wearing_parts(const GroupPlan& group, const Trajectory& body) 
       for (std::size_t i = begin; i < end; ++i) {
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t v = 0; v < bind.size(); ++v)
-          if (const double d = (bind[v] - x[i * stride]).squaredNorm(); d < least) least = d, nearest[i] = surface.part_of_vertex[v];
+          if (const double d = (bind[v] - x[i * stride]).squaredNorm(); d < least)
+            least = d, nearest[i] = surface.part_of_vertex[v];
       }
     });
     for (const int part : nearest) out[at(part)] = 1;
@@ -61,7 +63,9 @@ void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report
     const int frame = first + static_cast<int>(k);
     for (const TightPlace& now : tight[k]) {
       if (!wears[at(now.part_a)] && !wears[at(now.part_b)]) continue;
-      RoomPlace fresh{primary.name, parts[at(now.part_a)].name, parts[at(now.part_b)].name, frame, frame, frame, now.clearance, now.place};
+      RoomPlace fresh{
+          primary.name, parts[at(now.part_a)].name, parts[at(now.part_b)].name, frame, frame, frame, now.clearance,
+          now.place};
       const auto [entry, is_new] = open.try_emplace({now.part_a, now.part_b}, fresh);
       if (is_new) continue;
       RoomPlace& place = entry->second;
@@ -71,7 +75,8 @@ void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report
         continue;
       }
       place.last_frame = frame;
-      if (now.clearance < place.clearance) place.clearance = now.clearance, place.worst_frame = frame, place.place = now.place;
+      if (now.clearance < place.clearance)
+        place.clearance = now.clearance, place.worst_frame = frame, place.place = now.place;
     }
   }
   for (auto& [pair, place] : open) report.places.push_back(std::move(place));
@@ -83,7 +88,8 @@ RoomReport find_room(const BakePlan& plan) {
   const auto clock = std::chrono::steady_clock::now();
   RoomReport report;
   for (const GroupPlan& group : plan.groups) add_places(plan, group, report);
-  std::stable_sort(report.places.begin(), report.places.end(), [](const RoomPlace& a, const RoomPlace& b) { return a.clearance < b.clearance; });
+  std::stable_sort(report.places.begin(), report.places.end(),
+                   [](const RoomPlace& a, const RoomPlace& b) { return a.clearance < b.clearance; });
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return report;
 }
@@ -91,12 +97,15 @@ RoomReport find_room(const BakePlan& plan) {
 std::vector<std::string> room_lines(const RoomReport& report, std::size_t most) {
   std::vector<std::string> out;
   if (report.frame_count == 0) return out;
-  if (report.places.empty()) out.push_back(fmt::format("room: enough for the cloth in all {} frames", report.frame_count));
+  if (report.places.empty())
+    out.push_back(fmt::format("room: enough for the cloth in all {} frames", report.frame_count));
   for (std::size_t i = 0; i < std::min(most, report.places.size()); ++i) {
     const RoomPlace& p = report.places[i];
-    const std::string how = p.clearance < 0 ? fmt::format("is {:.1f} mm inside", -1e3 * p.clearance) : fmt::format("is only {:.1f} mm from", 1e3 * p.clearance);
-    const std::string frames = p.first_frame == p.last_frame ? fmt::format("frame {}", p.first_frame)
-                                                             : fmt::format("frames {}-{}, worst {}", p.first_frame, p.last_frame, p.worst_frame);
+    const std::string how = p.clearance < 0 ? fmt::format("is {:.1f} mm inside", -1e3 * p.clearance)
+                                            : fmt::format("is only {:.1f} mm from", 1e3 * p.clearance);
+    const std::string frames = p.first_frame == p.last_frame
+                                   ? fmt::format("frame {}", p.first_frame)
+                                   : fmt::format("frames {}-{}, worst {}", p.first_frame, p.last_frame, p.worst_frame);
     out.push_back(fmt::format("no room: \"{}\" of \"{}\" {} \"{}\", {}", p.part_a, p.primary, how, p.part_b, frames));
   }
   if (report.places.size() > most) out.push_back(fmt::format("no room: {} more places", report.places.size() - most));
@@ -106,8 +115,14 @@ std::vector<std::string> room_lines(const RoomReport& report, std::size_t most) 
 Json to_json(const RoomReport& report) {
   Json places = Json::array();
   for (const RoomPlace& p : report.places)
-    places.push_back({{"primary", p.primary}, {"part", p.part_a}, {"other", p.part_b}, {"first_frame", p.first_frame}, {"last_frame", p.last_frame},
-                      {"worst_frame", p.worst_frame}, {"clearance", p.clearance}, {"place", {p.place.x(), p.place.y(), p.place.z()}}});
+    places.push_back({{"primary", p.primary},
+                      {"part", p.part_a},
+                      {"other", p.part_b},
+                      {"first_frame", p.first_frame},
+                      {"last_frame", p.last_frame},
+                      {"worst_frame", p.worst_frame},
+                      {"clearance", p.clearance},
+                      {"place", {p.place.x(), p.place.y(), p.place.z()}}});
   return Json{{"frames", report.frame_count}, {"seconds", report.seconds}, {"places", std::move(places)}};
 }
 

@@ -1,5 +1,6 @@
-// Before a bake: where and when its primaries leave no room for the cloth they wear. For --dry-run and info --scan (a few lines: the
-// worst pairs of parts and their frames) and report.json (all of them). What is done about it is collision/feasible_collider.h.
+// Before a bake: where and when its primaries leave no room for the cloth they wear. For --dry-run and info --scan (a
+// few lines: the worst pairs of parts and their frames) and report.json (all of them). What is done about it is
+// collision/feasible_collider.h.
 #pragma once
 
 #include <string>
@@ -16,14 +17,14 @@ struct BakePlan;
 struct RoomPlace {
   std::string primary, part_a, part_b;  ///< a gives way to b
   int first_frame = 0, last_frame = 0, worst_frame = 0;
-  double clearance = 0;                 ///< smallest [m]; negative: overlap
-  Vec3 place = Vec3::Zero();            ///< then and there [m]
+  double clearance = 0;       ///< smallest [m]; negative: overlap
+  Vec3 place = Vec3::Zero();  ///< then and there [m]
 };
 
 struct RoomReport {
-  std::vector<RoomPlace> places;        ///< worst first
+  std::vector<RoomPlace> places;  ///< worst first
   int frame_count = 0;
-  double seconds = 0;                   ///< wall
+  double seconds = 0;  ///< wall
 };
 
 /// All frames of the shot, the pre-roll's as well. Pairs of which neither part wears cloth do not count.

@@ -39,6 +39,8 @@ SignalGuard::~SignalGuard() {
   for (std::size_t i = 0; i < k_handled.size(); ++i) sigaction(k_handled[i], &before[i], nullptr);
 }
 
-int signal_received() { return received; }
+int signal_received() {
+  return received;
+}
 
 }  // namespace ft

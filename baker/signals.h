@@ -1,5 +1,6 @@
-// Ctrl-C and SIGTERM end a bake after the frame in hand, with a checkpoint. A second signal ends the program at once; caches are
-// valid after every frame, so nothing but the frame in hand is lost. SIGPIPE and SIGXFSZ become ordinary write errors.
+// Ctrl-C and SIGTERM end a bake after the frame in hand, with a checkpoint. A second signal ends the program at once;
+// caches are valid after every frame, so nothing but the frame in hand is lost. SIGPIPE and SIGXFSZ become ordinary
+// write errors.
 #pragma once
 
 namespace ft {

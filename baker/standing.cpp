@@ -45,7 +45,8 @@ Manifest manifest_of(const BakeInputs& inputs) {
   m.first_written = inputs.shot.write_preroll ? inputs.shot.first_frame - inputs.shot.preroll : inputs.shot.first_frame;
   m.fps = inputs.shot.fps;
   m.preroll = inputs.shot.preroll;
-  for (const InputFile& file : inputs.files) m.inputs.push_back({file.role, file.path.filename().string(), file.content.hex()});
+  for (const InputFile& file : inputs.files)
+    m.inputs.push_back({file.role, file.path.filename().string(), file.content.hex()});
   m.settings = inputs.settings;
   return m;
 }
@@ -80,7 +81,8 @@ std::string describe(const Standing& standing, const BakeFolder& folder) {
   switch (standing.kind) {
     case Standing::Kind::k_absent: return "not baked: there is nothing in " + folder.path.string();
     case Standing::Kind::k_up_to_date:
-      return fmt::format("up to date: {}, {} frames in {}", standing.before.shot, standing.before.written_count(), folder.path.string());
+      return fmt::format("up to date: {}, {} frames in {}", standing.before.shot, standing.before.written_count(),
+                         folder.path.string());
     case Standing::Kind::k_stale: return "stale: " + reasons;
     case Standing::Kind::k_unfinished: return "unfinished: " + reasons;
   }

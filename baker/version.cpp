@@ -5,7 +5,9 @@
 
 namespace ft {
 
-std::string program_version() { return FT_VERSION; }
+std::string program_version() {
+  return FT_VERSION;
+}
 
 const std::string& program_build() {
   static const std::string build = [] {

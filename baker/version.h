@@ -1,4 +1,5 @@
-// What this program calls itself. A bake is stale when either changes: the same binary gives the same bytes, another may not.
+// What this program calls itself. A bake is stale when either changes: the same binary gives the same bytes, another
+// may not.
 #pragma once
 
 #include <string>

@@ -18,7 +18,8 @@ std::string channel_of(const std::string& word) {
 }
 
 const VertexGroup* find_group(const Mesh& mesh, const std::string& name) {
-  const auto found = std::find_if(mesh.groups.begin(), mesh.groups.end(), [&](const VertexGroup& g) { return g.name == name; });
+  const auto found =
+      std::find_if(mesh.groups.begin(), mesh.groups.end(), [&](const VertexGroup& g) { return g.name == name; });
   return found == mesh.groups.end() ? nullptr : &*found;
 }
 
@@ -33,8 +34,9 @@ Result<std::vector<double>> weights_of(const std::string& from, const Mesh& mesh
     if (!channel.empty() && painted) return out;
     std::vector<std::string> names;
     for (const VertexGroup& g : mesh.groups) names.push_back(g.name);
-    return usage_error("from = " + in_quotes(from) + " names no vertex group and no colour of the mesh", {},
-                       names.empty() ? "the mesh has neither: it needs `v x y z r g b` or `g` lines" : suggestion(from, names));
+    return usage_error(
+        "from = " + in_quotes(from) + " names no vertex group and no colour of the mesh", {},
+        names.empty() ? "the mesh has neither: it needs `v x y z r g b` or `g` lines" : suggestion(from, names));
   }
   for (std::size_t i = 0; i < group->vertices.size(); ++i)
     out[at(group->vertices[i])] = i < group->weights.size() ? group->weights[i] : 1.0;
@@ -43,14 +45,18 @@ Result<std::vector<double>> weights_of(const std::string& from, const Mesh& mesh
 
 Result<std::vector<double>> values_of(const MapSpec& map, const Mesh& mesh) {
   const MapKind* kind = find_map_kind(map.of);
-  if (!kind) return usage_error("of = " + in_quotes(map.of) + " is nothing that can vary", {}, suggestion(map.of, map_words()));
+  if (!kind)
+    return usage_error("of = " + in_quotes(map.of) + " is nothing that can vary", {}, suggestion(map.of, map_words()));
   const bool as_weights = map.low && map.high;
   if (map.file.empty() && !as_weights) return usage_error("a map of a group needs low and high");
   auto values = map.file.empty() ? weights_of(map.from, mesh)
-                : as_weights     ? vertex_column(map.file, map.column, mesh.vertex_count(), 0, 1, "1")
-                                 : vertex_column(map.file, map.column, mesh.vertex_count(), kind->lowest, kind->highest, kind->unit);
+                : as_weights
+                    ? vertex_column(map.file, map.column, mesh.vertex_count(), 0, 1, "1")
+                    : vertex_column(map.file, map.column, mesh.vertex_count(), kind->lowest, kind->highest, kind->unit);
   if (values && as_weights)
-    for (double& value : *values) value = std::clamp(*map.low + value * (*map.high - *map.low), std::min(*map.low, *map.high), std::max(*map.low, *map.high));
+    for (double& value : *values)
+      value = std::clamp(*map.low + value * (*map.high - *map.low), std::min(*map.low, *map.high),
+                         std::max(*map.low, *map.high));
   return values;
 }
 

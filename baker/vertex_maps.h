@@ -1,5 +1,6 @@
-// Maps of the shot file -> one number per vertex of the garment's mesh, as the solver takes them. Sources are the weights of vertex
-// groups (vertex colours among them) and files of numbers; both are in the order of the garment's file, before anything is welded.
+// Maps of the shot file -> one number per vertex of the garment's mesh, as the solver takes them. Sources are the
+// weights of vertex groups (vertex colours among them) and files of numbers; both are in the order of the garment's
+// file, before anything is welded.
 #pragma once
 
 #include <span>

@@ -1,11 +1,11 @@
 #include "baker/walk.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <deque>
-#include <fmt/format.h>
 
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
@@ -17,12 +17,15 @@
 namespace ft {
 namespace {
 
-// A checkpoint is made after every frame, unless the state is so large that this would write more than this per frame [bytes].
+// A checkpoint is made after every frame, unless the state is so large that this would write more than this per frame
+// [bytes].
 constexpr std::uint64_t k_checkpoint_bytes_per_frame = 8 << 20;
 constexpr int k_most_frames_between_checkpoints = 10;
 
 using Clock = std::chrono::steady_clock;
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 int checkpoint_interval(std::span<const State> states) {
   std::uint64_t bytes = 0;
@@ -54,8 +57,14 @@ class Pace {
 
 class Walk {
  public:
-  Walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest, Progress& progress)
-      : plan_(plan), solvers_(solvers), caches_(caches), folder_(folder), manifest_(std::move(manifest)), progress_(progress) {}
+  Walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
+       Progress& progress)
+      : plan_(plan),
+        solvers_(solvers),
+        caches_(caches),
+        folder_(folder),
+        manifest_(std::move(manifest)),
+        progress_(progress) {}
 
   WalkResult run(std::optional<Checkpoint> from) {
     const auto clock = Clock::now();
@@ -64,7 +73,8 @@ class Walk {
     // What was computed is kept, whatever happened; the first fault is the one that counts.
     if (const Status written = writer_.finish(); status && !written) status = written;
     manifest_.systems = caches_.systems();
-    if (status) status = complete();
+    if (status)
+      status = complete();
     else if (status.error().kind != ErrorKind::k_output) {
       if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) status = written;
     }
@@ -120,7 +130,8 @@ FrameReport Walk::advance() {
 
 Status Walk::emit(const Snapshot& snapshot, bool checkpoint) {
   if (!finite(snapshot))
-    return Error{ErrorKind::k_diverged, "the solver returned positions that are not finite; nothing of this frame was written",
+    return Error{ErrorKind::k_diverged,
+                 "the solver returned positions that are not finite; nothing of this frame was written",
                  fmt::format("frame {}", snapshot.frame), "try more substeps ([solver] max_substeps)"};
   if (snapshot.frame >= plan_.first_written()) {
     const Status taken = writer_.submit([this, snapshot] { return caches_.write(snapshot); });
@@ -137,8 +148,8 @@ Status Walk::frames() {
   int vertices = 0;
   for (const auto& solver : solvers_)
     for (int s = 0; s < solver->system_count(); ++s) vertices += solver->system_mesh(s).vertex_count();
-  progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame, shot.preroll,
-                   states_[0].frame + 1, vertices, thread_count()});
+  progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame,
+                   shot.preroll, states_[0].frame + 1, vertices, thread_count()});
   Pace pace;
   std::optional<Snapshot> before;
   if (manifest_.frames.empty()) {
@@ -154,10 +165,15 @@ Status Walk::frames() {
     if (signal_received() != 0) {
       if (newest_checkpoint != states_[0].frame) {
         Checkpoint now{plan_.inputs.fingerprint, states_[0].frame, states_, manifest_.frames};
-        if (const Status s = writer_.submit([this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), save(now)); }); !s)
+        if (const Status s = writer_.submit(
+                [this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), save(now)); });
+            !s)
           return s;
       }
-      return Error{ErrorKind::k_interrupted, fmt::format("interrupted after frame {}", states_[0].frame), {}, "run again with --resume to go on"};
+      return Error{ErrorKind::k_interrupted,
+                   fmt::format("interrupted after frame {}", states_[0].frame),
+                   {},
+                   "run again with --resume to go on"};
     }
     const auto clock = Clock::now();
     FrameReport report = advance();
@@ -219,8 +235,8 @@ FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::spa
   return report;
 }
 
-WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
-                std::optional<Checkpoint> from, Progress& progress) {
+WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder,
+                Manifest manifest, std::optional<Checkpoint> from, Progress& progress) {
   return Walk(plan, solvers, caches, folder, std::move(manifest), progress).run(std::move(from));
 }
 
@@ -229,7 +245,8 @@ Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomRe
   std::vector<double> totals;
   Json frames = Json::array();
   for (const FrameReport& frame : result.manifest.frames) {
-    frames.push_back({{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
+    frames.push_back(
+        {{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
     if (frame.substeps > 0) totals.push_back(frame.profile.total);
     sum += frame.profile;
   }

@@ -13,14 +13,15 @@
 namespace ft {
 
 struct WalkResult {
-  Manifest manifest;         ///< as far as the walk came; complete when it reached the end
-  Status status;             ///< k_interrupted after a signal
-  double seconds = 0;        ///< wall
+  Manifest manifest;   ///< as far as the walk came; complete when it reached the end
+  Status status;       ///< k_interrupted after a signal
+  double seconds = 0;  ///< wall
 };
 
-/// manifest: inputs and settings filled in. from: a checkpoint of this very bake. The caches of `caches` are opened here.
-WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
-                std::optional<Checkpoint> from, Progress& progress);
+/// manifest: inputs and settings filled in. from: a checkpoint of this very bake. The caches of `caches` are opened
+/// here.
+WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder,
+                Manifest manifest, std::optional<Checkpoint> from, Progress& progress);
 
 /// Certificate of a state that no solver has reported on (the first one, when there is no pre-roll).
 FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states);

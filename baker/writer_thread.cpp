@@ -17,7 +17,9 @@ WriterThread::~WriterThread() {
   thread_.join();
 }
 
-Status WriterThread::status() const { return failure_ ? Status(*failure_) : Status(); }
+Status WriterThread::status() const {
+  return failure_ ? Status(*failure_) : Status();
+}
 
 Status WriterThread::submit(Job job) {
   std::unique_lock lock(mutex_);

@@ -117,8 +117,8 @@ std::vector<int> parts_by_size(std::span<const SurfacePart> parts) {
   return order;
 }
 
-CarvePlan make_carve_plan(const PartSurface& surface, std::span<const SurfacePart> parts, std::span<const int> part_of_vertex,
-                          std::span<const Vec3> bind, double gap) {
+CarvePlan make_carve_plan(const PartSurface& surface, std::span<const SurfacePart> parts,
+                          std::span<const int> part_of_vertex, std::span<const Vec3> bind, double gap) {
   CarvePlan plan;
   plan.gap = gap;
   plan.parts.assign(parts.begin(), parts.end());

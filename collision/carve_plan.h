@@ -1,6 +1,7 @@
-// Who gives way to whom, for the feasible collider: worked out once from the parts and the bind pose, never changed after. A part
-// gives way to every larger part that it is not jointed to. Where two parts touch or overlap in the bind pose already (thighs, an
-// arm in its shoulder), the vertices there are free, and from there the gap that they must keep grows to the full one.
+// Who gives way to whom, for the feasible collider: worked out once from the parts and the bind pose, never changed
+// after. A part gives way to every larger part that it is not jointed to. Where two parts touch or overlap in the bind
+// pose already (thighs, an arm in its shoulder), the vertices there are free, and from there the gap that they must
+// keep grows to the full one.
 #pragma once
 
 #include <memory>
@@ -23,11 +24,11 @@ struct Opponent {
 
 /// One part as the one that gives way. Its vertices have their own, local numbering.
 struct Yielding {
-  std::vector<int> vertices;   ///< refined vertices (representatives), neighbours in space near each other in the list
-  std::vector<Edge> edges;     ///< local
-  Adjacency neighbours;        ///< local
+  std::vector<int> vertices;  ///< refined vertices (representatives), neighbours in space near each other in the list
+  std::vector<Edge> edges;    ///< local
+  Adjacency neighbours;       ///< local
   std::vector<Opponent> opponents;
-  std::vector<char> allowed;   ///< per part: larger and not jointed
+  std::vector<char> allowed;  ///< per part: larger and not jointed
   /// Per part touched in the bind pose: distance that each vertex must keep from it [m], k_free or up to the gap.
   std::vector<std::pair<int, std::vector<double>>> touching;
 
@@ -39,7 +40,7 @@ struct Yielding {
 };
 
 struct CarvePlan {
-  double gap = 0;                  ///< m
+  double gap = 0;  ///< m
   std::vector<SurfacePart> parts;
   std::vector<int> by_size;        ///< parts, largest first, ties by index
   std::vector<Yielding> yielding;  ///< per part
@@ -58,7 +59,7 @@ struct CarvePlan {
 /// Parts by size, largest first, ties by index.
 std::vector<int> parts_by_size(std::span<const SurfacePart> parts);
 
-CarvePlan make_carve_plan(const PartSurface& surface, std::span<const SurfacePart> parts, std::span<const int> part_of_vertex,
-                          std::span<const Vec3> bind, double gap);
+CarvePlan make_carve_plan(const PartSurface& surface, std::span<const SurfacePart> parts,
+                          std::span<const int> part_of_vertex, std::span<const Vec3> bind, double gap);
 
 }  // namespace ft

@@ -8,24 +8,24 @@
 namespace ft {
 namespace {
 
-constexpr int k_push_rounds = 3;        ///< rounds of pushing out, so that a vertex between two parts settles
-constexpr int k_smooth_sweeps = 8;      ///< Laplacian sweeps of the displacement between rounds
-constexpr double k_smooth_move = 20e-3; ///< move from which on a vertex is smoothed fully [m]
-constexpr int k_groove_rounds = 6;      ///< rounds for one point between several parts
-constexpr double k_facing = -0.9;       ///< cosine of two parts' normals below which they make a slot, not a groove
-constexpr int k_membrane_sweeps = 40;   ///< sweeps that draw a part over a slot
-constexpr double k_content = 1e-9;      ///< missing distance that is not worth a push [m]
-constexpr int k_sag_rounds = 3;         ///< rounds of lifting edges
-constexpr double k_sag_share = 0.85;    ///< share of the gap that edges' middles must keep [1]
+constexpr int k_push_rounds = 3;         ///< rounds of pushing out, so that a vertex between two parts settles
+constexpr int k_smooth_sweeps = 8;       ///< Laplacian sweeps of the displacement between rounds
+constexpr double k_smooth_move = 20e-3;  ///< move from which on a vertex is smoothed fully [m]
+constexpr int k_groove_rounds = 6;       ///< rounds for one point between several parts
+constexpr double k_facing = -0.9;        ///< cosine of two parts' normals below which they make a slot, not a groove
+constexpr int k_membrane_sweeps = 40;    ///< sweeps that draw a part over a slot
+constexpr double k_content = 1e-9;       ///< missing distance that is not worth a push [m]
+constexpr int k_sag_rounds = 3;          ///< rounds of lifting edges
+constexpr double k_sag_share = 0.85;     ///< share of the gap that edges' middles must keep [1]
 
 }  // namespace
 
-/// Moves the point until it keeps its distance from every opponent, or for some rounds; true when it moved. keep(part) is the
-/// distance, reach(part, squared distance from its box) how far to look. Between two opponents it takes the shortest way to
-/// where both are content, as if they were planes: pushing by turns creeps in a groove.
+/// Moves the point until it keeps its distance from every opponent, or for some rounds; true when it moved. keep(part)
+/// is the distance, reach(part, squared distance from its box) how far to look. Between two opponents it takes the
+/// shortest way to where both are content, as if they were planes: pushing by turns creeps in a groove.
 template <class Keep, class Reach>
 bool Carver::push(const Carving& carving, const Scratch& scratch, Vec3& point, std::span<int> hints, Keep&& keep,
-                                  Reach&& reach, Contact* contact) const {
+                  Reach&& reach, Contact* contact) const {
   bool moved = false;
   for (int round = 0; round < k_groove_rounds; ++round) {
     std::array<Contact, 2> worst{};  // distance: how much is missing
@@ -66,8 +66,8 @@ bool Carver::push(const Carving& carving, const Scratch& scratch, Vec3& point, s
   return moved;
 }
 
-bool Carver::push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point,
-                                      Contact& contact, std::span<int> hints) const {
+bool Carver::push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point, Contact& contact,
+                      std::span<int> hints) const {
   const bool deep = carving.inside[at(local)] != 0 || carving.moved[at(local)] != 0;
   contact = {};
   return push(
@@ -115,8 +115,8 @@ void Carver::smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch
   }
 }
 
-/// Vertices in slots are drawn out by their neighbours until the part spans the slot like a membrane: there is no room in it for
-/// the part, and an edge from its depth to the outside would cut its lip.
+/// Vertices in slots are drawn out by their neighbours until the part spans the slot like a membrane: there is no room
+/// in it for the part, and an edge from its depth to the outside would cut its lip.
 void Carver::span_slots(Carving& carving, Scratch& scratch) const {
   const Yielding& part = carving.part;
   std::vector<int> squeezed;
@@ -134,18 +134,21 @@ void Carver::span_slots(Carving& carving, Scratch& scratch) const {
   for (const int v : squeezed) carving.contacts[at(v)] = {Vec3::Zero(), 0, true};  // lift_edges() must look for itself
 }
 
-/// The middle of an edge, moved to where it keeps its share of the gap; only where both ends have to keep the whole gap.
+/// The middle of an edge, moved to where it keeps its share of the gap; only where both ends have to keep the whole
+/// gap.
 bool Carver::lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle,
-                                         std::span<int> hints) const {
+                         std::span<int> hints) const {
   const auto held = [&](int other) {
-    return plan.keep(carving.part, edge[0], other) == settings.gap && plan.keep(carving.part, edge[1], other) == settings.gap;
+    return plan.keep(carving.part, edge[0], other) == settings.gap &&
+           plan.keep(carving.part, edge[1], other) == settings.gap;
   };
   return push(
       carving, scratch, middle, hints, [&](int other) { return held(other) ? k_sag_share * settings.gap : k_free; },
       [&](int, double d2) { return d2 <= settings.gap * settings.gap ? near : 0.0; }, nullptr);
 }
 
-/// Edges whose ends keep the gap may still cut a larger part's curve: their middles are lifted, and both ends with them.
+/// Edges whose ends keep the gap may still cut a larger part's curve: their middles are lifted, and both ends with
+/// them.
 void Carver::lift_edges(const Carving& carving, Scratch& scratch) const {
   const Yielding& part = carving.part;
   std::vector<Vec3> lift(part.vertices.size());

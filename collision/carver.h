@@ -1,6 +1,7 @@
-// Carves the parts of one pose: each part leaves the larger ones, which are final by then. One part: find its vertices near or inside
-// larger parts (carver_sides.cpp), push them out, smooth the displacement so that no triangle tears, push out again, then lift edges
-// that sag into a curved larger part (carver.cpp). Never changes between calls; all that a pose needs is in Scratch.
+// Carves the parts of one pose: each part leaves the larger ones, which are final by then. One part: find its vertices
+// near or inside larger parts (carver_sides.cpp), push them out, smooth the displacement so that no triangle tears,
+// push out again, then lift edges that sag into a curved larger part (carver.cpp). Never changes between calls; all
+// that a pose needs is in Scratch.
 #pragma once
 
 #include <limits>
@@ -23,7 +24,8 @@ struct Carver {
   FeasibleSettings settings;
   std::unique_ptr<PartSurface> surface;
   CarvePlan plan;
-  double near = 0;  ///< distances up to this are always found [m]; above half an edge, so that no edge passes a surface unseen
+  double near =
+      0;  ///< distances up to this are always found [m]; above half an edge, so that no edge passes a surface unseen
 
   /// Positions, boxes and trees of one evaluation.
   struct Scratch {
@@ -34,7 +36,7 @@ struct Carver {
   struct Contact {
     Vec3 normal = Vec3::Zero();
     double distance = std::numeric_limits<double>::infinity();  ///< to the nearest opponent [m]
-    bool squeezed = false;            ///< in a slot between two opponents that is too narrow for both distances
+    bool squeezed = false;  ///< in a slot between two opponents that is too narrow for both distances
   };
   /// One part's work in one evaluation.
   struct Carving {
@@ -50,15 +52,17 @@ struct Carver {
   TreeBox box_of(int part, std::span<const Vec3> x) const;
   std::vector<Opponent> opponents_now(const Yielding& part, const TreeBox& own, Scratch& scratch) const;
   void find_active(Carving& carving, const Scratch& scratch) const;
-  void look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin, std::size_t end,
-                   std::vector<Side>& side) const;
-  void resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch, std::vector<Side>& side) const;
+  void look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin,
+                   std::size_t end, std::vector<Side>& side) const;
+  void resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch,
+                       std::vector<Side>& side) const;
   template <class Keep, class Reach>
-  bool push(const Carving& carving, const Scratch& scratch, Vec3& point, std::span<int> hints, Keep&& keep, Reach&& reach,
-            Contact* contact) const;
+  bool push(const Carving& carving, const Scratch& scratch, Vec3& point, std::span<int> hints, Keep&& keep,
+            Reach&& reach, Contact* contact) const;
   bool push_out(const Carving& carving, int local, const Scratch& scratch, Vec3& point, Contact& contact,
                 std::span<int> hints) const;
-  bool lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle, std::span<int> hints) const;
+  bool lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle,
+                   std::span<int> hints) const;
   void push_out_all(Carving& carving, Scratch& scratch) const;
   void span_slots(Carving& carving, Scratch& scratch) const;
   void smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch& scratch) const;

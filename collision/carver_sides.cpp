@@ -14,8 +14,7 @@ TreeBox Carver::box_of(int part, std::span<const Vec3> x) const {
 }
 
 /// Opponents whose boxes, grown by the gap, meet the part's now; their trees are brought up to date.
-std::vector<Opponent> Carver::opponents_now(const Yielding& part, const TreeBox& own,
-                                                            Scratch& scratch) const {
+std::vector<Opponent> Carver::opponents_now(const Yielding& part, const TreeBox& own, Scratch& scratch) const {
   std::vector<Opponent> out;
   for (const Opponent& opponent : part.opponents) {
     Opponent now{opponent.shell, {}};
@@ -33,10 +32,11 @@ std::vector<Opponent> Carver::opponents_now(const Yielding& part, const TreeBox&
   return out;
 }
 
-/// Far vertices of unknown side: those connected to one that is away are away too, for an edge cannot pass the opponent's surface
-/// without an end near it. Of the others a closed opponent is asked once per connected piece, an open one for every vertex.
+/// Far vertices of unknown side: those connected to one that is away are away too, for an edge cannot pass the
+/// opponent's surface without an end near it. Of the others a closed opponent is asked once per connected piece, an
+/// open one for every vertex.
 void Carver::resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch,
-                                             std::vector<Side>& side) const {
+                             std::vector<Side>& side) const {
   const Yielding& part = carving.part;
   std::vector<int> queue, piece;
   const auto grow = [&](Side as) {
@@ -69,7 +69,7 @@ void Carver::resolve_unknown(const Carving& carving, const Opponent& opponent, c
 
 /// Sides and contacts of one cluster of vertices [begin, end) with respect to one opponent.
 void Carver::look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin,
-                                         std::size_t end, std::vector<Side>& side) const {
+                         std::size_t end, std::vector<Side>& side) const {
   const Yielding& part = carving.part;
   Box box;
   for (std::size_t i = begin; i < end; ++i) box.include(scratch.x[at(part.vertices[i])]);

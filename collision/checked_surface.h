@@ -1,5 +1,5 @@
-// A surface that is checked frame after frame, for crossings.h and penetration.h: what follows from its triangles alone is found
-// once, its box tree is built at the first place and refitted afterwards. Results do not depend on the tree.
+// A surface that is checked frame after frame, for crossings.h and penetration.h: what follows from its triangles alone
+// is found once, its box tree is built at the first place and refitted afterwards. Results do not depend on the tree.
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
-// Candidate pairs between features, over one numbering of all vertices: cloth vertices first [0, cloth_vertex_count), then the
-// collider's. A stencil is four vertices; those at or past cloth_vertex_count are kinematic. Found with FCL's trees
-// (fcl_pair_finder.cpp), sorted, each pair once.
+// Candidate pairs between features, over one numbering of all vertices: cloth vertices first [0, cloth_vertex_count),
+// then the collider's. A stencil is four vertices; those at or past cloth_vertex_count are kinematic. Found with FCL's
+// trees (fcl_pair_finder.cpp), sorted, each pair once.
 #pragma once
 
 #include <algorithm>
@@ -43,18 +43,20 @@ class PairFinder {
   ~PairFinder();
   PairFinder(PairFinder&&) noexcept;
 
-  /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider, and with
-  /// self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in the list. Pairs
-  /// that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in nothing.
+  /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,
+  /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
+  /// the list. Pairs that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in
+  /// nothing.
   void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
-  /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when only their
-  /// boxes have grown or moved. Costs little where few have.
+  /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when
+  /// only their boxes have grown or moved. Costs little where few have.
   void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out);
 
  private:
-  void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed, ContactPairs& out);
+  void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
+              ContactPairs& out);
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,5 +1,5 @@
-// See crossing_predicates.h and orientation() of crossings.h. An expansion is a sum of doubles that do not overlap, smallest
-// first; adding a double or multiplying by one keeps it exact, so its sign is that of its last non-zero term.
+// See crossing_predicates.h and orientation() of crossings.h. An expansion is a sum of doubles that do not overlap,
+// smallest first; adding a double or multiplying by one keeps it exact, so its sign is that of its last non-zero term.
 #include "collision/crossing_predicates.h"
 
 #include <cmath>
@@ -13,7 +13,9 @@ constexpr double k_half_ulp = 0x1p-53;
 constexpr double k_bound_3d = (7.0 + 56.0 * k_half_ulp) * k_half_ulp;  ///< Shewchuk 1997, o3derrboundA
 constexpr double k_bound_2d = (3.0 + 16.0 * k_half_ulp) * k_half_ulp;  ///< ccwerrboundA
 
-int sign(double v) { return v > 0 ? 1 : v < 0 ? -1 : 0; }
+int sign(double v) {
+  return v > 0 ? 1 : v < 0 ? -1 : 0;
+}
 
 template <int capacity>
 struct Expansion {

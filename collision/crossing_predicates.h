@@ -1,6 +1,7 @@
-// Exact signs for the certificate: orientation in the plane and the exact answer where the quick one of crossings.h does not
-// decide. Error bounds and expansion arithmetic after Shewchuk 1997, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
-// Geometric Predicates". Exact for coordinates whose products neither overflow nor underflow (1e-70 to 1e70, and 0).
+// Exact signs for the certificate: orientation in the plane and the exact answer where the quick one of crossings.h
+// does not decide. Error bounds and expansion arithmetic after Shewchuk 1997, "Adaptive Precision Floating-Point
+// Arithmetic and Fast Robust Geometric Predicates". Exact for coordinates whose products neither overflow nor underflow
+// (1e-70 to 1e70, and 0).
 #pragma once
 
 #include "baker/core/types.h"

@@ -1,5 +1,5 @@
-// See crossings.h. Candidates by two box trees; each edge is tested from the one triangle that owns it (its first), so nothing
-// is tested twice. Degenerate triangles are the segments that they have shrunk to and count like them.
+// See crossings.h. Candidates by two box trees; each edge is tested from the one triangle that owns it (its first), so
+// nothing is tested twice. Degenerate triangles are the segments that they have shrunk to and count like them.
 #include "collision/crossings.h"
 
 #include <algorithm>
@@ -9,7 +9,9 @@
 namespace ft {
 namespace {
 
-Vec2 drop(const Vec3& v, int axis) { return {v[(axis + 1) % 3], v[(axis + 2) % 3]}; }
+Vec2 drop(const Vec3& v, int axis) {
+  return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
+}
 
 bool boxes_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   for (int k = 0; k < 3; ++k)
@@ -20,7 +22,8 @@ bool boxes_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
 bool segments_meet_2d(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) {
   for (int k = 0; k < 2; ++k)
     if (std::max(p[k], q[k]) < std::min(r[k], s[k]) || std::max(r[k], s[k]) < std::min(p[k], q[k])) return false;
-  return orientation_2d(p, q, r) * orientation_2d(p, q, s) <= 0 && orientation_2d(r, s, p) * orientation_2d(r, s, q) <= 0;
+  return orientation_2d(p, q, r) * orientation_2d(p, q, s) <= 0 &&
+         orientation_2d(r, s, p) * orientation_2d(r, s, q) <= 0;
 }
 
 /// An axis along which a, b, c do not fall into one line; -1 when they are in line in space.

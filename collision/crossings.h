@@ -1,5 +1,5 @@
-// The certificate: exact edge-triangle crossings of a configuration (orientation predicates: double with an error bound, exact
-// arithmetic where the bound does not decide). Touching counts as crossing.
+// The certificate: exact edge-triangle crossings of a configuration (orientation predicates: double with an error
+// bound, exact arithmetic where the bound does not decide). Touching counts as crossing.
 #pragma once
 
 #include <span>
@@ -11,7 +11,8 @@
 
 namespace ft {
 
-/// Sign of the volume of (a, b, c, d): exact. Positive when d is below the plane of a, b, c seen counter-clockwise from above.
+/// Sign of the volume of (a, b, c, d): exact. Positive when d is below the plane of a, b, c seen counter-clockwise from
+/// above.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
@@ -19,7 +20,8 @@ bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Ve
 struct Crossing {
   Edge edge;
   Triangle triangle;
-  bool edge_of_first = true;  ///< crossings_between: the edge is of surface a, the triangle of b; false: the other way round
+  bool edge_of_first =
+      true;  ///< crossings_between: the edge is of surface a, the triangle of b; false: the other way round
   auto operator<=>(const Crossing&) const = default;
 };
 

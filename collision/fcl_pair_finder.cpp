@@ -72,7 +72,9 @@ class Tree {
     marks_.resize(nodes_.size());
     for (std::size_t k = nodes_.size(); k-- > 0;) {
       const FclNode& node = nodes_[k];
-      const auto of_element = [&](const Triangle& v) { return changed[at(v[0])] | changed[at(v[1])] | changed[at(v[2])]; };
+      const auto of_element = [&](const Triangle& v) {
+        return changed[at(v[0])] | changed[at(v[1])] | changed[at(v[2])];
+      };
       marks_[k] = static_cast<char>(is_leaf(node) ? of_element(elements[leaf_element(node)].v)
                                                   : marks_[at(node.first_child)] | marks_[at(node.first_child + 1)]);
     }
@@ -106,8 +108,8 @@ struct Found {
   std::vector<std::uint64_t> vertex_face, edge_edge;
 };
 
-/// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap. k_some: only those with a
-/// changed vertex.
+/// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap. k_some: only those
+/// with a changed vertex.
 template <bool k_some>
 struct Walk {
   const PairFeatures& features;
@@ -247,33 +249,49 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& ou
   out.vertex_face.clear();
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
-  const Walk<k_some> walk{features,      cloth.nodes(),           other.nodes(),
-                          cloth.marks(), other.marks(),           changed,
-                          features.cloth.data(), task.self ? features.cloth.data() : features.collider.data(),
-                          want_edges,    out};
+  const Walk<k_some> walk{features,
+                          cloth.nodes(),
+                          other.nodes(),
+                          cloth.marks(),
+                          other.marks(),
+                          changed,
+                          features.cloth.data(),
+                          task.self ? features.cloth.data() : features.collider.data(),
+                          want_edges,
+                          out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
 
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                        std::span<const Triangle> collider_triangles)
-    : impl_(new Impl{
-          {cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles}, true, {}, {}, {}, {}, {}, {}}) {}
+    : impl_(new Impl{{cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles},
+                     true,
+                     {},
+                     {},
+                     {},
+                     {},
+                     {},
+                     {}}) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 
-void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) { search(boxes, self, true, {}, out); }
+void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
+  search(boxes, self, true, {}, out);
+}
 
 void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
   search(boxes, self, false, {}, out);
 }
 
-void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out) {
+void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed,
+                              ContactPairs& out) {
   CHECK(changed.size() == boxes.size());
   search(boxes, self, true, changed, out);
 }
 
 /// changed empty: all pairs.
-void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed, ContactPairs& out) {
+void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
+                        ContactPairs& out) {
   Impl& m = *impl_;
   m.want_edges = edges;
   const PairFeatures& features = m.features;

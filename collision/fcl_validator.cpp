@@ -1,5 +1,5 @@
-// See fcl_validator.h. FCL computes in millimetres here: its triangle test has absolute tolerances that are too coarse for
-// metres at centimetre edges.
+// See fcl_validator.h. FCL computes in millimetres here: its triangle test has absolute tolerances that are too coarse
+// for metres at centimetre edges.
 #include "collision/fcl_validator.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -15,7 +15,8 @@ namespace {
 
 using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
 
-std::shared_ptr<Model> model_of(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Vec3& origin) {
+std::shared_ptr<Model> model_of(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                const Vec3& origin) {
   std::vector<fcl::Vector3<double>> vertices;
   for (const Vec3& p : positions) vertices.push_back(1000.0 * (p - origin));
   std::vector<fcl::Triangle> faces;
@@ -37,8 +38,8 @@ std::size_t fcl_intersecting_pairs(std::span<const Vec3> positions_a, std::span<
   const auto a = model_of(positions_a, triangles_a, origin), b = model_of(positions_b, triangles_b, origin);
   fcl::CollisionRequest<double> request(std::numeric_limits<std::size_t>::max() / 2, false);
   fcl::CollisionResult<double> result;
-  fcl::collide<double>(a.get(), fcl::Transform3<double>::Identity(), b.get(), fcl::Transform3<double>::Identity(), request,
-                       result);
+  fcl::collide<double>(a.get(), fcl::Transform3<double>::Identity(), b.get(), fcl::Transform3<double>::Identity(),
+                       request, result);
   return result.numContacts();
 }
 

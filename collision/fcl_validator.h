@@ -1,6 +1,6 @@
-// An independent second opinion on crossings_between(): FCL's own traversal (OBBRSS trees) and its own triangle test, sharing
-// no code with crossings.cpp. For tests and for judging a bake; it knows nothing of exact arithmetic, so pairs that barely
-// touch may be counted or not.
+// An independent second opinion on crossings_between(): FCL's own traversal (OBBRSS trees) and its own triangle test,
+// sharing no code with crossings.cpp. For tests and for judging a bake; it knows nothing of exact arithmetic, so pairs
+// that barely touch may be counted or not.
 #pragma once
 
 #include <cstddef>

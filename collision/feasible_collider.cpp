@@ -1,5 +1,5 @@
-// See feasible_collider.h. The parts are walked from the largest to the smallest, each against all larger ones, which are final
-// by then. Nothing is remembered between calls.
+// See feasible_collider.h. The parts are walked from the largest to the smallest, each against all larger ones, which
+// are final by then. Nothing is remembered between calls.
 #include "collision/feasible_collider.h"
 
 #include <algorithm>
@@ -16,7 +16,8 @@ struct FeasibleCollider::Impl {
   Carver carver;  ///< without a surface when there is nothing to carve
 };
 
-FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> bind_pose, const FeasibleSettings& settings)
+FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> bind_pose,
+                                   const FeasibleSettings& settings)
     : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   CHECK(static_cast<int>(bind_pose.size()) == drawn.vertex_count() && !drawn.parts.empty());
@@ -34,15 +35,22 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
   if (!settings.carve || drawn.parts.size() < 2) return;
   std::vector<Vec3> bind(at(m.mesh.vertex_count()));
   m.mesh.positions(bind_pose, bind);
-  m.carver.surface = std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(drawn.parts.size()));
+  m.carver.surface =
+      std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(drawn.parts.size()));
   m.carver.plan = make_carve_plan(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
 }
 
 FeasibleCollider::~FeasibleCollider() = default;
 
-int FeasibleCollider::vertex_count() const { return impl_->mesh.vertex_count(); }
-std::span<const Triangle> FeasibleCollider::triangles() const { return impl_->mesh.triangles; }
-std::span<const int> FeasibleCollider::part_of_vertex() const { return impl_->part_of_vertex; }
+int FeasibleCollider::vertex_count() const {
+  return impl_->mesh.vertex_count();
+}
+std::span<const Triangle> FeasibleCollider::triangles() const {
+  return impl_->mesh.triangles;
+}
+std::span<const int> FeasibleCollider::part_of_vertex() const {
+  return impl_->part_of_vertex;
+}
 
 bool FeasibleCollider::kept_apart(int part_a, int part_b) const {
   if (impl_->carver.surface == nullptr || part_a == part_b || impl_->carver.plan.jointed(part_a, part_b)) return false;
@@ -76,7 +84,8 @@ CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Ve
   }
   if (report.moved_vertices > 0) {
     report.part_a = impl_->part_of_vertex[farthest];
-    report.part_b = impl_->carver.deepest_opponent(impl_->carver.plan.yielding[at(report.part_a)], before[farthest], scratch);
+    report.part_b =
+        impl_->carver.deepest_opponent(impl_->carver.plan.yielding[at(report.part_a)], before[farthest], scratch);
   }
   return report;
 }

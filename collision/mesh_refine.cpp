@@ -1,5 +1,6 @@
-// See mesh_refine.h. One round splits every long edge once: a triangle with one long edge becomes two, with two three, with
-// three four. An edge that needs n pieces is split at n/2 (rounded down) of them, so that an edge of 17 lengths becomes 17 pieces, not 32.
+// See mesh_refine.h. One round splits every long edge once: a triangle with one long edge becomes two, with two three,
+// with three four. An edge that needs n pieces is split at n/2 (rounded down) of them, so that an edge of 17 lengths
+// becomes 17 pieces, not 32.
 #include "collision/mesh_refine.h"
 
 #include <algorithm>
@@ -13,7 +14,9 @@ namespace {
 
 constexpr double k_rounding = 1e-9;  ///< edges longer by no more than this share are not long
 
-Edge sorted(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+Edge sorted(int a, int b) {
+  return a < b ? Edge{a, b} : Edge{b, a};
+}
 
 struct Round {
   std::vector<Edge> split;  ///< sorted
@@ -26,7 +29,8 @@ struct Round {
 };
 
 /// Adds the pieces of t to out; the number of pieces tells how many edges were split.
-void split_triangle(const Triangle& t, const std::array<int, 3>& m, std::span<const Vec3> x, std::vector<Triangle>& out) {
+void split_triangle(const Triangle& t, const std::array<int, 3>& m, std::span<const Vec3> x,
+                    std::vector<Triangle>& out) {
   const int count = (m[0] >= 0) + (m[1] >= 0) + (m[2] >= 0);
   if (count == 0) {
     out.push_back(t);
@@ -101,7 +105,8 @@ RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> tr
     source.reserve(pieces);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       const Triangle& t = mesh.triangles[i];
-      const std::array<int, 3> middle{t[0] == t[1] ? -1 : round.middle(t[0], t[1]), t[1] == t[2] ? -1 : round.middle(t[1], t[2]),
+      const std::array<int, 3> middle{t[0] == t[1] ? -1 : round.middle(t[0], t[1]),
+                                      t[1] == t[2] ? -1 : round.middle(t[1], t[2]),
                                       t[2] == t[0] ? -1 : round.middle(t[2], t[0])};
       split_triangle(t, middle, x, next);
       source.resize(next.size(), mesh.source[i]);

@@ -34,7 +34,8 @@ TriangleTree::Hit NearbyLeaves::closest(const Vec3& p, double reach, std::span<c
     const float dz = std::max(std::max(lo_[2][i] - z, z - hi_[2][i]), 0.0f);
     distance2_[i] = dx * dx + dy * dy + dz * dz;
   }
-  const auto nearest = static_cast<std::size_t>(std::min_element(distance2_.begin(), distance2_.end()) - distance2_.begin());
+  const auto nearest =
+      static_cast<std::size_t>(std::min_element(distance2_.begin(), distance2_.end()) - distance2_.begin());
   const auto look_into = [&](std::size_t i) {
     if (distance2_[i] * (1 - 1e-5f) <= static_cast<float>(hit.closest.squared_distance) * (1 + 1e-6f))
       leaves_[i].first->closest_in_leaf(*leaves_[i].second, p, positions, triangles, hit);

@@ -1,5 +1,6 @@
-// The tree leaves around a small cluster of points, laid out so that a point's distances to all their boxes are one loop of eight
-// at a time. For the feasible collider, which asks for the closest triangle of some thousand points that come in clusters.
+// The tree leaves around a small cluster of points, laid out so that a point's distances to all their boxes are one
+// loop of eight at a time. For the feasible collider, which asks for the closest triangle of some thousand points that
+// come in clusters.
 #pragma once
 
 #include <vector>
@@ -15,7 +16,8 @@ class NearbyLeaves {
 
   void add(const TriangleTree& tree, const TriangleTree::Node& leaf);
   /// The closest triangle of all leaves no farther than reach [m]; ties go to the lowest triangle.
-  TriangleTree::Hit closest(const Vec3& p, double reach, std::span<const Vec3> positions, std::span<const Triangle> triangles);
+  TriangleTree::Hit closest(const Vec3& p, double reach, std::span<const Vec3> positions,
+                            std::span<const Triangle> triangles);
 
  private:
   Vec3 centre_;

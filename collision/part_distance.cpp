@@ -116,9 +116,9 @@ PartSurface::PartSurface(std::span<const Vec3> bind, std::span<const Triangle> t
   depth_limit_.resize(at(part_count));
   const TriangleTree all(bind, triangles_, whole);
   for (int p = 0; p < part_count; ++p)
-    depth_limit_[at(p)] = members[at(p)].empty()  ? 0
-                          : closed_[at(p)] != 0 ? std::numeric_limits<double>::infinity()
-                                                : half_thickness(p, bind, all);
+    depth_limit_[at(p)] = members[at(p)].empty() ? 0
+                          : closed_[at(p)] != 0  ? std::numeric_limits<double>::infinity()
+                                                 : half_thickness(p, bind, all);
 }
 
 Vec3 PartSurface::face_normal(int triangle, std::span<const Vec3> x) const {

@@ -1,6 +1,7 @@
-// How deep points are inside a drawn surface: for garments that start inside the body, for reports and for judging a bake.
-// Inside is decided by the winding along three rays, the majority wins, so that a slightly open mesh (a missing cap, a
-// neck hole) still has an inside; depth is the distance to the nearest triangle, whichever part of the body that is.
+// How deep points are inside a drawn surface: for garments that start inside the body, for reports and for judging a
+// bake. Inside is decided by the winding along three rays, the majority wins, so that a slightly open mesh (a missing
+// cap, a neck hole) still has an inside; depth is the distance to the nearest triangle, whichever part of the body that
+// is.
 #pragma once
 
 #include <span>
@@ -18,7 +19,8 @@ struct Penetration {
 };
 
 /// Points inside by more than least_depth [m], by ascending vertex. Triangles counter-clockwise seen from outside.
-std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& surface, double least_depth = 1e-5);
+std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& surface,
+                                      double least_depth = 1e-5);
 std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
                                       std::span<const Triangle> triangles, double least_depth = 1e-5);
 

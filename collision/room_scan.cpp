@@ -20,7 +20,8 @@ struct RoomScanner::Impl {
   Impl(const Surface& surface, std::span<const Vec3> bind, const FeasibleSettings& given)
       : settings(given), parts(surface.parts), collider(surface, bind, given), refined(at(collider.vertex_count())) {
     collider.refine(bind, refined);
-    shape = std::make_unique<PartSurface>(refined, collider.triangles(), collider.part_of_vertex(), static_cast<int>(parts.size()));
+    shape = std::make_unique<PartSurface>(refined, collider.triangles(), collider.part_of_vertex(),
+                                          static_cast<int>(parts.size()));
     all_allowed.assign(parts.size(), 1);
   }
   bool jointed(int a, int b) const { return parts[at(a)].parent == b || parts[at(b)].parent == a; }
@@ -73,14 +74,16 @@ std::vector<TightPlace> RoomScanner::look(std::span<const Vec3> drawn) const {
         if (best_apart && !apart) continue;
         Box near = boxes[at(b)];
         near.inflate(m.settings.gap);
-        if (!((near.lo.array() <= before[at(v)].array()).all() && (before[at(v)].array() <= near.hi.array()).all())) continue;
+        if (!((near.lo.array() <= before[at(v)].array()).all() && (before[at(v)].array() <= near.hi.array()).all()))
+          continue;
         if (trees[at(b)].empty()) {
           trees[at(b)] = m.shape->tree(b);
           trees[at(b)].refit(before, m.shape->triangles());
         }
         const int one[1] = {b};
         int hint = -1;
-        const double reach = std::isfinite(m.shape->depth_limit(b)) ? std::max(m.shape->depth_limit(b), m.settings.gap) : near.size().norm();
+        const double reach = std::isfinite(m.shape->depth_limit(b)) ? std::max(m.shape->depth_limit(b), m.settings.gap)
+                                                                    : near.size().norm();
         const auto answer = m.shape->distance(before[at(v)], one, m.all_allowed, reach, {before, trees}, hint);
         if (!answer || answer->distance >= m.settings.gap) continue;
         if (best.part_a < 0 || (apart && !best_apart) || answer->distance < best.clearance) {

@@ -1,6 +1,7 @@
-// Where a pose leaves no room for cloth: pairs of body parts that overlap or come nearer to each other than the gap that the feasible
-// collider keeps. For a look at the whole clip before the bake: there the cloth will lie on a collider that is not the drawn body.
-// Measured on the drawn pose, at the vertices that the feasible collider has to move. Thread-safe; deterministic.
+// Where a pose leaves no room for cloth: pairs of body parts that overlap or come nearer to each other than the gap
+// that the feasible collider keeps. For a look at the whole clip before the bake: there the cloth will lie on a
+// collider that is not the drawn body. Measured on the drawn pose, at the vertices that the feasible collider has to
+// move. Thread-safe; deterministic.
 #pragma once
 
 #include <memory>
@@ -15,8 +16,8 @@ namespace ft {
 /// Part `a` gives way to part `b`.
 struct TightPlace {
   int part_a = -1, part_b = -1;
-  double clearance = 0;         ///< smallest distance of a's vertices to b [m]; negative: a is inside b so deep
-  Vec3 place = Vec3::Zero();    ///< of that vertex as drawn [m]
+  double clearance = 0;       ///< smallest distance of a's vertices to b [m]; negative: a is inside b so deep
+  Vec3 place = Vec3::Zero();  ///< of that vertex as drawn [m]
 };
 
 class RoomScanner {

@@ -1,7 +1,7 @@
-// Which vertices a seam holds at one place, or next to each other: pairs of surface elements that have them on both sides are
-// neighbours, as if they shared a vertex, and neither repel nor count as crossing. For contact, certificate and `check`.
-// Reach: what is sewn together directly, what is sewn to the same point (three panels in a corner), and one step along the seam,
-// because the two sides of a seam need not have the same number of vertices.
+// Which vertices a seam holds at one place, or next to each other: pairs of surface elements that have them on both
+// sides are neighbours, as if they shared a vertex, and neither repel nor count as crossing. For contact, certificate
+// and `check`. Reach: what is sewn together directly, what is sewn to the same point (three panels in a corner), and
+// one step along the seam, because the two sides of a seam need not have the same number of vertices.
 #pragma once
 
 #include <span>

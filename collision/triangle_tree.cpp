@@ -21,7 +21,8 @@ float round_up(double v) {
   return f + std::abs(f) * 1.2e-7f + std::numeric_limits<float>::min();
 }
 
-ClosestOnTriangle closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b, int corner_a, int corner_b, int edge) {
+ClosestOnTriangle closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b, int corner_a, int corner_b,
+                                     int edge) {
   const Vec3 d = b - a;
   const double length2 = d.squaredNorm();
   const double t = length2 > 0 ? (p - a).dot(d) / length2 : 0.0;
@@ -40,14 +41,13 @@ ClosestOnTriangle closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b
 }  // namespace
 
 TreeBox TreeBox::around(const Vec3& lo, const Vec3& hi) {
-  return {{round_down(lo.x()), round_down(lo.y()), round_down(lo.z())}, {round_up(hi.x()), round_up(hi.y()), round_up(hi.z())}};
+  return {{round_down(lo.x()), round_down(lo.y()), round_down(lo.z())},
+          {round_up(hi.x()), round_up(hi.y()), round_up(hi.z())}};
 }
 
 ClosestOnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const auto answer = [&](const Vec3& q, int feature) {
-    return ClosestOnTriangle{q, (p - q).squaredNorm(), feature};
-  };
+  const auto answer = [&](const Vec3& q, int feature) { return ClosestOnTriangle{q, (p - q).squaredNorm(), feature}; };
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return answer(a, 0);
   const Vec3 bp = p - b;
@@ -61,8 +61,7 @@ ClosestOnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& 
   if (sum > k_sliver * ab.squaredNorm() * ac.squaredNorm()) {
     if (vc <= 0 && d1 >= 0 && d3 <= 0) return answer(a + ab * (d1 / (d1 - d3)), 3);
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return answer(a + ac * (d2 / (d2 - d6)), 5);
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-      return answer(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 4);
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return answer(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 4);
     if (va > 0 && vb > 0 && vc > 0) return answer(a + ab * (vb / sum) + ac * (vc / sum), 6);
   }
   // A sliver, whose regions rounding would mix up: the nearest of the three edges.
@@ -79,7 +78,8 @@ TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Tria
         return all;
       }()) {}
 
-TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::vector<int> subset)
+TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                           std::vector<int> subset)
     : order_(std::move(subset)) {
   if (order_.empty()) return;
   std::vector<Vec3> centres(triangles.size());
@@ -103,7 +103,8 @@ int TriangleTree::build(std::span<const Vec3> centres, int begin, int end) {
     nodes_[self].first = begin, nodes_[self].count = end - begin;
   } else {
     Box box;
-    for (int i = begin; i < end; ++i) box.include(centres[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
+    for (int i = begin; i < end; ++i)
+      box.include(centres[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
     int axis = 0;
     (box.hi - box.lo).maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;
@@ -152,8 +153,8 @@ bool TriangleTree::meets(const TreeBox& box, const Vec3& origin, const Vec3& dir
   return begin <= end * (1 + 1e-12) + 1e-12;
 }
 
-double TriangleTree::ray(const Vec3& origin, const Vec3& direction, double length, int skip, std::span<const Vec3> positions,
-                         std::span<const Triangle> triangles) const {
+double TriangleTree::ray(const Vec3& origin, const Vec3& direction, double length, int skip,
+                         std::span<const Vec3> positions, std::span<const Triangle> triangles) const {
   double nearest = length;
   for_each_along(origin, direction, length, [&](int i) {
     if (i == skip) return;

@@ -1,7 +1,7 @@
-// A box tree over the triangles of one surface, for crossings, penetration depths and the feasible collider. Built once by
-// median splits, refitted to new positions by one backward loop (children have larger indices than parents). Boxes are single
-// precision rounded outwards, so nothing is lost; decisions are made on the double positions. The candidate pairs of the
-// solver are not found here but with FCL's trees (contact_pairs.h).
+// A box tree over the triangles of one surface, for crossings, penetration depths and the feasible collider. Built once
+// by median splits, refitted to new positions by one backward loop (children have larger indices than parents). Boxes
+// are single precision rounded outwards, so nothing is lost; decisions are made on the double positions. The candidate
+// pairs of the solver are not found here but with FCL's trees (contact_pairs.h).
 #pragma once
 
 #include <limits>
@@ -16,7 +16,8 @@ namespace ft {
 struct TreeBox {
   float lo[3], hi[3];
   bool overlaps(const TreeBox& b) const {
-    return lo[0] <= b.hi[0] && b.lo[0] <= hi[0] && lo[1] <= b.hi[1] && b.lo[1] <= hi[1] && lo[2] <= b.hi[2] && b.lo[2] <= hi[2];
+    return lo[0] <= b.hi[0] && b.lo[0] <= hi[0] && lo[1] <= b.hi[1] && b.lo[1] <= hi[1] && lo[2] <= b.hi[2] &&
+           b.lo[2] <= hi[2];
   }
   /// The same with this box grown by r on every side.
   bool overlaps(const TreeBox& b, double r) const {
@@ -109,8 +110,8 @@ class TriangleTree {
   /// Improves hit by this tree's triangles; start with hit.closest.squared_distance = the square of how far to look.
   void closest(const Vec3& p, std::span<const Vec3> positions, std::span<const Triangle> triangles, Hit& hit) const;
   /// The same for one leaf, whose box is known to be near enough.
-  void closest_in_leaf(const Node& leaf, const Vec3& p, std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                       Hit& hit) const {
+  void closest_in_leaf(const Node& leaf, const Vec3& p, std::span<const Vec3> positions,
+                       std::span<const Triangle> triangles, Hit& hit) const {
     for (int k = 0; k < leaf.count; ++k) {
       const int index = order_[static_cast<std::size_t>(leaf.first + k)];
       const Triangle& t = triangles[static_cast<std::size_t>(index)];
@@ -122,7 +123,8 @@ class TriangleTree {
         hit = {found, index};
     }
   }
-  /// Distance along the unit direction to the first triangle other than skip, or length when there is none before it [m].
+  /// Distance along the unit direction to the first triangle other than skip, or length when there is none before it
+  /// [m].
   double ray(const Vec3& origin, const Vec3& direction, double length, int skip, std::span<const Vec3> positions,
              std::span<const Triangle> triangles) const;
 

@@ -29,8 +29,10 @@ inline void lower(double& target, double value) {
   }
 }
 
-/// True when the plane's normal n separates the two features by more than keep, wherever between start and end each vertex is.
-bool separates_throughout(int split, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& end, const Vec3& n, double keep) {
+/// True when the plane's normal n separates the two features by more than keep, wherever between start and end each
+/// vertex is.
+bool separates_throughout(int split, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& end, const Vec3& n,
+                          double keep) {
   double lowest_first = std::numeric_limits<double>::infinity(), highest_second = -lowest_first;
   for (std::size_t i = 0; i < 4; ++i) {
     const double a = n.dot(x[i] - x[0]), b = n.dot(end[i] - x[0]);
@@ -42,9 +44,9 @@ bool separates_throughout(int split, const std::array<Vec3, 4>& x, const std::ar
   return lowest_first - highest_second > keep;
 }
 
-/// A pair that slides past itself keeps apart although it approaches along the line between its closest points: cloth that
-/// glides over the inner edges of a flat face. The face's normal, the common normal of the edges, or the normal where the pair
-/// ends proves it; any plane will do.
+/// A pair that slides past itself keeps apart although it approaches along the line between its closest points: cloth
+/// that glides over the inner edges of a flat face. The face's normal, the common normal of the edges, or the normal
+/// where the pair ends proves it; any plane will do.
 bool slides_past(PairKind kind, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx,
                  const std::array<bool, 4>& movable, double keep) {
   const int split = first_feature_size(kind);

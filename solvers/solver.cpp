@@ -3,14 +3,18 @@
 namespace ft {
 namespace {
 
-constexpr ProfilePhase k_phases[] = {
-    {"candidates", "candidate pairs", &FrameProfile::candidates}, {"narrow", "contact", &FrameProfile::narrow},
-    {"assembly", "assembly", &FrameProfile::assembly},            {"linear", "linear solves", &FrameProfile::linear},
-    {"certificate", "certificate", &FrameProfile::certificate},   {"body", "body pose", &FrameProfile::body}};
+constexpr ProfilePhase k_phases[] = {{"candidates", "candidate pairs", &FrameProfile::candidates},
+                                     {"narrow", "contact", &FrameProfile::narrow},
+                                     {"assembly", "assembly", &FrameProfile::assembly},
+                                     {"linear", "linear solves", &FrameProfile::linear},
+                                     {"certificate", "certificate", &FrameProfile::certificate},
+                                     {"body", "body pose", &FrameProfile::body}};
 
 }  // namespace
 
-std::span<const ProfilePhase> profile_phases() { return k_phases; }
+std::span<const ProfilePhase> profile_phases() {
+  return k_phases;
+}
 
 FrameProfile& FrameProfile::operator+=(const FrameProfile& other) {
   for (const ProfilePhase& phase : k_phases) this->*phase.time += other.*phase.time;

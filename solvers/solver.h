@@ -1,5 +1,5 @@
-// What the conductor knows of a solver: it starts, it advances one frame, it says what it did. Model and scratch live in the
-// solver; everything that changes lives in State, so that a checkpoint is save(State) and nothing else.
+// What the conductor knows of a solver: it starts, it advances one frame, it says what it did. Model and scratch live
+// in the solver; everything that changes lives in State, so that a checkpoint is save(State) and nothing else.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ struct Incident {
   enum class Kind { k_crossing, k_penetration, k_released, k_strain, k_start_inside, k_rewind };
   Kind kind = Kind::k_crossing;
   int frame = 0;
-  std::string system;             ///< name of the garment
-  int vertex = -1;                ///< in the garment's file order
-  Vec3 place = Vec3::Zero();      ///< m, world
-  double depth = 0;               ///< m (or 1 for strain)
-  std::string text;               ///< one sentence
+  std::string system;         ///< name of the garment
+  int vertex = -1;            ///< in the garment's file order
+  Vec3 place = Vec3::Zero();  ///< m, world
+  double depth = 0;           ///< m (or 1 for strain)
+  std::string text;           ///< one sentence
 };
 
 const char* name(Incident::Kind kind);
@@ -48,14 +48,14 @@ std::span<const ProfilePhase> profile_phases();
 struct FrameReport {
   int frame = 0;
   int substeps = 0, newton_iterations = 0, linear_iterations = 0, rewinds = 0;
-  int crossings_body = 0;      ///< edge-triangle crossings with the feasible collider, exact
-  int crossings_self = 0;      ///< edge-triangle crossings among the cloths, exact
-  int crossings_drawn = 0;     ///< edge-triangle crossings with the drawn body
-  double smallest_gap = 0;     ///< m, to the feasible collider and among cloths; the contact radius if nothing is nearer
-  double deepest_drawn = 0;    ///< m, deepest cloth vertex inside the drawn body
+  int crossings_body = 0;    ///< edge-triangle crossings with the feasible collider, exact
+  int crossings_self = 0;    ///< edge-triangle crossings among the cloths, exact
+  int crossings_drawn = 0;   ///< edge-triangle crossings with the drawn body
+  double smallest_gap = 0;   ///< m, to the feasible collider and among cloths; the contact radius if nothing is nearer
+  double deepest_drawn = 0;  ///< m, deepest cloth vertex inside the drawn body
   double strain_p99 = 0, strain_max = 0, strain_mean = 0;  ///< edge strain, 1
-  double kinetic_energy = 0;   ///< J
-  int released_vertices = 0;   ///< vertices that were let through a part this frame because there was no room
+  double kinetic_energy = 0;                               ///< J
+  int released_vertices = 0;  ///< vertices that were let through a part this frame because there was no room
   bool finite = true;
   std::vector<Incident> incidents;  ///< worst first, at most 16 a frame
   FrameProfile profile;

@@ -60,16 +60,23 @@ void add_bake_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("bake", "Bakes the cloth of a shot; skips what is up to date");
   auto a = std::make_shared<BakeArguments>();
   command->add_option("shot", a->options.shot_file, "The shot file (TOML)")->required()->type_name("SHOT.toml");
-  command->add_option("--out,-o", a->options.folder, "Output folder; without it SHOT.bake beside the shot file")->type_name("DIR");
+  command->add_option("--out,-o", a->options.folder, "Output folder; without it SHOT.bake beside the shot file")
+      ->type_name("DIR");
   command->add_option("--frames", a->frames, "Bake these frames only, with a pre-roll of their own")->type_name("A-B");
-  command->add_option("--threads", a->threads, "Threads; 0 takes all cores. The result does not depend on it")->check(CLI::Range(0, 1024));
+  command->add_option("--threads", a->threads, "Threads; 0 takes all cores. The result does not depend on it")
+      ->check(CLI::Range(0, 1024));
   auto* resume = command->add_flag("--resume", a->options.resume, "Go on with an interrupted bake");
   command->add_flag("--force", a->options.force, "Bake even when up to date")->excludes(resume);
   command->add_flag("--dry-run", a->options.dry_run, "Check everything and print the plan; bake nothing");
   command->add_flag("--explain", a->options.explain, "Say whether the bake is up to date, and why not; bake nothing");
-  command->add_option("--set", a->options.overrides, "Override a value of the shot file, as cloth.dress.fabric=denim; may be repeated")
-      ->type_name("KEY=VALUE")->expected(1)->take_all();
-  command->add_option("--progress", a->progress, "bar, plain, json, tractor, deadline, openjd or none")->type_name("MODE");
+  command
+      ->add_option("--set", a->options.overrides,
+                   "Override a value of the shot file, as cloth.dress.fabric=denim; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--progress", a->progress, "bar, plain, json, tractor, deadline, openjd or none")
+      ->type_name("MODE");
   command->add_option("--log-json", a->log_json, "Write one JSON object per event to this file")->type_name("FILE");
   command->add_flag("--profile", a->profile, "Print where the time went");
   command->callback([a, &exit_code] { exit_code = run(*a); });

@@ -1,8 +1,8 @@
-// `check DIR`: judges a bake from its caches alone, frame by frame. Exit code 4 when a gate fails; crossings with the feasible
-// collider and among cloths always do.
-#include <CLI/CLI.hpp>
+// `check DIR`: judges a bake from its caches alone, frame by frame. Exit code 4 when a gate fails; crossings with the
+// feasible collider and among cloths always do.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -43,26 +43,23 @@ Totals add_up(const std::vector<FrameReport>& frames) {
 std::vector<std::string> failed_gates(const CheckArguments& a, const Totals& t) {
   std::vector<std::string> out;
   if (t.crossing_frames > 0)
-    out.push_back(fmt::format("{} crossings with the feasible collider and {} among cloths, in {} frames", t.crossings_body, t.crossings_self, t.crossing_frames));
+    out.push_back(fmt::format("{} crossings with the feasible collider and {} among cloths, in {} frames",
+                              t.crossings_body, t.crossings_self, t.crossing_frames));
   if (a.max_p99_strain > 0 && t.strain_p99 > a.max_p99_strain)
-    out.push_back(fmt::format("p99 strain {:.4g} at frame {} is above {:.4g}", t.strain_p99, t.strain_frame, a.max_p99_strain));
+    out.push_back(
+        fmt::format("p99 strain {:.4g} at frame {} is above {:.4g}", t.strain_p99, t.strain_frame, a.max_p99_strain));
   if (a.max_depth > 0 && t.deepest > a.max_depth)
-    out.push_back(fmt::format("{:.4g} m inside the drawn body at frame {}, more than {:.4g} m", t.deepest, t.deepest_frame, a.max_depth));
+    out.push_back(fmt::format("{:.4g} m inside the drawn body at frame {}, more than {:.4g} m", t.deepest,
+                              t.deepest_frame, a.max_depth));
   return out;
 }
 
 Json json_of(const CacheJudgement& judgement, const Totals& t, const std::vector<std::string>& failed) {
   Json frames = Json::array();
   for (const FrameReport& f : judgement.frames) frames.push_back(to_json(f));
-  return Json{{"shot", judgement.shot},
-              {"passed", failed.empty()},
-              {"failed", failed},
-              {"notes", judgement.notes},
-              {"crossings_body", t.crossings_body},
-              {"crossings_self", t.crossings_self},
-              {"deepest_drawn", t.deepest},
-              {"strain_p99", t.strain_p99},
-              {"frames", std::move(frames)}};
+  return Json{{"shot", judgement.shot},     {"passed", failed.empty()},           {"failed", failed},
+              {"notes", judgement.notes},   {"crossings_body", t.crossings_body}, {"crossings_self", t.crossings_self},
+              {"deepest_drawn", t.deepest}, {"strain_p99", t.strain_p99},         {"frames", std::move(frames)}};
 }
 
 int run(const CheckArguments& a) {
@@ -74,19 +71,21 @@ int run(const CheckArguments& a) {
   }
   std::printf("frame  crossings: body  cloth  drawn   inside drawn   strain p99      max\n");
   for (const FrameReport& f : judgement->frames)
-    std::printf("%5d %16d %6d %6d %11.2f mm %10.2f %% %8.2f %%\n", f.frame, f.crossings_body, f.crossings_self, f.crossings_drawn,
-                1e3 * f.deepest_drawn, 100 * f.strain_p99, 100 * f.strain_max);
+    std::printf("%5d %16d %6d %6d %11.2f mm %10.2f %% %8.2f %%\n", f.frame, f.crossings_body, f.crossings_self,
+                f.crossings_drawn, 1e3 * f.deepest_drawn, 100 * f.strain_p99, 100 * f.strain_max);
   for (const FrameReport& f : judgement->frames)
     for (const Incident& i : f.incidents)
       if (i.kind == Incident::Kind::k_crossing)
-        std::printf("frame %d, %s, vertex %d at (%.4f, %.4f, %.4f): %s\n", i.frame, i.system.c_str(), i.vertex, i.place.x(), i.place.y(),
-                    i.place.z(), i.text.c_str());
+        std::printf("frame %d, %s, vertex %d at (%.4f, %.4f, %.4f): %s\n", i.frame, i.system.c_str(), i.vertex,
+                    i.place.x(), i.place.y(), i.place.z(), i.text.c_str());
   for (const std::string& note : judgement->notes) std::printf("note: %s\n", note.c_str());
   const Totals totals = add_up(judgement->frames);
   const auto failed = failed_gates(a, totals);
-  std::printf("%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, worst p99 strain %.2f %%\n",
-              failed.empty() ? "passed" : "FAILED", judgement->frames.size(), totals.crossings_body, totals.crossings_self, 1e3 * totals.deepest,
-              100 * totals.strain_p99);
+  std::printf(
+      "%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, "
+      "worst p99 strain %.2f %%\n",
+      failed.empty() ? "passed" : "FAILED", judgement->frames.size(), totals.crossings_body, totals.crossings_self,
+      1e3 * totals.deepest, 100 * totals.strain_p99);
   if (!a.json.empty())
     if (const Status written = write_text_durably(a.json, to_text(json_of(*judgement, totals, failed))); !written) {
       complain(written.error().text());
@@ -103,8 +102,12 @@ void add_check_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<CheckArguments>();
   command->add_option("folder", a->folder, "Bake folder")->required()->type_name("DIR");
   command->add_option("--json", a->json, "Write the judgement as JSON")->type_name("FILE");
-  command->add_option("--max-p99-strain", a->max_p99_strain, "Fail when a frame's p99 edge strain is above this (0.05 is 5 %)")->check(CLI::NonNegativeNumber);
-  command->add_option("--max-depth", a->max_depth, "Fail when cloth is deeper than this in the drawn body, in metres")->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--max-p99-strain", a->max_p99_strain,
+                   "Fail when a frame's p99 edge strain is above this (0.05 is 5 %)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--max-depth", a->max_depth, "Fail when cloth is deeper than this in the drawn body, in metres")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--threads", a->threads, "Threads; 0 takes all cores")->check(CLI::Range(0, 1024));
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }

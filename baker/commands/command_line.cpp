@@ -37,7 +37,8 @@ int run_command_line(int argc, char** argv) {
   } catch (const CLI::Success& answer) {
     return app.exit(answer);  // --help, --version
   } catch (const CLI::ParseError& fault) {
-    complain(std::string(fault.what()) + " (followthrough --help lists the commands, followthrough COMMAND --help their options)");
+    complain(std::string(fault.what()) +
+             " (followthrough --help lists the commands, followthrough COMMAND --help their options)");
     return 2;
   } catch (const std::bad_alloc&) {
     complain("out of memory");

@@ -1,6 +1,7 @@
-// The commands of the program. Each command is one file beside this one with a function that adds it, and one line in the list
-// in command_line.cpp. Exit codes: 0 done, 1 compare found a difference, 2 wrong usage or shot file, 3 input missing or
-// unreadable, 4 quality gate failed, 5 diverged, 6 output or disk, 130/143 interrupted, resumable, 70 our own bug.
+// The commands of the program. Each command is one file beside this one with a function that adds it, and one line in
+// the list in command_line.cpp. Exit codes: 0 done, 1 compare found a difference, 2 wrong usage or shot file, 3 input
+// missing or unreadable, 4 quality gate failed, 5 diverged, 6 output or disk, 130/143 interrupted, resumable, 70 our
+// own bug.
 #pragma once
 
 #include <string>

@@ -12,7 +12,9 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<CompareOptions>();
   command->add_option("a", o->a, "Cache or bake folder")->required()->type_name("A");
   command->add_option("b", o->b, "Cache or bake folder")->required()->type_name("B");
-  command->add_option("--tolerance", o->tolerance, "Distance that still counts as equal, in metres")->check(CLI::NonNegativeNumber)->type_name("METRES");
+  command->add_option("--tolerance", o->tolerance, "Distance that still counts as equal, in metres")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("METRES");
   command->add_option("--json", o->json, "Write the report as JSON")->type_name("FILE");
   command->add_option("--html", o->html, "Write the report as a page")->type_name("FILE");
   command->add_option("--junit", o->junit, "Write the report as JUnit XML")->type_name("FILE");

@@ -1,8 +1,8 @@
-// `info FILE`: what is in a character, a garment mesh, a shot, a cache or a bake folder. By content where the format allows it:
-// folders, shots and OBJ by name; caches by their magic; everything else is tried as a character.
-#include <CLI/CLI.hpp>
+// `info FILE`: what is in a character, a garment mesh, a shot, a cache or a bake folder. By content where the format
+// allows it: folders, shots and OBJ by name; caches by their magic; everything else is tried as a character.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -25,8 +25,9 @@ using Lines = std::vector<std::string>;
 
 std::string size_of(const Box& box) {
   const Vec3 size = box.size();
-  return box.empty() ? "empty" : fmt::format("{:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g})", size.x(), size.y(), size.z(),
-                                             box.lo.x(), box.lo.y(), box.lo.z());
+  return box.empty() ? "empty"
+                     : fmt::format("{:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g})", size.x(), size.y(),
+                                   size.z(), box.lo.x(), box.lo.y(), box.lo.z());
 }
 
 Result<Lines> folder_info(const std::filesystem::path& path) {
@@ -34,13 +35,17 @@ Result<Lines> folder_info(const std::filesystem::path& path) {
   if (!manifest) return manifest.error();
   const Manifest& m = *manifest;
   Lines out;
-  out.push_back(fmt::format("bake of {}, followthrough {}, {}", m.shot, m.version, m.complete ? "complete" : "not finished"));
-  out.push_back(fmt::format("  frames {}-{} at {:g} fps, {} frames of pre-roll, caches from {}", m.first_frame, m.last_frame, m.fps, m.preroll, m.first_written));
+  out.push_back(
+      fmt::format("bake of {}, followthrough {}, {}", m.shot, m.version, m.complete ? "complete" : "not finished"));
+  out.push_back(fmt::format("  frames {}-{} at {:g} fps, {} frames of pre-roll, caches from {}", m.first_frame,
+                            m.last_frame, m.fps, m.preroll, m.first_written));
   for (const ManifestInput& i : m.inputs) out.push_back(fmt::format("  input {}: {}", i.role, i.name));
   for (const ManifestSystem& s : m.systems) {
     std::string files;
-    for (const ManifestCache& c : s.caches) files += " " + c.file + (c.bytes > 0 ? " (" + size_text(c.bytes) + ")" : "");
-    out.push_back(fmt::format("  {} \"{}\": {} vertices, {} faces:{}", s.role, s.name, s.vertex_count, s.face_count, files));
+    for (const ManifestCache& c : s.caches)
+      files += " " + c.file + (c.bytes > 0 ? " (" + size_text(c.bytes) + ")" : "");
+    out.push_back(
+        fmt::format("  {} \"{}\": {} vertices, {} faces:{}", s.role, s.name, s.vertex_count, s.face_count, files));
   }
   int crossings = 0, incidents = 0;
   double deepest = 0, strain = 0;
@@ -51,8 +56,9 @@ Result<Lines> folder_info(const std::filesystem::path& path) {
     deepest = std::max(deepest, f.deepest_drawn);
     strain = std::max(strain, f.strain_p99);
   }
-  out.push_back(fmt::format("  certificate: {} crossings, deepest in the drawn body {:.2f} mm, worst p99 strain {:.2f} %, {} incidents", crossings,
-                            1e3 * deepest, 100 * strain, incidents));
+  out.push_back(fmt::format(
+      "  certificate: {} crossings, deepest in the drawn body {:.2f} mm, worst p99 strain {:.2f} %, {} incidents",
+      crossings, 1e3 * deepest, 100 * strain, incidents));
   for (const std::string& note : m.notes) out.push_back("  note: " + note);
   return out;
 }
@@ -79,8 +85,8 @@ Result<Lines> shot_info(const std::filesystem::path& path, bool scan) {
     for (std::size_t i = 1; i < faults.messages.size(); ++i) complain(faults.messages[i]);
     return shot.error();
   }
-  Lines out{fmt::format("shot: frames {}-{} at {:g} fps, {} primaries, {} cloths", shot->first_frame, shot->last_frame, shot->fps,
-                        shot->primaries.size(), shot->cloths.size())};
+  Lines out{fmt::format("shot: frames {}-{} at {:g} fps, {} primaries, {} cloths", shot->first_frame, shot->last_frame,
+                        shot->fps, shot->primaries.size(), shot->cloths.size())};
   for (const auto& [key, value] : settings(*shot)) out.push_back("  " + key + " = " + value);
   if (!scan) return out;
   auto found = scan_lines(path);
@@ -92,9 +98,11 @@ Result<Lines> shot_info(const std::filesystem::path& path, bool scan) {
 Result<Lines> mesh_info(const std::filesystem::path& path) {
   auto mesh = read_obj(path);
   if (!mesh) return mesh.error();
-  Lines out{fmt::format("mesh: {} vertices, {} faces, {} pattern coordinates", mesh->vertex_count(), mesh->face_count(), mesh->uvs.size())};
+  Lines out{fmt::format("mesh: {} vertices, {} faces, {} pattern coordinates", mesh->vertex_count(), mesh->face_count(),
+                        mesh->uvs.size())};
   out.push_back("  size " + size_of(bounds(mesh->positions)) + " if the file is in metres");
-  for (const VertexGroup& group : mesh->groups) out.push_back(fmt::format("  group \"{}\": {} vertices", group.name, group.vertices.size()));
+  for (const VertexGroup& group : mesh->groups)
+    out.push_back(fmt::format("  group \"{}\": {} vertices", group.name, group.vertices.size()));
   if (!mesh->stitches.empty()) out.push_back(fmt::format("  {} panels, {}", panel_count(*mesh), sewing_text(*mesh)));
   const Status garment = check_garment(*mesh);
   out.push_back(garment ? "  as a garment: good" : "  as a garment: " + garment.error().what);
@@ -103,9 +111,11 @@ Result<Lines> mesh_info(const std::filesystem::path& path) {
 
 Lines cache_info(CacheReader& reader) {
   const CacheInfo& info = reader.info();
-  Lines out{fmt::format("cache of \"{}\": {} frames from {}{}, {} vertices", info.system, info.frame_count, info.first_frame,
-                        info.has_fps ? fmt::format(" at {:g} fps", info.fps) : std::string(), info.mesh.vertex_count())};
-  out.push_back(fmt::format("  {}, {}", info.has_topology ? fmt::format("{} faces", info.mesh.face_count()) : "points only",
+  Lines out{fmt::format("cache of \"{}\": {} frames from {}{}, {} vertices", info.system, info.frame_count,
+                        info.first_frame, info.has_fps ? fmt::format(" at {:g} fps", info.fps) : std::string(),
+                        info.mesh.vertex_count())};
+  out.push_back(fmt::format("  {}, {}",
+                            info.has_topology ? fmt::format("{} faces", info.mesh.face_count()) : "points only",
                             info.has_velocity ? "with velocities" : "without velocities"));
   Box box;
   std::vector<Vec3f> x;
@@ -126,7 +136,8 @@ Result<Lines> file_info(const std::filesystem::path& path, bool scan) {
   if (!std::filesystem::exists(path, error)) return input_error("does not exist", path.string());
   if (std::filesystem::is_directory(path, error)) return folder_info(path);
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".toml") return shot_info(path, scan);
   if (extension == ".obj") return mesh_info(path);
   for (const CacheFormat& format : cache_formats())
@@ -173,7 +184,8 @@ void add_info_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<InfoArguments>();
   command->add_option("file", a->file, "The file or folder")->type_name("FILE");
   command->add_flag("--shot-keys", a->shot_keys, "Print the keys of a shot file as Markdown");
-  command->add_flag("--scan", a->scan, "Of a shot: look at every frame of its characters for jumps and for places without room");
+  command->add_flag("--scan", a->scan,
+                    "Of a shot: look at every frame of its characters for jumps and for places without room");
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 

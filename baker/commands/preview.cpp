@@ -63,7 +63,9 @@ Status quantise(Clip& clip, int frames) {
     if (const Status read = clip.track.read(f, x); !read) return read;
     for (const Vec3& p : x)
       for (int k = 0; k < 3; ++k)
-        clip.positions.push_back(step[k] > 0 ? static_cast<std::uint16_t>(std::lround((p[k] - clip.box.lo[k]) / step[k])) : std::uint16_t{0});
+        clip.positions.push_back(step[k] > 0
+                                     ? static_cast<std::uint16_t>(std::lround((p[k] - clip.box.lo[k]) / step[k]))
+                                     : std::uint16_t{0});
   }
   return {};
 }
@@ -89,7 +91,8 @@ void add_gap(Clip& clip, std::span<const Vec3> x, std::span<const Vec3> surface,
       TriangleTree::Hit hit;
       hit.closest.squared_distance = k_preview_gap_range * k_preview_gap_range;
       tree.closest(x[i], surface, triangles, hit);
-      clip.gap[first + i] = static_cast<std::uint8_t>(std::lround(255 * std::sqrt(hit.closest.squared_distance) / k_preview_gap_range));
+      clip.gap[first + i] =
+          static_cast<std::uint8_t>(std::lround(255 * std::sqrt(hit.closest.squared_distance) / k_preview_gap_range));
     }
   });
 }
@@ -143,7 +146,8 @@ std::map<int, double> milliseconds(const BakeFolder& folder) {
   std::map<int, double> out;
   const auto bytes = read_file(folder.report());
   if (!bytes) return out;
-  const auto report = parse_json(std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()), folder.report().string());
+  const auto report =
+      parse_json(std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()), folder.report().string());
   if (!report || !report->is_object() || !report->contains("frames") || !(*report)["frames"].is_array()) return out;
   for (const Json& row : (*report)["frames"])
     if (row.is_object() && row.contains("frame") && row["frame"].is_number_integer() && row.contains("milliseconds") &&
@@ -197,13 +201,14 @@ Result<std::string> preview_page(const std::filesystem::path& bake_folder) {
   if (clips.empty() || frames < 1) return input_error("the bake has no finished frame to show", bake_folder.string());
   if (const Status measured = measure(clips, frames); !measured) return measured.error();
 
-  Json bake{{"shot", manifest->shot}, {"fps", manifest->fps}, {"first_frame", manifest->first_written}, {"frame_count", frames},
-            {"complete", manifest->complete}, {"gap_range", k_preview_gap_range}};
+  Json bake{{"shot", manifest->shot}, {"fps", manifest->fps},           {"first_frame", manifest->first_written},
+            {"frame_count", frames},  {"complete", manifest->complete}, {"gap_range", k_preview_gap_range}};
   bake["frames"] = frame_rows(*manifest, folder, frames);
   bake["incidents"] = Json::array();
   for (const FrameReport& frame : manifest->frames)
     for (const Incident& i : frame.incidents)
-      if (i.frame >= manifest->first_written && i.frame < manifest->first_written + frames) bake["incidents"].push_back(to_json(i));
+      if (i.frame >= manifest->first_written && i.frame < manifest->first_written + frames)
+        bake["incidents"].push_back(to_json(i));
   bake["systems"] = Json::array();
   for (Clip& clip : clips) {
     if (clip.system.role == "collider" && has_body) continue;  // looks like the body and costs as much
@@ -211,7 +216,8 @@ Result<std::string> preview_page(const std::filesystem::path& bake_folder) {
     bake["systems"].push_back(describe(clip));
   }
   std::string data = bake.dump();
-  for (std::size_t place = 0; (place = data.find("</", place)) != std::string::npos; place += 3) data.replace(place, 2, "<\\/");
+  for (std::size_t place = 0; (place = data.find("</", place)) != std::string::npos; place += 3)
+    data.replace(place, 2, "<\\/");
 
   std::string page(embedded_page());
   replace(page, "%TITLE%", escape_html(manifest->shot));

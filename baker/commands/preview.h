@@ -1,5 +1,5 @@
-// `preview`: a bake as one page that needs nothing else: player, colours by strain and gap, plots. The page is made of the files in
-// baker/preview and of three.js, all of which are inside the program.
+// `preview`: a bake as one page that needs nothing else: player, colours by strain and gap, plots. The page is made of
+// the files in baker/preview and of three.js, all of which are inside the program.
 #pragma once
 
 #include <filesystem>

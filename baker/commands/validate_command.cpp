@@ -22,26 +22,34 @@ struct ValidateArguments {
 Json json_of(const std::vector<ValidationCase>& cases) {
   Json rows = Json::array();
   for (const ValidationCase& c : cases)
-    rows.push_back({{"name", c.name}, {"what", c.what}, {"value", c.value}, {"reference", c.reference}, {"tolerance", c.tolerance},
-                    {"unit", c.unit}, {"passed", c.passed}, {"source", c.source}});
+    rows.push_back({{"name", c.name},
+                    {"what", c.what},
+                    {"value", c.value},
+                    {"reference", c.reference},
+                    {"tolerance", c.tolerance},
+                    {"unit", c.unit},
+                    {"passed", c.passed},
+                    {"source", c.source}});
   return Json{{"cases", std::move(rows)}};
 }
 
 int run(const ValidateArguments& a) {
   if (a.list) {
     for (const ValidationScene& scene : validation_scenes())
-      std::printf("%-28s %s%s\n", std::string(scene.name).c_str(), std::string(scene.title).c_str(), scene.slow ? " (slow)" : "");
+      std::printf("%-28s %s%s\n", std::string(scene.name).c_str(), std::string(scene.title).c_str(),
+                  scene.slow ? " (slow)" : "");
     return 0;
   }
   const ThreadLimit limit(a.threads);
-  std::printf("%-26s %-44s %12s %12s %10s %-8s verdict\n", "scene", "quantity", "value", "reference", "tolerance", "unit");
+  std::printf("%-26s %-44s %12s %12s %10s %-8s verdict\n", "scene", "quantity", "value", "reference", "tolerance",
+              "unit");
   const auto cases = run_validation(a.only, [](const ValidationScene& scene) {
     std::fprintf(stderr, "running %s\n", std::string(scene.name).c_str());
   });
   int failed = 0;
   for (const ValidationCase& c : cases) {
-    std::printf("%-26s %-44s %12.6g %12.6g %10.3g %-8s %s\n", c.name.c_str(), c.what.c_str(), c.value, c.reference, c.tolerance, c.unit.c_str(),
-                c.passed ? "ok" : "FAILED");
+    std::printf("%-26s %-44s %12.6g %12.6g %10.3g %-8s %s\n", c.name.c_str(), c.what.c_str(), c.value, c.reference,
+                c.tolerance, c.unit.c_str(), c.passed ? "ok" : "FAILED");
     failed += !c.passed;
   }
   if (cases.empty()) {

@@ -1,5 +1,5 @@
-// Bytes from outside. ByteReader checks every length before it believes it; after the first fault every read gives zero and
-// ok() stays false, so that a parser can run through and look once. Little-endian unless the name says otherwise.
+// Bytes from outside. ByteReader checks every length before it believes it; after the first fault every read gives zero
+// and ok() stays false, so that a parser can run through and look once. Little-endian unless the name says otherwise.
 #pragma once
 
 #include <bit>
@@ -30,8 +30,7 @@ class ByteReader {
   void seek(std::size_t position) { position <= data_.size() ? void(position_ = position) : fail(); }
 
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  T read() {
+  requires std::is_trivially_copyable_v<T> T read() {
     T value{};
     if (!ok_ || remaining() < sizeof(T)) {
       fail();
@@ -44,8 +43,7 @@ class ByteReader {
 
   /// count values; refused (empty, fault) when fewer bytes remain, before anything is allocated.
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  std::vector<T> read_array(std::uint64_t count) {
+  requires std::is_trivially_copyable_v<T> std::vector<T> read_array(std::uint64_t count) {
     if (!ok_ || count > remaining() / sizeof(T)) {
       fail();
       return {};
@@ -87,13 +85,9 @@ class ByteReader {
 class ByteWriter {
  public:
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  ByteWriter& write(const T& value) {
-    return write_raw(&value, sizeof(T));
-  }
+  requires std::is_trivially_copyable_v<T> ByteWriter& write(const T& value) { return write_raw(&value, sizeof(T)); }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  ByteWriter& write_array(std::span<const T> values) {
+  requires std::is_trivially_copyable_v<T> ByteWriter& write_array(std::span<const T> values) {
     return write_raw(values.data(), values.size_bytes());
   }
   ByteWriter& write_string(std::string_view s) {

@@ -1,5 +1,5 @@
-// How far a cloth's edges are stretched against their rest length: what the certificate, `check` and the preview's colours all
-// mean by strain. Edges without a rest length have no strain and are left out.
+// How far a cloth's edges are stretched against their rest length: what the certificate, `check` and the preview's
+// colours all mean by strain. Edges without a rest length have no strain and are left out.
 #pragma once
 
 #include <span>

@@ -11,7 +11,9 @@
 namespace ft {
 namespace {
 
-std::string reason(int error) { return std::strerror(error); }
+std::string reason(int error) {
+  return std::strerror(error);
+}
 
 Error write_fault(const std::filesystem::path& path, const char* what, int error) {
   std::string hint;

@@ -19,7 +19,8 @@ inline constexpr std::uint64_t k_max_file_bytes = std::uint64_t{4} << 30;
 Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t max_bytes = k_max_file_bytes);
 Result<std::string> read_text(const std::filesystem::path& path, std::uint64_t max_bytes = k_max_file_bytes);
 
-/// Writes path.tmp, syncs it, renames it over path, syncs the folder: after a crash there is the old file or the new one.
+/// Writes path.tmp, syncs it, renames it over path, syncs the folder: after a crash there is the old file or the new
+/// one.
 Status write_file_durably(const std::filesystem::path& path, std::span<const std::byte> data);
 Status write_text_durably(const std::filesystem::path& path, std::string_view text);
 

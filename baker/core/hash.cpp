@@ -18,7 +18,9 @@ std::string Hash128::hex() const {
   return out;
 }
 
-Hasher::Hasher() : impl_(new Impl) { XXH3_128bits_reset(impl_->state); }
+Hasher::Hasher() : impl_(new Impl) {
+  XXH3_128bits_reset(impl_->state);
+}
 Hasher::~Hasher() = default;
 
 Hasher& Hasher::bytes(const void* data, std::size_t size) {
@@ -41,6 +43,8 @@ Hash128 hash_bytes(std::span<const std::byte> data) {
   return {h.low64, h.high64};
 }
 
-Hash128 hash_text(std::string_view text) { return hash_bytes(std::as_bytes(std::span(text.data(), text.size()))); }
+Hash128 hash_text(std::string_view text) {
+  return hash_bytes(std::as_bytes(std::span(text.data(), text.size())));
+}
 
 }  // namespace ft

@@ -28,10 +28,7 @@ class Hasher {
   /// Length first, then the characters, so that ("ab","c") differs from ("a","bc").
   Hasher& text(std::string_view s);
   template <class T>
-    requires std::is_arithmetic_v<T>
-  Hasher& number(T value) {
-    return bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T> Hasher& number(T value) { return bytes(&value, sizeof value); }
   Hash128 digest() const;
 
  private:

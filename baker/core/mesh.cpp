@@ -78,6 +78,8 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> positions, std::span<cons
   return normals;
 }
 
-double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); }
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
 
 }  // namespace ft

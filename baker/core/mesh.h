@@ -36,7 +36,7 @@ struct Mesh {
   std::vector<Vec2> uvs;           ///< pattern coordinates; empty when the file has none
   std::vector<int> face_uvs;       ///< as face_vertices, into uvs; empty when uvs is
   std::vector<VertexGroup> groups;
-  std::vector<Stitch> stitches;    ///< what closes panels into a garment; in the file's order
+  std::vector<Stitch> stitches;  ///< what closes panels into a garment; in the file's order
 
   int vertex_count() const { return static_cast<int>(positions.size()); }
   int face_count() const { return static_cast<int>(face_sizes.size()); }
@@ -45,7 +45,8 @@ struct Mesh {
 /// Mesh of triangles.
 Mesh make_triangle_mesh(std::string name, std::vector<Vec3> positions, std::span<const Triangle> triangles);
 
-/// Splits faces by the shorter diagonal (quads) or as a fan from the first corner (more corners); triangles in face order.
+/// Splits faces by the shorter diagonal (quads) or as a fan from the first corner (more corners); triangles in face
+/// order.
 std::vector<Triangle> triangulate(const Mesh& mesh);
 
 /// Unique edges, sorted.

@@ -26,14 +26,16 @@ class ThreadLimit {
 /// Number of threads that loops may use now.
 int thread_count();
 
-inline std::size_t block_count(std::size_t count, std::size_t block_size) { return (count + block_size - 1) / block_size; }
+inline std::size_t block_count(std::size_t count, std::size_t block_size) {
+  return (count + block_size - 1) / block_size;
+}
 
 namespace detail {
 void run_blocks(std::size_t blocks, const std::function<void(std::size_t)>& body);
 }
 
-/// Calls body(begin, end) for consecutive ranges of block_size (the last may be shorter). Blocks may run in any order and at
-/// the same time: body writes only what belongs to its range.
+/// Calls body(begin, end) for consecutive ranges of block_size (the last may be shorter). Blocks may run in any order
+/// and at the same time: body writes only what belongs to its range.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t block_size, Body&& body) {
   const std::size_t blocks = block_count(count, block_size);
@@ -47,14 +49,16 @@ void parallel_for(std::size_t count, std::size_t block_size, Body&& body) {
   });
 }
 
-/// Sum over blocks: partial = body(begin, end) per block, partials added in block order. The same bits for any thread count.
+/// Sum over blocks: partial = body(begin, end) per block, partials added in block order. The same bits for any thread
+/// count.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t block_size, T zero, Body&& body) {
   const std::size_t blocks = block_count(count, block_size);
   if (blocks == 0) return zero;
   if (blocks == 1) return zero + body(std::size_t{0}, count);
   std::vector<T> partial(blocks, zero);
-  parallel_for(count, block_size, [&](std::size_t begin, std::size_t end) { partial[begin / block_size] = body(begin, end); });
+  parallel_for(count, block_size,
+               [&](std::size_t begin, std::size_t end) { partial[begin / block_size] = body(begin, end); });
   T total = zero;
   for (const T& p : partial) total = total + p;
   return total;

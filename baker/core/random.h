@@ -1,5 +1,5 @@
-// Random numbers without a hidden state: a value is a function of (seed, system, frame, element, draw). SplitMix64 finaliser
-// (Steele, Lea, Flood 2014) over the mixed keys.
+// Random numbers without a hidden state: a value is a function of (seed, system, frame, element, draw). SplitMix64
+// finaliser (Steele, Lea, Flood 2014) over the mixed keys.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Result<T>: a value or an Error that says what, where, and what to try. Used wherever files, text, disk or the importer
-// can fail. Nothing throws across a module boundary.
+// Result<T>: a value or an Error that says what, where, and what to try. Used wherever files, text, disk or the
+// importer can fail. Nothing throws across a module boundary.
 #pragma once
 
 #include <optional>

@@ -33,7 +33,9 @@ const std::vector<double>* State::find(std::string_view name) const {
   return nullptr;
 }
 
-Hash128 hash(const State& state) { return hash_bytes(save_content(state)); }
+Hash128 hash(const State& state) {
+  return hash_bytes(save_content(state));
+}
 
 Bytes save(const State& state) {
   Bytes content = save_content(state);

@@ -21,8 +21,8 @@ struct StateBlock {
 };
 
 struct State {
-  int frame = 0;      ///< frame of the shot that this state belongs to; pre-roll frames are below the first
-  double time = 0;    ///< s from the first frame of the shot
+  int frame = 0;    ///< frame of the shot that this state belongs to; pre-roll frames are below the first
+  double time = 0;  ///< s from the first frame of the shot
   std::vector<StateBlock> blocks;
 
   /// The block of that name; made (empty) when missing.

@@ -1,5 +1,6 @@
-// The primary, as everybody else sees it: one closed (or nearly closed) triangle surface with constant topology and a position
-// for every vertex at every time of the shot. Positions are metres, Y-up, world space. Thread-safe: sampling changes nothing.
+// The primary, as everybody else sees it: one closed (or nearly closed) triangle surface with constant topology and a
+// position for every vertex at every time of the shot. Positions are metres, Y-up, world space. Thread-safe: sampling
+// changes nothing.
 #pragma once
 
 #include <span>
@@ -15,20 +16,20 @@ namespace ft {
 /// makes a collider infeasible, see collision/feasible_collider.h.
 struct SurfacePart {
   std::string name;
-  int parent = -1;    ///< part it is jointed to, -1 for the root
-  double size = 0;    ///< volume or area measure [m3]; the larger part wins where two overlap
+  int parent = -1;  ///< part it is jointed to, -1 for the root
+  double size = 0;  ///< volume or area measure [m3]; the larger part wins where two overlap
 };
 
 struct Surface {
   std::vector<Triangle> triangles;
-  std::vector<int> part_of_vertex;     ///< one per vertex, into parts
-  std::vector<SurfacePart> parts;      ///< at least one
+  std::vector<int> part_of_vertex;  ///< one per vertex, into parts
+  std::vector<SurfacePart> parts;   ///< at least one
   int vertex_count() const { return static_cast<int>(part_of_vertex.size()); }
 };
 
-/// Times are seconds from the first frame of the shot. t < 0 is the pre-roll: at t <= -preroll the bind pose, placed where the
-/// first frame has the character (position and heading), from there blended into the pose at t = 0. A character that enters the
-/// shot at speed starts further back and picks the speed up towards t = 0.
+/// Times are seconds from the first frame of the shot. t < 0 is the pre-roll: at t <= -preroll the bind pose, placed
+/// where the first frame has the character (position and heading), from there blended into the pose at t = 0. A
+/// character that enters the shot at speed starts further back and picks the speed up towards t = 0.
 class Trajectory {
  public:
   virtual ~Trajectory() = default;

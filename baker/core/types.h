@@ -23,7 +23,9 @@ using Triangle = std::array<int, 3>;
 using Edge = std::array<int, 2>;  ///< always (smaller, larger)
 
 /// Indices are int in data and std::size_t in containers; this is the step between. i >= 0.
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// Standard gravity [m/s2]; the world is Y-up inside the program.
 inline constexpr double k_gravity = 9.80665;

@@ -1,8 +1,8 @@
 #include "baker/preview/embedded.h"
 
-#define FT_EMBEDDED(name)                                                           \
-  extern "C" const char ft_embedded_##name[], ft_embedded_##name##_end[];           \
-  std::string_view ft::embedded_##name() {                                          \
+#define FT_EMBEDDED(name)                                                                                 \
+  extern "C" const char ft_embedded_##name[], ft_embedded_##name##_end[];                                 \
+  std::string_view ft::embedded_##name() {                                                                \
     return {ft_embedded_##name, static_cast<std::size_t>(ft_embedded_##name##_end - ft_embedded_##name)}; \
   }
 

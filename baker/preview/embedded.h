@@ -1,5 +1,5 @@
-// Files that are part of the program: the preview's page, and three.js with its orbit controls (MIT, Debian's libjs-three).
-// embedded.S includes their bytes.
+// Files that are part of the program: the preview's page, and three.js with its orbit controls (MIT, Debian's
+// libjs-three). embedded.S includes their bytes.
 #pragma once
 
 #include <string_view>

@@ -9,23 +9,18 @@ std::size_t pod_size(Pod pod) {
   switch (pod) {
     case Pod::k_bool:
     case Pod::k_u8:
-    case Pod::k_i8:
-      return 1;
+    case Pod::k_i8: return 1;
     case Pod::k_u16:
     case Pod::k_i16:
-    case Pod::k_f16:
-      return 2;
+    case Pod::k_f16: return 2;
     case Pod::k_u32:
     case Pod::k_i32:
-    case Pod::k_f32:
-      return 4;
+    case Pod::k_f32: return 4;
     case Pod::k_u64:
     case Pod::k_i64:
-    case Pod::k_f64:
-      return 8;
+    case Pod::k_f64: return 8;
     case Pod::k_string:
-    case Pod::k_wstring:
-      return 0;
+    case Pod::k_wstring: return 0;
   }
   return 0;
 }

@@ -19,18 +19,12 @@ Eigen::Affine3d matrix_of(int operation, const double* v) {
     return Eigen::Affine3d(Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180, axis / length));
   };
   switch (operation) {
-    case k_scale:
-      return Eigen::Affine3d(Eigen::Scaling(v[0], v[1], v[2]));
-    case k_translate:
-      return Eigen::Affine3d(Eigen::Translation3d(v[0], v[1], v[2]));
-    case k_rotate:
-      return rotation({v[0], v[1], v[2]}, v[3]);
-    case k_rotate_x:
-      return rotation(Vec3::UnitX(), v[0]);
-    case k_rotate_y:
-      return rotation(Vec3::UnitY(), v[0]);
-    case k_rotate_z:
-      return rotation(Vec3::UnitZ(), v[0]);
+    case k_scale: return Eigen::Affine3d(Eigen::Scaling(v[0], v[1], v[2]));
+    case k_translate: return Eigen::Affine3d(Eigen::Translation3d(v[0], v[1], v[2]));
+    case k_rotate: return rotation({v[0], v[1], v[2]}, v[3]);
+    case k_rotate_x: return rotation(Vec3::UnitX(), v[0]);
+    case k_rotate_y: return rotation(Vec3::UnitY(), v[0]);
+    case k_rotate_z: return rotation(Vec3::UnitZ(), v[0]);
     default: {
       Eigen::Affine3d m = Eigen::Affine3d::Identity();
       for (int row = 0; row < 3; ++row)

@@ -1,6 +1,7 @@
-// Clips: assimp's channels, in ticks, become tracks in seconds. An FBX pivot chain is sampled at all its keys and becomes one
-// channel; and when a channel carries exactly the node's name while none carries a pivot's, it already holds the whole
-// transform, and the pivots are left out (else the hips stand twice as high: the rule was measured on 421 files).
+// Clips: assimp's channels, in ticks, become tracks in seconds. An FBX pivot chain is sampled at all its keys and
+// becomes one channel; and when a channel carries exactly the node's name while none carries a pivot's, it already
+// holds the whole transform, and the pivots are left out (else the hips stand twice as high: the rule was measured on
+// 421 files).
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -13,8 +14,12 @@
 namespace ft {
 namespace {
 
-double number(float x) { return static_cast<double>(x); }
-void append(std::vector<double>& out, const aiVector3D& v) { out.insert(out.end(), {number(v.x), number(v.y), number(v.z)}); }
+double number(float x) {
+  return static_cast<double>(x);
+}
+void append(std::vector<double>& out, const aiVector3D& v) {
+  out.insert(out.end(), {number(v.x), number(v.y), number(v.z)});
+}
 void append(std::vector<double>& out, const aiQuaternion& q) {
   out.insert(out.end(), {number(q.x), number(q.y), number(q.z), number(q.w)});
 }
@@ -54,7 +59,8 @@ Channel collapse(const std::vector<int>& chain, const AssimpNodes& nodes, const 
   std::vector<double> times;
   for (const int raw : chain) {
     const Channel& c = of_raw[static_cast<std::size_t>(raw)];
-    for (const Track* t : {&c.translation, &c.rotation, &c.scale}) times.insert(times.end(), t->times.begin(), t->times.end());
+    for (const Track* t : {&c.translation, &c.rotation, &c.scale})
+      times.insert(times.end(), t->times.begin(), t->times.end());
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -68,7 +74,8 @@ Channel collapse(const std::vector<int>& chain, const AssimpNodes& nodes, const 
       product = product * sample_node(of_raw[index], matrix(nodes.raw[index]->mTransformation), time);
     }
     if (!product.allFinite()) product.setConstant(std::numeric_limits<double>::quiet_NaN());  // refused by the check
-    const NodeTransform parts = product.allFinite() ? decompose(product) : NodeTransform{product.topRightCorner<3, 1>(), {}, {}};
+    const NodeTransform parts =
+        product.allFinite() ? decompose(product) : NodeTransform{product.topRightCorner<3, 1>(), {}, {}};
     for (int k = 0; k < 3; ++k) out.translation.values.push_back(parts.translation[k]);
     for (int k = 0; k < 4; ++k) out.rotation.values.push_back(parts.rotation.coeffs()[k]);
     for (int k = 0; k < 3; ++k) out.scale.values.push_back(parts.stretch(k, k));
@@ -77,11 +84,13 @@ Channel collapse(const std::vector<int>& chain, const AssimpNodes& nodes, const 
 }
 
 /// Morph weights: assimp names the channel "mesh*0" (FBX) or after the node (glTF, read by us instead).
-void read_morph_channel(const aiMeshMorphAnim& source, double seconds_per_tick, const Character& character, Clip& clip, int& dropped) {
+void read_morph_channel(const aiMeshMorphAnim& source, double seconds_per_tick, const Character& character, Clip& clip,
+                        int& dropped) {
   std::string name = source.mName.C_Str();
   if (const auto star = name.rfind('*'); star != std::string::npos) name.resize(star);
   for (const CharacterMesh& mesh : character.meshes) {
-    if (mesh.morphs.empty() || (mesh.name != name && character.nodes[static_cast<std::size_t>(mesh.node)].name != name)) continue;
+    if (mesh.morphs.empty() || (mesh.name != name && character.nodes[static_cast<std::size_t>(mesh.node)].name != name))
+      continue;
     Channel channel;
     channel.node = mesh.node;
     Track& track = channel.weights;
@@ -108,7 +117,8 @@ void read_morph_channel(const aiMeshMorphAnim& source, double seconds_per_tick, 
 
 void read_clips(const aiScene& scene, const AssimpNodes& nodes, Character& out) {
   std::unordered_map<std::string, int> raw_by_name;
-  for (std::size_t i = 0; i < nodes.raw.size(); ++i) raw_by_name.emplace(nodes.raw[i]->mName.C_Str(), static_cast<int>(i));
+  for (std::size_t i = 0; i < nodes.raw.size(); ++i)
+    raw_by_name.emplace(nodes.raw[i]->mName.C_Str(), static_cast<int>(i));
 
   int dropped = 0, unmatched = 0;
   for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
@@ -137,7 +147,8 @@ void read_clips(const aiScene& scene, const AssimpNodes& nodes, Character& out) 
       const auto moves = [&](int raw) { return of_raw[static_cast<std::size_t>(raw)].node >= 0; };
       if (std::none_of(chain.begin(), chain.end(), moves)) continue;
       const bool whole = std::none_of(chain.begin(), chain.end() - 1, moves);
-      Channel channel = whole ? std::move(of_raw[static_cast<std::size_t>(chain.back())]) : collapse(chain, nodes, of_raw);
+      Channel channel =
+          whole ? std::move(of_raw[static_cast<std::size_t>(chain.back())]) : collapse(chain, nodes, of_raw);
       channel.node = static_cast<int>(i);
       clip.channels.push_back(std::move(channel));
     }

@@ -1,6 +1,6 @@
 // Meshes: positions in the file's order, triangles, skin, morph targets. One CharacterMesh per use of a mesh by a node.
-// Traps met: weights that do not sum to 1 (0.185 to 1.755 in good files), zero weights kept by assimp, bones named twice,
-// and faces that are no triangles after Triangulate.
+// Traps met: weights that do not sum to 1 (0.185 to 1.755 in good files), zero weights kept by assimp, bones named
+// twice, and faces that are no triangles after Triangulate.
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -19,7 +19,9 @@ Mat4 matrix(const aiMatrix4x4& m) {
   return out;
 }
 
-Vec3 point(const aiVector3D& v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
+Vec3 point(const aiVector3D& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
 
 /// What was odd about weights, over all meshes.
 struct WeightNotes {
@@ -30,7 +32,8 @@ struct WeightNotes {
 using NodesByName = std::unordered_map<std::string, std::vector<int>>;
 
 /// Among nodes of one name, the one in whose bind pose the mesh is nearest to where its own node puts it.
-int find_bone(const aiBone& bone, const NodesByName& by_name, const std::vector<Mat4>& globals, int mesh_node, WeightNotes& notes) {
+int find_bone(const aiBone& bone, const NodesByName& by_name, const std::vector<Mat4>& globals, int mesh_node,
+              WeightNotes& notes) {
   const auto found = by_name.find(bone.mName.C_Str());
   if (found == by_name.end()) return -1;
   const std::vector<int>& candidates = found->second;
@@ -41,7 +44,9 @@ int find_bone(const aiBone& bone, const NodesByName& by_name, const std::vector<
   double least = std::numeric_limits<double>::infinity();
   for (const int node : candidates) {
     const double distance =
-        (globals[static_cast<std::size_t>(node)] * inverse_bind - globals[static_cast<std::size_t>(mesh_node)]).cwiseAbs().maxCoeff();
+        (globals[static_cast<std::size_t>(node)] * inverse_bind - globals[static_cast<std::size_t>(mesh_node)])
+            .cwiseAbs()
+            .maxCoeff();
     if (distance < least) least = distance, best = node;
   }
   return best;
@@ -111,14 +116,14 @@ CharacterMesh read_mesh(const aiMesh& mesh, int node, int& odd_faces) {
       ++odd_faces;
       continue;
     }
-    out.triangles.push_back({static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[1]), static_cast<int>(face.mIndices[2])});
+    out.triangles.push_back(
+        {static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[1]), static_cast<int>(face.mIndices[2])});
   }
   for (unsigned m = 0; m < mesh.mNumAnimMeshes; ++m) {
     const aiAnimMesh& target = *mesh.mAnimMeshes[m];
     MorphTarget morph{target.mName.C_Str(), std::vector<Vec3>(mesh.mNumVertices, Vec3::Zero())};
     if (target.mVertices != nullptr && target.mNumVertices == mesh.mNumVertices)
-      for (unsigned i = 0; i < mesh.mNumVertices; ++i)
-        morph.deltas[i] = point(target.mVertices[i]) - out.positions[i];
+      for (unsigned i = 0; i < mesh.mNumVertices; ++i) morph.deltas[i] = point(target.mVertices[i]) - out.positions[i];
     out.morphs.push_back(std::move(morph));
   }
   return out;
@@ -164,7 +169,8 @@ void read_meshes(const aiScene& scene, const AssimpNodes& nodes, Character& out)
   count(notes.lost, "bones have no node; their weights were dropped");
   count(notes.ambiguous, "bones have a name that several nodes carry; the node nearest to the bind pose was taken");
   count(odd_faces, "faces are no triangles; dropped");
-  if (vertices > k_max_character_vertices) out.notes.emplace_back("more than 20 million vertices; the rest was dropped");
+  if (vertices > k_max_character_vertices)
+    out.notes.emplace_back("more than 20 million vertices; the rest was dropped");
 }
 
 }  // namespace ft

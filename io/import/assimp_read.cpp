@@ -1,6 +1,6 @@
 // File -> Character through assimp: opening, units and axes, nodes. Meshes and clips are in the files beside this one.
-// assimp converts neither units nor axes of FBX; both are passed on as metadata (a float and five ints) and applied by us, in
-// double. Collada and glTF arrive as metres and Y-up. A BVH carries neither.
+// assimp converts neither units nor axes of FBX; both are passed on as metadata (a float and five ints) and applied by
+// us, in double. Collada and glTF arrive as metres and Y-up. A BVH carries neither.
 #include "io/import/assimp_read.h"
 
 #include <assimp/DefaultIOSystem.h>
@@ -90,7 +90,8 @@ Mat4 matrix(const aiMatrix4x4& m) {
 
 constexpr const char* k_pivot_mark = "_$AssimpFbx$_";
 
-/// Name of the node that a pivot node belongs to; empty when it is none. Geometric transforms stay nodes: they move the mesh only.
+/// Name of the node that a pivot node belongs to; empty when it is none. Geometric transforms stay nodes: they move the
+/// mesh only.
 std::string pivot_owner(const aiNode& node) {
   const std::string name = node.mName.C_Str();
   const auto at = name.find(k_pivot_mark);
@@ -125,7 +126,8 @@ AssimpNodes read_nodes(const aiScene& scene, Character& out) {
   }
 
   nodes.node_of_raw.assign(nodes.raw.size(), -1);
-  std::vector<int> pending;  // pivots met on the way down to their owner; raw order is depth first, so they are neighbours
+  std::vector<int>
+      pending;  // pivots met on the way down to their owner; raw order is depth first, so they are neighbours
   for (std::size_t i = 0; i < nodes.raw.size(); ++i) {
     const aiNode& raw = *nodes.raw[i];
     const std::string owner = pivot_owner(raw);
@@ -159,12 +161,15 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // drawings of the bones where a file has no mesh
-  // No joining of vertices (it ignores weights and morphs), no GlobalScale (float): welding and units are done here, in double.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
+                           true);  // drawings of the bones where a file has no mesh
+  // No joining of vertices (it ignores weights and morphs), no GlobalScale (float): welding and units are done here, in
+  // double.
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string reason = importer.GetErrorString();
-    if (reason.find("bad allocation") != std::string::npos) return input_error("needs more memory than the import may use");
+    if (reason.find("bad allocation") != std::string::npos)
+      return input_error("needs more memory than the import may use");
     return input_error("cannot be read: " + (reason.empty() ? std::string("no scene in it") : reason));
   }
 

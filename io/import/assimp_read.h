@@ -1,5 +1,5 @@
-// The door to assimp: a file becomes a Character. Runs in the importing child process only, because a bad file can corrupt
-// memory (measured with 5.2.5: 1 of 1,501 known-bad files). The types of assimp stop at assimp_*.cpp.
+// The door to assimp: a file becomes a Character. Runs in the importing child process only, because a bad file can
+// corrupt memory (measured with 5.2.5: 1 of 1,501 known-bad files). The types of assimp stop at assimp_*.cpp.
 #pragma once
 
 #include <filesystem>

@@ -18,7 +18,8 @@ bool invertible(const Mat4& m) {
 double distance(const Mat4& a, const Mat4& b, const Box& box) {
   double most = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 p(corner & 1 ? box.lo.x() : box.hi.x(), corner & 2 ? box.lo.y() : box.hi.y(), corner & 4 ? box.lo.z() : box.hi.z());
+    const Vec3 p(corner & 1 ? box.lo.x() : box.hi.x(), corner & 2 ? box.lo.y() : box.hi.y(),
+                 corner & 4 ? box.lo.z() : box.hi.z());
     most = std::max(most, ((a - b) * p.homogeneous()).head<3>().norm());
   }
   return most;
@@ -26,10 +27,10 @@ double distance(const Mat4& a, const Mat4& b, const Box& box) {
 
 /// For each bone with a weight: where rest puts mesh space, global * inverse bind.
 struct SkinAtRest {
-  std::vector<int> bones;    // into mesh.bones, those with weights, parents first
+  std::vector<int> bones;  // into mesh.bones, those with weights, parents first
   std::vector<Mat4> mesh_to_world;
   Box box;
-  double tolerance = 0;      // file units
+  double tolerance = 0;  // file units
 };
 
 SkinAtRest skin_at_rest(const CharacterMesh& mesh, const std::vector<Mat4>& globals) {
@@ -107,7 +108,8 @@ int find_pelvis(const Character& character, const std::vector<int>& meshes) {
   for (const int m : meshes) {
     const CharacterMesh& mesh = character.meshes[static_cast<std::size_t>(m)];
     if (mesh.bones.empty()) carries[static_cast<std::size_t>(mesh.node)] = 1;
-    for (const int b : mesh.influence_bone) carries[static_cast<std::size_t>(mesh.bones[static_cast<std::size_t>(b)].node)] = 1;
+    for (const int b : mesh.influence_bone)
+      carries[static_cast<std::size_t>(mesh.bones[static_cast<std::size_t>(b)].node)] = 1;
   }
   int common = -1;
   for (int i = 0; i < static_cast<int>(carries.size()); ++i) {

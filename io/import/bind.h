@@ -1,5 +1,6 @@
-// The pose that garments are modelled on. A file's nodes may rest anywhere (often in the first frame of some clip); what the
-// mesh was bound to is in the inverse bind matrices. Also: which node is the pelvis, whose place and heading are the character's.
+// The pose that garments are modelled on. A file's nodes may rest anywhere (often in the first frame of some clip);
+// what the mesh was bound to is in the inverse bind matrices. Also: which node is the pelvis, whose place and heading
+// are the character's.
 #pragma once
 
 #include <vector>

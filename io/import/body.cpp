@@ -1,6 +1,6 @@
-// Builds the body: capsules on the bones, blended by a smooth union (log-sum-exp), polygonised, relaxed to even triangles, and
-// skinned by letting "nearest bone" diffuse over the surface - along the skin, so that nothing leaks from leg to leg or from arm to
-// side through the air.
+// Builds the body: capsules on the bones, blended by a smooth union (log-sum-exp), polygonised, relaxed to even
+// triangles, and skinned by letting "nearest bone" diffuse over the surface - along the skin, so that nothing leaks
+// from leg to leg or from arm to side through the air.
 #include "io/import/body.h"
 
 #include <Eigen/LU>
@@ -15,10 +15,10 @@
 namespace ft {
 namespace {
 
-constexpr double k_spacing = 0.0100;      ///< grid, share of the height: 16 mm on an adult
-constexpr double k_blend = 0.007;         ///< width of the smooth union, share of the height
+constexpr double k_spacing = 0.0100;  ///< grid, share of the height: 16 mm on an adult
+constexpr double k_blend = 0.007;     ///< width of the smooth union, share of the height
 constexpr int k_relaxations = 12;
-constexpr int k_diffusions = 18;          ///< spreads weights over about 4 cm to each side of a joint
+constexpr int k_diffusions = 18;  ///< spreads weights over about 4 cm to each side of a joint
 constexpr std::size_t k_most_influences = 6;
 
 /// Bones whose term in the field can matter within `reach` of a point.
@@ -40,7 +40,8 @@ double field(const std::vector<BodyBone>& bones, const Vec3& p) {
 Vec3 gradient(const std::vector<BodyBone>& bones, const Vec3& p) {
   constexpr double e = 1e-4;
   Vec3 g;
-  for (int k = 0; k < 3; ++k) g[k] = (field(bones, p + e * Vec3::Unit(k)) - field(bones, p - e * Vec3::Unit(k))) / (2 * e);
+  for (int k = 0; k < 3; ++k)
+    g[k] = (field(bones, p + e * Vec3::Unit(k)) - field(bones, p - e * Vec3::Unit(k))) / (2 * e);
   return g;
 }
 
@@ -55,19 +56,23 @@ FieldGrid sample_field(const std::vector<BodyBone>& bones, double spacing) {
   FieldGrid grid;
   grid.origin = box.lo, grid.spacing = spacing;
   const Vec3 size = box.size() / spacing;
-  grid.nx = static_cast<int>(std::ceil(size.x())) + 1, grid.ny = static_cast<int>(std::ceil(size.y())) + 1, grid.nz = static_cast<int>(std::ceil(size.z())) + 1;
-  grid.values.assign(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny) * static_cast<std::size_t>(grid.nz), 0);
+  grid.nx = static_cast<int>(std::ceil(size.x())) + 1, grid.ny = static_cast<int>(std::ceil(size.y())) + 1,
+  grid.nz = static_cast<int>(std::ceil(size.z())) + 1;
+  grid.values.assign(
+      static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny) * static_cast<std::size_t>(grid.nz), 0);
   // Each bone adds its term near itself only; further out it would add less than exp(-8).
   for (const BodyBone& bone : bones) {
     const double reach = std::max(bone.radius_a, bone.radius_b) + 8 * k_blend;
-    const Vec3 lo = (bone.a.cwiseMin(bone.b).array() - reach - box.lo.array()) / spacing, hi = (bone.a.cwiseMax(bone.b).array() + reach - box.lo.array()) / spacing;
+    const Vec3 lo = (bone.a.cwiseMin(bone.b).array() - reach - box.lo.array()) / spacing,
+               hi = (bone.a.cwiseMax(bone.b).array() + reach - box.lo.array()) / spacing;
     const auto first = [&](int k) { return std::max(0, static_cast<int>(std::floor(lo[k]))); };
     const int ends[3] = {grid.nx, grid.ny, grid.nz};
     const auto last = [&](int k) { return std::min(ends[k] - 1, static_cast<int>(std::ceil(hi[k]))); };
     for (int z = first(2); z <= last(2); ++z)
       for (int y = first(1); y <= last(1); ++y)
         for (int x = first(0); x <= last(0); ++x)
-          if (const double d = capsule_distance(bone, grid.point(x, y, z)); d < 8 * k_blend) grid.values[grid.index(x, y, z)] += std::exp(-d / k_blend);
+          if (const double d = capsule_distance(bone, grid.point(x, y, z)); d < 8 * k_blend)
+            grid.values[grid.index(x, y, z)] += std::exp(-d / k_blend);
   }
   for (double& v : grid.values) v = v > 0 ? -k_blend * std::log(v) : 8 * k_blend;
   return grid;
@@ -88,7 +93,8 @@ std::vector<std::vector<int>> neighbours(std::size_t count, const std::vector<st
 }
 
 /// Moves vertices along the surface towards their neighbours' middle, and back onto the surface.
-void relax(const std::vector<BodyBone>& bones, const std::vector<std::vector<int>>& around, std::vector<Vec3>& positions) {
+void relax(const std::vector<BodyBone>& bones, const std::vector<std::vector<int>>& around,
+           std::vector<Vec3>& positions) {
   std::vector<Vec3> next(positions.size());
   std::vector<std::vector<BodyBone>> near(positions.size());  // vertices wander by less than three cells
   parallel_for(positions.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -136,8 +142,9 @@ std::vector<Triangle> split(const std::vector<std::array<int, 4>>& quads, const 
 }
 
 /// Weights of bones on vertices: all on the nearest, then spread over the surface.
-void skin_by_diffusion(const std::vector<BodyBone>& bones, const std::vector<std::vector<int>>& around, const std::vector<Vec3>& positions,
-                       const std::vector<int>& column_of_bone, int columns, CharacterMesh& mesh) {
+void skin_by_diffusion(const std::vector<BodyBone>& bones, const std::vector<std::vector<int>>& around,
+                       const std::vector<Vec3>& positions, const std::vector<int>& column_of_bone, int columns,
+                       CharacterMesh& mesh) {
   const auto width = static_cast<std::size_t>(columns);
   std::vector<float> weights(positions.size() * width, 0), next(weights.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -224,7 +231,8 @@ void add_capsule(const BodyBone& bone, int column, CharacterMesh& mesh) {
     const double r = lower ? bone.radius_a : bone.radius_b;
     for (int k = 0; k < k_around; ++k) {
       const double turn = 2 * M_PI * k / k_around;
-      mesh.positions.push_back((lower ? bone.a : bone.b) + r * std::sin(angle) * axis + r * std::cos(angle) * (std::cos(turn) * u + std::sin(turn) * v));
+      mesh.positions.push_back((lower ? bone.a : bone.b) + r * std::sin(angle) * axis +
+                               r * std::cos(angle) * (std::cos(turn) * u + std::sin(turn) * v));
     }
   }
   const int last = static_cast<int>(mesh.positions.size());
@@ -264,10 +272,13 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
   CharacterMesh mesh;
   mesh.name = "body";
   mesh.node = static_cast<int>(character.nodes.size());
-  if (Status s = style == "capsules" ? add_capsules(character, *frame, mesh) : add_blended(character, *frame, mesh); !s) return s;
+  if (Status s = style == "capsules" ? add_capsules(character, *frame, mesh) : add_blended(character, *frame, mesh); !s)
+    return s;
   const Mat3 back = axes.transpose() / frame->scale;
   for (Vec3& p : mesh.positions) p = back * p;
-  if (frame->arms_raised) character.notes.emplace_back("arms hang in the rest pose; the body, and what it wears, is modelled with arms raised");
+  if (frame->arms_raised)
+    character.notes.emplace_back(
+        "arms hang in the rest pose; the body, and what it wears, is modelled with arms raised");
   character.nodes.push_back({mesh.name, -1, Mat4::Identity(), {}});
   character.meshes.push_back(std::move(mesh));
   return {};

@@ -1,5 +1,5 @@
-// A body for motion that has none: a closed surface around a skeleton in its rest pose, skinned to the bones. Proportions are
-// fractions of the skeleton's height, by the names of the joints, so units do not matter.
+// A body for motion that has none: a closed surface around a skeleton in its rest pose, skinned to the bones.
+// Proportions are fractions of the skeleton's height, by the names of the joints, so units do not matter.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace ft {
 
-/// Adds one mesh. style: "blended" (one smooth closed surface) or "capsules" (one closed capsule per bone). axes takes the file's
-/// axes to Y-up.
+/// Adds one mesh. style: "blended" (one smooth closed surface) or "capsules" (one closed capsule per bone). axes takes
+/// the file's axes to Y-up.
 Status add_body(Character& character, const std::string& style, const Mat3& axes);
 
 }  // namespace ft

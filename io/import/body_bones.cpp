@@ -9,26 +9,45 @@
 namespace ft {
 namespace {
 
-enum class Limb { k_hips, k_torso, k_neck, k_head, k_hip_joint, k_thigh, k_shin, k_foot, k_toe, k_collar, k_upper_arm, k_forearm, k_hand, k_finger, k_other };
+enum class Limb {
+  k_hips,
+  k_torso,
+  k_neck,
+  k_head,
+  k_hip_joint,
+  k_thigh,
+  k_shin,
+  k_foot,
+  k_toe,
+  k_collar,
+  k_upper_arm,
+  k_forearm,
+  k_hand,
+  k_finger,
+  k_other
+};
 
 struct Word {
   const char* text;
   Limb limb;
 };
 /// First match wins; "upleg" stands before "leg", "forearm" before "arm".
+// clang-format off
 constexpr Word k_words[] = {
-    {"hipjoint", Limb::k_hip_joint}, {"upleg", Limb::k_thigh},  {"upperleg", Limb::k_thigh}, {"thigh", Limb::k_thigh},
-    {"femur", Limb::k_thigh},        {"shin", Limb::k_shin},    {"knee", Limb::k_shin},      {"calf", Limb::k_shin},
-    {"lowleg", Limb::k_shin},        {"lowerleg", Limb::k_shin}, {"tibia", Limb::k_shin},    {"leg", Limb::k_shin},
-    {"toe", Limb::k_toe},            {"foot", Limb::k_foot},    {"ankle", Limb::k_foot},     {"thumb", Limb::k_finger},
-    {"finger", Limb::k_finger},      {"index", Limb::k_finger}, {"middle", Limb::k_finger},  {"ring", Limb::k_finger},
-    {"pinky", Limb::k_finger},       {"handend", Limb::k_finger}, {"hand", Limb::k_hand},    {"wrist", Limb::k_hand},
-    {"forearm", Limb::k_forearm},    {"lowerarm", Limb::k_forearm}, {"elbow", Limb::k_forearm}, {"radius", Limb::k_forearm},
-    {"collar", Limb::k_collar},      {"clavicle", Limb::k_collar}, {"uparm", Limb::k_upper_arm}, {"upperarm", Limb::k_upper_arm},
-    {"humerus", Limb::k_upper_arm},  {"shldr", Limb::k_upper_arm}, {"shoulder", Limb::k_collar}, {"arm", Limb::k_upper_arm},
-    {"head", Limb::k_head},          {"neck", Limb::k_neck},    {"spine", Limb::k_torso},    {"chest", Limb::k_torso},
-    {"back", Limb::k_torso},         {"abdomen", Limb::k_torso}, {"torso", Limb::k_torso},   {"thorax", Limb::k_torso},
-    {"hip", Limb::k_hips},           {"pelvis", Limb::k_hips},  {"root", Limb::k_hips}};
+    {"hipjoint", Limb::k_hip_joint}, {"upleg", Limb::k_thigh},       {"upperleg", Limb::k_thigh},    {"thigh", Limb::k_thigh},
+    {"femur", Limb::k_thigh},       {"shin", Limb::k_shin},         {"knee", Limb::k_shin},         {"calf", Limb::k_shin},
+    {"lowleg", Limb::k_shin},       {"lowerleg", Limb::k_shin},     {"tibia", Limb::k_shin},        {"leg", Limb::k_shin},
+    {"toe", Limb::k_toe},           {"foot", Limb::k_foot},         {"ankle", Limb::k_foot},        {"thumb", Limb::k_finger},
+    {"finger", Limb::k_finger},     {"index", Limb::k_finger},      {"middle", Limb::k_finger},     {"ring", Limb::k_finger},
+    {"pinky", Limb::k_finger},      {"handend", Limb::k_finger},    {"hand", Limb::k_hand},         {"wrist", Limb::k_hand},
+    {"forearm", Limb::k_forearm},   {"lowerarm", Limb::k_forearm},  {"elbow", Limb::k_forearm},     {"radius", Limb::k_forearm},
+    {"collar", Limb::k_collar},     {"clavicle", Limb::k_collar},   {"uparm", Limb::k_upper_arm},   {"upperarm", Limb::k_upper_arm},
+    {"humerus", Limb::k_upper_arm}, {"shldr", Limb::k_upper_arm},   {"shoulder", Limb::k_collar},   {"arm", Limb::k_upper_arm},
+    {"head", Limb::k_head},         {"neck", Limb::k_neck},         {"spine", Limb::k_torso},       {"chest", Limb::k_torso},
+    {"back", Limb::k_torso},        {"abdomen", Limb::k_torso},     {"torso", Limb::k_torso},       {"thorax", Limb::k_torso},
+    {"hip", Limb::k_hips},          {"pelvis", Limb::k_hips},       {"root", Limb::k_hips},
+};
+// clang-format on
 
 std::string lower(const std::string& text) {
   std::string out;
@@ -96,10 +115,12 @@ struct Landmarks {
   std::vector<int> thighs, arms;
   std::vector<int> spine;  ///< joints from the hips up to the chest
   Vec3 side = Vec3::UnitX(), forward = Vec3::UnitZ();
-  bool complete = false;   ///< two thighs and two arms
+  bool complete = false;  ///< two thighs and two arms
 };
 
-bool is_end(const Character& character, std::size_t joint) { return character.nodes[joint].name.starts_with("EndSite"); }
+bool is_end(const Character& character, std::size_t joint) {
+  return character.nodes[joint].name.starts_with("EndSite");
+}
 
 Landmarks find_landmarks(const Character& character, const BodyFrame& frame, const std::vector<Limb>& limb) {
   Landmarks out;
@@ -165,8 +186,7 @@ class FleshBuilder {
       case Limb::k_hip_joint:
         if (!marks_.complete) add(joint, a, b, r.at_joint, r.at_end);
         return;  // else the torso is built as one
-      case Limb::k_collar:
-        return add_collar(joint, a, b);
+      case Limb::k_collar: return add_collar(joint, a, b);
       case Limb::k_thigh:
         if (marks_.complete) {  // narrow hips: the legs stay apart below the crotch
           const Vec3 centre = middle(marks_.thighs);
@@ -182,8 +202,7 @@ class FleshBuilder {
       case Limb::k_foot:  // heel
         add(joint, a, a - 0.018 * marks_.forward - Vec3(0, 0.008, 0), 0.024, 0.022);
         break;
-      default:
-        break;
+      default: break;
     }
     add(joint, a, b, r.at_joint, r.at_end);
   }
@@ -194,10 +213,11 @@ class FleshBuilder {
     add(joint, shoulders + 0.25 * (b - shoulders) + Vec3(0, 0.010, 0), b, 0.034, 0.034);
   }
 
-  /// Two lobes side by side from the hip joints to the shoulders, with the bones of the spine each moving its own height; the hips
-  /// between and behind the hip joints.
+  /// Two lobes side by side from the hip joints to the shoulders, with the bones of the spine each moving its own
+  /// height; the hips between and behind the hip joints.
   void add_torso() {
-    const Vec3 low = middle(marks_.thighs) - 0.010 * marks_.forward, high = middle(marks_.arms) + 0.012 * marks_.forward;
+    const Vec3 low = middle(marks_.thighs) - 0.010 * marks_.forward,
+               high = middle(marks_.arms) + 0.012 * marks_.forward;
     const auto lobe = [&](const Section& s, double sign) -> Vec3 {
       return low + s.at * (high - low) + sign * (s.breadth - s.depth) * marks_.side;
     };
@@ -227,7 +247,9 @@ class FleshBuilder {
     add(joint, a - 0.01 * up, a + 0.02 * up, 0.033, 0.036);
   }
 
-  void add(int node, const Vec3& a, const Vec3& b, double radius_a, double radius_b) { out_.push_back({node, a, b, radius_a, radius_b}); }
+  void add(int node, const Vec3& a, const Vec3& b, double radius_a, double radius_b) {
+    out_.push_back({node, a, b, radius_a, radius_b});
+  }
 
   const BodyFrame& frame_;
   std::vector<Limb> limb_;
@@ -245,7 +267,9 @@ void raise_arms(const Character& character, BodyFrame& frame) {
     Vec3 along = Vec3::Zero();
     for (const int elbow : below) along += frame.joints[static_cast<std::size_t>(elbow)] - shoulder;
     if (along.norm() < 1e-6 || along.normalized().y() > -0.7) continue;
-    const double sign = (shoulder - 0.5 * (frame.joints[static_cast<std::size_t>(marks.arms[0])] + frame.joints[static_cast<std::size_t>(marks.arms[1])])).dot(marks.side);
+    const double sign = (shoulder - 0.5 * (frame.joints[static_cast<std::size_t>(marks.arms[0])] +
+                                           frame.joints[static_cast<std::size_t>(marks.arms[1])]))
+                            .dot(marks.side);
     const Mat3 turn = Quat::FromTwoVectors(along, sign < 0 ? Vec3(-marks.side) : marks.side).toRotationMatrix();
     const Mat3 turn_in_file = frame.axes.transpose() * turn * frame.axes;
     const Vec3 pivot = frame.globals[static_cast<std::size_t>(arm)].topRightCorner<3, 1>();
@@ -277,17 +301,21 @@ Result<BodyFrame> body_frame(const Character& character, const Mat3& axes) {
     box.include(frame.joints.back());
   }
   for (std::size_t i = 0; i < character.nodes.size(); ++i)
-    if (const int parent = character.nodes[i].parent; parent >= 0) frame.children[static_cast<std::size_t>(parent)].push_back(static_cast<int>(i));
+    if (const int parent = character.nodes[i].parent; parent >= 0)
+      frame.children[static_cast<std::size_t>(parent)].push_back(static_cast<int>(i));
   const double height = box.size().y();
   if (!(height > 1e-9) || !(box.size().norm() < 20 * height))
-    return input_error("no body can be built: the skeleton has no height in its rest pose", "", "check up = ..., or use a file with a mesh");
+    return input_error("no body can be built: the skeleton has no height in its rest pose", "",
+                       "check up = ..., or use a file with a mesh");
   frame.scale = 1 / height;
   for (Vec3& p : frame.joints) p *= frame.scale;
   raise_arms(character, frame);
   return frame;
 }
 
-std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) { return FleshBuilder(character, frame).build(); }
+std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) {
+  return FleshBuilder(character, frame).build();
+}
 
 std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame) {
   const std::vector<Limb> limb = limbs(character, frame);

@@ -1,5 +1,6 @@
-// The flesh on a skeleton: tapered capsules by the names of the joints, in a frame where Y is up and the skeleton is 1 tall.
-// Proportions: half breadths and depths of an adult as shares of stature (Drillis and Contini 1966; ANSUR 1988 medians), rounded.
+// The flesh on a skeleton: tapered capsules by the names of the joints, in a frame where Y is up and the skeleton is 1
+// tall. Proportions: half breadths and depths of an adult as shares of stature (Drillis and Contini 1966; ANSUR 1988
+// medians), rounded.
 #pragma once
 
 #include <vector>
@@ -9,20 +10,20 @@
 namespace ft {
 
 struct BodyBone {
-  int node = -1;        ///< moves with it
-  Vec3 a, b;            ///< shares of the skeleton's height
+  int node = -1;  ///< moves with it
+  Vec3 a, b;      ///< shares of the skeleton's height
   double radius_a = 0, radius_b = 0;
 };
 
-/// Joints in the normal frame: position = scale * axes * global translation. The pose is the rest pose, with arms that hang
-/// beside the body raised to the side, so that hands do not grow together with thighs.
+/// Joints in the normal frame: position = scale * axes * global translation. The pose is the rest pose, with arms that
+/// hang beside the body raised to the side, so that hands do not grow together with thighs.
 struct BodyFrame {
   std::vector<Mat4> globals;  ///< of all nodes in that pose, file units and axes
   bool arms_raised = false;
   std::vector<Vec3> joints;
   std::vector<std::vector<int>> children;
   Mat3 axes = Mat3::Identity();
-  double scale = 1;     ///< 1 / (height in file units)
+  double scale = 1;  ///< 1 / (height in file units)
 };
 
 /// Fails when the skeleton has no height.

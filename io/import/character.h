@@ -1,5 +1,5 @@
-// Character: what a file holds, in neutral words, as it crosses from the importing child process to us. Units and axes are the
-// file's own; `file_unit` and `file_axes` say how they become metres and Y-up. Nothing in it is trusted before
+// Character: what a file holds, in neutral words, as it crosses from the importing child process to us. Units and axes
+// are the file's own; `file_unit` and `file_axes` say how they become metres and Y-up. Nothing in it is trusted before
 // check_character() has passed it: numbers finite, indices in range, parents before children, times ascending.
 #pragma once
 
@@ -24,7 +24,9 @@ struct Track {
   std::vector<double> times;   ///< s, strictly ascending
   std::vector<double> values;  ///< times * width (* 3 when cubic)
   bool empty() const { return times.empty(); }
-  std::size_t stride() const { return static_cast<std::size_t>(width) * (interpolation == Interpolation::k_cubic ? 3 : 1); }
+  std::size_t stride() const {
+    return static_cast<std::size_t>(width) * (interpolation == Interpolation::k_cubic ? 3 : 1);
+  }
 };
 
 /// What one clip does to one node; an empty track leaves the node's rest value.
@@ -64,10 +66,10 @@ struct CharacterMesh {
   int node = -1;
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  std::vector<SkinBone> bones;            ///< empty: rigid, follows `node`
-  std::vector<int> influence_start;       ///< vertex count + 1 rows; empty when bones is
-  std::vector<int> influence_bone;        ///< into bones
-  std::vector<double> influence_weight;   ///< a row sums to 1, or is empty: the vertex follows `node`
+  std::vector<SkinBone> bones;           ///< empty: rigid, follows `node`
+  std::vector<int> influence_start;      ///< vertex count + 1 rows; empty when bones is
+  std::vector<int> influence_bone;       ///< into bones
+  std::vector<double> influence_weight;  ///< a row sums to 1, or is empty: the vertex follows `node`
   std::vector<MorphTarget> morphs;
 };
 
@@ -78,10 +80,10 @@ struct Dependency {
 };
 
 struct Character {
-  std::string format;             ///< "glTF", "FBX", ...
-  double file_unit = 1;           ///< m per file unit, as the file says; 0 when the format carries none (BVH)
+  std::string format;                 ///< "glTF", "FBX", ...
+  double file_unit = 1;               ///< m per file unit, as the file says; 0 when the format carries none (BVH)
   Mat3 file_axes = Mat3::Identity();  ///< rotation from file axes to Y-up, as the file says
-  std::string file_up = "y";      ///< "y", "z", "x"; "" when the format carries none
+  std::string file_up = "y";          ///< "y", "z", "x"; "" when the format carries none
   std::vector<CharacterNode> nodes;
   std::vector<CharacterMesh> meshes;  ///< one per use of a mesh by a node
   std::vector<Clip> clips;

@@ -1,5 +1,5 @@
-// Character <-> bytes: magic, version, hash of the payload, payload. The import cache stores these files, and the importing
-// child process hands its result over in them.
+// Character <-> bytes: magic, version, hash of the payload, payload. The import cache stores these files, and the
+// importing child process hands its result over in them.
 #include "io/import/character.h"
 
 namespace ft {
@@ -129,7 +129,8 @@ Bytes save_character(const Character& character) {
     out.write(static_cast<std::uint64_t>(clip.channels.size()));
     for (const Channel& channel : clip.channels) {
       out.write(static_cast<std::int32_t>(channel.node));
-      for (const Track* t : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights}) put_track(out, *t);
+      for (const Track* t : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights})
+        put_track(out, *t);
     }
   }
   out.write(static_cast<std::uint64_t>(character.dependencies.size()));
@@ -140,7 +141,8 @@ Bytes save_character(const Character& character) {
   const Bytes payload = out.take();
   const Hash128 hash = hash_bytes(payload);
   ByteWriter file;
-  file.write(k_magic).write(k_version).write(hash.low).write(hash.high).write(static_cast<std::uint64_t>(payload.size()));
+  file.write(k_magic).write(k_version).write(hash.low).write(hash.high).write(
+      static_cast<std::uint64_t>(payload.size()));
   file.write_raw(payload.data(), payload.size());
   return file.take();
 }

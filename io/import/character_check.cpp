@@ -1,5 +1,5 @@
-// Looks at every number of an imported character once. It runs on what the child process wrote and on what the import cache
-// held, so it assumes nothing.
+// Looks at every number of an imported character once. It runs on what the child process wrote and on what the import
+// cache held, so it assumes nothing.
 #include <algorithm>
 #include <cmath>
 
@@ -11,16 +11,25 @@ namespace {
 /// Beyond this a coordinate is a fault of the file, and its square would leave float's range [file units].
 constexpr double k_max_coordinate = 1e9;
 
-bool usable(double x) { return std::isfinite(x) && std::abs(x) <= k_max_coordinate; }
-bool usable(const Vec3& p) { return usable(p.x()) && usable(p.y()) && usable(p.z()); }
-bool usable(const Mat4& m) { return m.allFinite() && m.cwiseAbs().maxCoeff() <= k_max_coordinate; }
+bool usable(double x) {
+  return std::isfinite(x) && std::abs(x) <= k_max_coordinate;
+}
+bool usable(const Vec3& p) {
+  return usable(p.x()) && usable(p.y()) && usable(p.z());
+}
+bool usable(const Mat4& m) {
+  return m.allFinite() && m.cwiseAbs().maxCoeff() <= k_max_coordinate;
+}
 
-Error fault(const std::string& where, const std::string& what) { return input_error(what, where); }
+Error fault(const std::string& where, const std::string& what) {
+  return input_error(what, where);
+}
 
 Status check_track(const Track& track, int width, const std::string& where) {
   if (track.empty() && track.values.empty()) return {};
   if (track.width <= 0 || (width > 0 && track.width != width)) return fault(where, "key values have the wrong width");
-  if (track.values.size() != track.times.size() * track.stride()) return fault(where, "key times and values do not match");
+  if (track.values.size() != track.times.size() * track.stride())
+    return fault(where, "key times and values do not match");
   if (track.interpolation > Interpolation::k_cubic) return fault(where, "interpolation is unknown");
   for (std::size_t i = 0; i < track.times.size(); ++i) {
     if (!usable(track.times[i])) return fault(where, "a key's time is not a finite number");
@@ -108,8 +117,10 @@ Status check_character(const Character& character) {
       if (channel.node < 0 || channel.node >= node_count) return fault(where, "a channel moves no node");
       const auto& name = character.nodes[static_cast<std::size_t>(channel.node)].name;
       const std::string here = where + ", node \"" + name + "\"";
-      for (const auto& [track, width] : {std::pair<const Track*, int>{&channel.translation, 3}, {&channel.rotation, 4},
-                                         {&channel.scale, 3}, {&channel.weights, 0}})
+      for (const auto& [track, width] : {std::pair<const Track*, int>{&channel.translation, 3},
+                                         {&channel.rotation, 4},
+                                         {&channel.scale, 3},
+                                         {&channel.weights, 0}})
         if (Status s = check_track(*track, width, here); !s) return s;
     }
   }

@@ -13,9 +13,13 @@ double heading(const Mat3& rotation) {
   return 2 * std::atan2(q.y(), q.w());
 }
 
-CharacterTrajectory::CharacterTrajectory(std::shared_ptr<const Character> character, const Clip* clip, Skin skin, BindPose bind,
-                                         int pelvis, const Mat4& placement, const Playback& playback)
-    : character_(std::move(character)), skin_(std::move(skin)), bind_(std::move(bind)), pose_(*character_, clip), placement_(placement),
+CharacterTrajectory::CharacterTrajectory(std::shared_ptr<const Character> character, const Clip* clip, Skin skin,
+                                         BindPose bind, int pelvis, const Mat4& placement, const Playback& playback)
+    : character_(std::move(character)),
+      skin_(std::move(skin)),
+      bind_(std::move(bind)),
+      pose_(*character_, clip),
+      placement_(placement),
       playback_(playback) {
   const auto& nodes = character_->nodes;
   std::vector<Mat4> locals(nodes.size()), globals(nodes.size());
@@ -25,7 +29,9 @@ CharacterTrajectory::CharacterTrajectory(std::shared_ptr<const Character> charac
 
   const auto p = static_cast<std::size_t>(pelvis);
   const NodeTransform from = decompose(placement_ * bind_.globals[p]), to = decompose(placement_ * globals[p]);
-  bind_to_start_.linear() = Eigen::AngleAxisd(heading((to.rotation * from.rotation.inverse()).toRotationMatrix()), Vec3::UnitY()).toRotationMatrix();
+  bind_to_start_.linear() =
+      Eigen::AngleAxisd(heading((to.rotation * from.rotation.inverse()).toRotationMatrix()), Vec3::UnitY())
+          .toRotationMatrix();
   bind_to_start_.translation() = to.translation - bind_to_start_.linear() * from.translation;
 
   std::vector<double> morphs(start_morphs_.size());

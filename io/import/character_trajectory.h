@@ -1,4 +1,5 @@
-// A character playing a clip, as a Trajectory: pose of the nodes at the shot's time, pre-roll blend from the bind pose, run-up, skin.
+// A character playing a clip, as a Trajectory: pose of the nodes at the shot's time, pre-roll blend from the bind pose,
+// run-up, skin.
 #pragma once
 
 #include <memory>
@@ -11,16 +12,17 @@
 namespace ft {
 
 struct Playback {
-  double start = 0;    ///< time in the file at the shot's first frame [s]
+  double start = 0;  ///< time in the file at the shot's first frame [s]
   double speed = 1;
   double preroll = 1;  ///< s
 };
 
 class CharacterTrajectory : public Trajectory {
  public:
-  /// placement takes file units and axes to metres and Y-up: unit * rotation. clip may be null: the rest pose stands still.
-  CharacterTrajectory(std::shared_ptr<const Character> character, const Clip* clip, Skin skin, BindPose bind, int pelvis,
-                      const Mat4& placement, const Playback& playback);
+  /// placement takes file units and axes to metres and Y-up: unit * rotation. clip may be null: the rest pose stands
+  /// still.
+  CharacterTrajectory(std::shared_ptr<const Character> character, const Clip* clip, Skin skin, BindPose bind,
+                      int pelvis, const Mat4& placement, const Playback& playback);
 
   const Surface& surface() const override { return skin_.surface; }
   void bind_pose(std::span<Vec3> positions) const override;
@@ -40,8 +42,8 @@ class CharacterTrajectory : public Trajectory {
   Mat4 placement_;
   Playback playback_;
   Eigen::Isometry3d bind_to_start_ = Eigen::Isometry3d::Identity();
-  // Both ends of the pre-roll. Nodes below the pelvis blend in their parent's space, the pelvis and all others in the world:
-  // turning a far-away root would swing the character through the set.
+  // Both ends of the pre-roll. Nodes below the pelvis blend in their parent's space, the pelvis and all others in the
+  // world: turning a far-away root would swing the character through the set.
   struct Blend {
     bool in_parent = false;
     NodeTransform from, to;

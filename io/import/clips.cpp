@@ -39,7 +39,8 @@ std::size_t letters_changed(const std::string& a, const std::string& b) {
 template <class Key>
 std::unordered_map<std::string, int> index_names(const Character& character, Key key) {
   std::unordered_map<std::string, int> out;
-  for (std::size_t i = 0; i < character.nodes.size(); ++i) out.emplace(key(character.nodes[i].name), static_cast<int>(i));
+  for (std::size_t i = 0; i < character.nodes.size(); ++i)
+    out.emplace(key(character.nodes[i].name), static_cast<int>(i));
   return out;
 }
 
@@ -64,20 +65,23 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
   for (const std::string& c : candidates) {
     const std::string a = lower(word), b = lower(c);
     std::size_t changed = letters_changed(a, b);
-    if (!a.empty() && (b.find(a) != std::string::npos || (!b.empty() && a.find(b) != std::string::npos))) changed = std::min<std::size_t>(changed, 1);
+    if (!a.empty() && (b.find(a) != std::string::npos || (!b.empty() && a.find(b) != std::string::npos)))
+      changed = std::min<std::size_t>(changed, 1);
     if (changed < least) least = changed, best = c;
   }
   return best;
 }
 
-Result<int> select_clip(const Character& character, const std::string& name, const std::string& file, std::vector<std::string>& notes) {
+Result<int> select_clip(const Character& character, const std::string& name, const std::string& file,
+                        std::vector<std::string>& notes) {
   if (name.empty()) {
     if (character.clips.empty()) {
       notes.emplace_back("has no clips: it stands still");
       return -1;
     }
     if (character.clips.size() > 1)
-      notes.push_back("has " + std::to_string(character.clips.size()) + " clips and none was asked for; \"" + character.clips.front().name + "\" is taken");
+      notes.push_back("has " + std::to_string(character.clips.size()) + " clips and none was asked for; \"" +
+                      character.clips.front().name + "\" is taken");
     return 0;
   }
   std::vector<std::string> names;
@@ -87,12 +91,13 @@ Result<int> select_clip(const Character& character, const std::string& name, con
   }
   if (names.empty()) return usage_error("clip \"" + name + "\" does not exist: the file has no clips", file, "");
   std::string hint = "there are: " + some_of(names, 60);
-  if (const std::string guess = nearest_name(name, names); !guess.empty()) hint = "did you mean \"" + guess + "\"? " + hint;
+  if (const std::string guess = nearest_name(name, names); !guess.empty())
+    hint = "did you mean \"" + guess + "\"? " + hint;
   return usage_error("clip \"" + name + "\" does not exist", file, hint);
 }
 
-Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target, const std::string& source_file,
-                                         std::vector<std::string>& notes) {
+Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
+                                         const std::string& source_file, std::vector<std::string>& notes) {
   const auto exact = index_names(target, [](const std::string& n) { return n; });
   const auto loose = index_names(target, bare);
   std::vector<int> to(source.nodes.size(), -1);
@@ -119,8 +124,8 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
       ++matched;
       channel.node = to[node];
       for (double& v : channel.translation.values) v *= scale;
-      if (!channel.weights.empty() &&
-          static_cast<std::size_t>(channel.weights.width) != target.nodes[static_cast<std::size_t>(channel.node)].morph_weights.size())
+      if (!channel.weights.empty() && static_cast<std::size_t>(channel.weights.width) !=
+                                          target.nodes[static_cast<std::size_t>(channel.node)].morph_weights.size())
         channel.weights = {};
       moved.channels.push_back(std::move(channel));
     }
@@ -128,23 +133,28 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
     out.push_back(std::move(moved));
   }
   if (source.clips.empty()) return input_error("has no animation", source_file);
-  if (matched == 0) return input_error("animates no node of the character: no name is in both files", source_file, "export both from the same skeleton");
+  if (matched == 0)
+    return input_error("animates no node of the character: no name is in both files", source_file,
+                       "export both from the same skeleton");
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < is_missing.size(); ++i)
     if (is_missing[i]) missing.push_back(source.nodes[i].name);
-  if (!missing.empty()) notes.push_back(std::to_string(missing.size()) + " animated nodes are not in the character: " + some_of(missing, 8));
+  if (!missing.empty())
+    notes.push_back(std::to_string(missing.size()) +
+                    " animated nodes are not in the character: " + some_of(missing, 8));
   return out;
 }
 
-Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps, const std::string& file) {
+Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps,
+                        const std::string& file) {
   if (clip.duration() <= 0) return {};
   const double frame = speed / fps;
   const double end = clip_start + duration * speed;
   if (clip_start >= -frame && end <= clip.duration() + frame * (1 + 1e-6)) return {};
   const double frames = clip.duration() / frame;
-  return usage_error("the shot plays " + seconds(clip_start) + " s to " + seconds(end) + " s of clip \"" + clip.name + "\", which is " +
-                         seconds(clip.duration()) + " s long (" + std::to_string(static_cast<long>(std::floor(frames + 1e-6)) + 1) +
-                         " frames of this shot)",
+  return usage_error("the shot plays " + seconds(clip_start) + " s to " + seconds(end) + " s of clip \"" + clip.name +
+                         "\", which is " + seconds(clip.duration()) + " s long (" +
+                         std::to_string(static_cast<long>(std::floor(frames + 1e-6)) + 1) + " frames of this shot)",
                      file, "bake fewer frames, or start earlier in the clip");
 }
 

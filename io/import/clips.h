@@ -8,17 +8,19 @@
 
 namespace ft {
 
-/// Index of the named clip; empty name: the first, with a note when there are several; -1 when there are none at all. An
-/// unknown name is an error that lists those that exist and the one that was probably meant.
-Result<int> select_clip(const Character& character, const std::string& name, const std::string& file, std::vector<std::string>& notes);
+/// Index of the named clip; empty name: the first, with a note when there are several; -1 when there are none at all.
+/// An unknown name is an error that lists those that exist and the one that was probably meant.
+Result<int> select_clip(const Character& character, const std::string& name, const std::string& file,
+                        std::vector<std::string>& notes);
 
-/// Takes the clips of `source` (a file with the motion only) for `target`, node by name; lengths change from source's unit to
-/// target's. Nodes that are missing here are noted; no match at all is an error.
-Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target, const std::string& source_file,
-                                         std::vector<std::string>& notes);
+/// Takes the clips of `source` (a file with the motion only) for `target`, node by name; lengths change from source's
+/// unit to target's. Nodes that are missing here are noted; no match at all is an error.
+Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
+                                         const std::string& source_file, std::vector<std::string>& notes);
 
 /// Refuses a shot that leaves the clip by more than a frame.
-Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps, const std::string& file);
+Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps,
+                        const std::string& file);
 
 /// Of the candidates, the one with the fewest letters changed from the word (Levenshtein), if it is near; else empty.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& candidates);

@@ -20,14 +20,18 @@ std::string extension(const std::filesystem::path& file) {
   return out;
 }
 
-std::uint32_t swapped(std::uint32_t v) { return v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24; }
+std::uint32_t swapped(std::uint32_t v) {
+  return v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24;
+}
 
 Status check_positions(const GeometryCache& cache, const std::string& name) {
   for (std::size_t i = 0; i < cache.positions.size(); ++i) {
     const Vec3f& p = cache.positions[i];
     if (p.allFinite() && p.cwiseAbs().maxCoeff() <= k_max_coordinate) continue;
     const std::size_t n = static_cast<std::size_t>(cache.vertex_count);
-    return input_error("sample " + std::to_string(i / n) + ", vertex " + std::to_string(i % n) + " is not a finite position, or is beyond 1e9", name);
+    return input_error("sample " + std::to_string(i / n) + ", vertex " + std::to_string(i % n) +
+                           " is not a finite position, or is beyond 1e9",
+                       name);
   }
   return {};
 }
@@ -45,8 +49,10 @@ Status read_pc2(const Bytes& bytes, double fps, const std::string& name, Geometr
   if (!(rate > 0 && rate < 1e6)) return input_error("has a sample rate that is no number above 0", name);
   const auto need = static_cast<std::uint64_t>(points) * static_cast<std::uint64_t>(samples) * 12;
   if (need > in.remaining())
-    return input_error("is cut: " + std::to_string(samples) + " samples of " + std::to_string(points) + " points are announced, " +
-                           std::to_string(in.remaining() / (static_cast<std::uint64_t>(points) * 12)) + " are there", name);
+    return input_error("is cut: " + std::to_string(samples) + " samples of " + std::to_string(points) +
+                           " points are announced, " +
+                           std::to_string(in.remaining() / (static_cast<std::uint64_t>(points) * 12)) + " are there",
+                       name);
   out.vertex_count = points;
   out.positions.resize(static_cast<std::size_t>(points) * static_cast<std::size_t>(samples));
   std::memcpy(static_cast<void*>(out.positions.data()), bytes.data() + in.position(), static_cast<std::size_t>(need));
@@ -60,7 +66,8 @@ Status read_mdd(const Bytes& bytes, double fps, const std::string& name, Geometr
   if (!in.ok() || frames == 0 || points == 0) return input_error("is not an MDD file, or holds no points", name);
   const std::uint64_t need = std::uint64_t{4} * frames + std::uint64_t{12} * frames * points;
   if (points > 1'000'000'000u || need > in.remaining()) return input_error("is cut, or is not an MDD file", name);
-  for (std::uint32_t f = 0; f < frames; ++f) out.times.push_back(static_cast<double>(std::bit_cast<float>(swapped(in.read<std::uint32_t>()))));
+  for (std::uint32_t f = 0; f < frames; ++f)
+    out.times.push_back(static_cast<double>(std::bit_cast<float>(swapped(in.read<std::uint32_t>()))));
   bool ascending = std::isfinite(out.times.front()) && std::isfinite(out.times.back());
   for (std::size_t f = 1; f < out.times.size(); ++f) ascending = ascending && out.times[f] > out.times[f - 1];
   if (fps > 0 || !ascending) {
@@ -91,8 +98,8 @@ Status read_obj_sequence(const std::filesystem::path& file, double fps, Hasher& 
       out.vertex_count = mesh->vertex_count();
       if (out.vertex_count == 0) return input_error("holds no vertices", path.string());
     } else if (mesh->vertex_count() != out.vertex_count || mesh->face_vertices != out.mesh.face_vertices) {
-      return input_error("has other faces or another number of vertices than " + files->front().filename().string(), path.string(),
-                         "all files of a sequence have one topology");
+      return input_error("has other faces or another number of vertices than " + files->front().filename().string(),
+                         path.string(), "all files of a sequence have one topology");
     }
     for (const Vec3& p : mesh->positions) out.positions.push_back(p.cast<float>());
     out.times.push_back(static_cast<double>(i) / (fps > 0 ? fps : 25));
@@ -120,11 +127,14 @@ Result<std::vector<std::filesystem::path>> numbered_sequence(const std::filesyst
   std::vector<std::pair<std::uint64_t, std::filesystem::path>> found;
   std::error_code failed;
   const auto folder = file.parent_path().empty() ? std::filesystem::path(".") : file.parent_path();
-  for (std::filesystem::directory_iterator entry(folder, failed), last; !failed && entry != last; entry.increment(failed)) {
+  for (std::filesystem::directory_iterator entry(folder, failed), last; !failed && entry != last;
+       entry.increment(failed)) {
     const std::string name = entry->path().filename().string();
     if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix)) continue;
     const std::string digits = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-    if (digits.size() > 12 || !std::all_of(digits.begin(), digits.end(), [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; })) continue;
+    if (digits.size() > 12 || !std::all_of(digits.begin(), digits.end(),
+                                           [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }))
+      continue;
     found.push_back({std::stoull(digits), file.parent_path() / name});
   }
   if (found.empty()) return input_error("no file of this sequence exists", file.string());
@@ -132,13 +142,16 @@ Result<std::vector<std::filesystem::path>> numbered_sequence(const std::filesyst
   std::vector<std::filesystem::path> out;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (i > 0 && found[i].first != found[i - 1].first + 1)
-      return input_error("number " + std::to_string(found[i - 1].first + 1) + " is missing from the sequence, or is there twice", file.string());
+      return input_error(
+          "number " + std::to_string(found[i - 1].first + 1) + " is missing from the sequence, or is there twice",
+          file.string());
     out.push_back(found[i].second);
   }
   return out;
 }
 
-Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, const std::filesystem::path& topology, double fps, bool faces_needed) {
+Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, const std::filesystem::path& topology,
+                                          double fps, bool faces_needed) {
   GeometryCache out;
   Hasher hasher;
   const std::string kind = extension(file), name = file.string();
@@ -163,12 +176,14 @@ Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, con
     auto mesh = read_obj(topology);
     if (!mesh) return mesh.error();
     if (mesh->vertex_count() != out.vertex_count)
-      return input_error("has " + std::to_string(mesh->vertex_count()) + " vertices, " + file.filename().string() + " has " +
-                             std::to_string(out.vertex_count), topology.string(), "the topology file has to hold the same vertices in the same order");
+      return input_error("has " + std::to_string(mesh->vertex_count()) + " vertices, " + file.filename().string() +
+                             " has " + std::to_string(out.vertex_count),
+                         topology.string(), "the topology file has to hold the same vertices in the same order");
     out.mesh = std::move(*mesh);
   }
   if (out.mesh.face_count() == 0 && faces_needed)
-    return input_error("holds points but no faces", name, out.format == "OBJ" ? "" : "give an OBJ with the same vertices: topology = \"body.obj\"");
+    return input_error("holds points but no faces", name,
+                       out.format == "OBJ" ? "" : "give an OBJ with the same vertices: topology = \"body.obj\"");
   out.content = hasher.digest();
   return out;
 }

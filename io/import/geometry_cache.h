@@ -1,5 +1,5 @@
-// Primaries that are a geometry cache: PC2 and MDD with an OBJ for the faces, or a numbered sequence of OBJ files (one alone is
-// a prop that stands still). Read whole, in the file's own vertex order.
+// Primaries that are a geometry cache: PC2 and MDD with an OBJ for the faces, or a numbered sequence of OBJ files (one
+// alone is a prop that stands still). Read whole, in the file's own vertex order.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@
 namespace ft {
 
 struct GeometryCache {
-  std::string format;              ///< "PC2", "MDD", "OBJ"
-  Mesh mesh;                       ///< faces; positions are those of the topology file
+  std::string format;  ///< "PC2", "MDD", "OBJ"
+  Mesh mesh;           ///< faces; positions are those of the topology file
   int vertex_count = 0;
-  std::vector<double> times;       ///< s, ascending, the first is 0
-  std::vector<Vec3f> positions;    ///< sample after sample, file units and axes
+  std::vector<double> times;     ///< s, ascending, the first is 0
+  std::vector<Vec3f> positions;  ///< sample after sample, file units and axes
   std::vector<std::string> notes;
   Hash128 content;
   std::span<const Vec3f> sample(std::size_t i) const {
@@ -28,12 +28,13 @@ struct GeometryCache {
 /// By the file's extension.
 bool is_geometry_cache(const std::filesystem::path& file);
 
-/// fps: samples per second (for MDD 0 means the file's own times). topology may be empty for OBJ; without it a PC2 or MDD has
-/// no faces, which is an error unless faces_needed is false (info).
-Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, const std::filesystem::path& topology, double fps,
-                                          bool faces_needed = true);
+/// fps: samples per second (for MDD 0 means the file's own times). topology may be empty for OBJ; without it a PC2 or
+/// MDD has no faces, which is an error unless faces_needed is false (info).
+Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, const std::filesystem::path& topology,
+                                          double fps, bool faces_needed = true);
 
-/// Files of a numbered sequence that `file` belongs to ("body_0001.obj", or "body_####.obj"), in order; one file alone is itself.
+/// Files of a numbered sequence that `file` belongs to ("body_0001.obj", or "body_####.obj"), in order; one file alone
+/// is itself.
 Result<std::vector<std::filesystem::path>> numbered_sequence(const std::filesystem::path& file);
 
 }  // namespace ft

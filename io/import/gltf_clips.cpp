@@ -35,7 +35,9 @@ std::int64_t integer(const Json& value, std::int64_t otherwise) {
   }
   return otherwise;
 }
-std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
+std::string text(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
 std::vector<double> numbers(const Json& array) {
   std::vector<double> out;
   if (array.is_array())
@@ -49,11 +51,16 @@ Bytes decode_base64(std::string_view encoded) {
   int count = 0;
   for (const char c : encoded) {
     int value = -1;
-    if (c >= 'A' && c <= 'Z') value = c - 'A';
-    else if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
-    else if (c >= '0' && c <= '9') value = c - '0' + 52;
-    else if (c == '+' || c == '-') value = 62;
-    else if (c == '/' || c == '_') value = 63;
+    if (c >= 'A' && c <= 'Z')
+      value = c - 'A';
+    else if (c >= 'a' && c <= 'z')
+      value = c - 'a' + 26;
+    else if (c >= '0' && c <= '9')
+      value = c - '0' + 52;
+    else if (c == '+' || c == '-')
+      value = 62;
+    else if (c == '/' || c == '_')
+      value = 63;
     if (value < 0) continue;
     bits = bits << 6 | static_cast<std::uint32_t>(value);
     if ((count += 6) >= 8) out.push_back(static_cast<std::byte>(bits >> (count -= 8) & 255));
@@ -66,7 +73,10 @@ std::string decode_percent(const std::string& uri) {
   for (std::size_t i = 0; i < uri.size(); ++i) {
     const auto digit = [&](std::size_t k) {
       const char c = k < uri.size() ? uri[k] : '?';
-      return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+      return c >= '0' && c <= '9'   ? c - '0'
+             : c >= 'a' && c <= 'f' ? c - 'a' + 10
+             : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                    : -1;
     };
     if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0)
       out.push_back(static_cast<char>(digit(i + 1) * 16 + digit(i + 2))), i += 2;
@@ -114,9 +124,13 @@ class GltfFile {
     const std::string type = text(member(a, "type"));
     width = type == "SCALAR" ? 1 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
     const std::int64_t component = integer(member(a, "componentType"), 0), count = integer(member(a, "count"), -1);
-    const std::size_t size = component == 5126 ? 4 : component == 5122 || component == 5123 ? 2 : component == 5120 || component == 5121 ? 1 : 0;
+    const std::size_t size = component == 5126                        ? 4
+                             : component == 5122 || component == 5123 ? 2
+                             : component == 5120 || component == 5121 ? 1
+                                                                      : 0;
     const Json& view = element(member(json_, "bufferViews"), integer(member(a, "bufferView"), -1));
-    if (width == 0 || size == 0 || count < 0 || !view.is_object()) return input_error("an accessor is of an unknown kind");
+    if (width == 0 || size == 0 || count < 0 || !view.is_object())
+      return input_error("an accessor is of an unknown kind");
     auto buffer = open_buffer(integer(member(view, "buffer"), -1));
     if (!buffer) return buffer.error();
     const std::size_t packed = size * static_cast<std::size_t>(width);
@@ -124,14 +138,18 @@ class GltfFile {
     const auto step = stride == 0 ? packed : stride;
     const std::int64_t view_at = integer(member(view, "byteOffset"), 0), at = integer(member(a, "byteOffset"), 0);
     const Bytes& bytes = **buffer;
-    if (view_at < 0 || at < 0 || step > 4096 || static_cast<std::uint64_t>(count) > bytes.size()) return input_error("an accessor leaves its buffer");
+    if (view_at < 0 || at < 0 || step > 4096 || static_cast<std::uint64_t>(count) > bytes.size())
+      return input_error("an accessor leaves its buffer");
     const std::uint64_t begin = static_cast<std::uint64_t>(view_at) + static_cast<std::uint64_t>(at);
-    if (count > 0 && begin + step * static_cast<std::uint64_t>(count - 1) + packed > bytes.size()) return input_error("an accessor leaves its buffer");
+    if (count > 0 && begin + step * static_cast<std::uint64_t>(count - 1) + packed > bytes.size())
+      return input_error("an accessor leaves its buffer");
     std::vector<double> out;
     out.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(width));
     for (std::int64_t i = 0; i < count; ++i)
       for (int k = 0; k < width; ++k)
-        out.push_back(component_value(bytes.data() + begin + step * static_cast<std::uint64_t>(i) + size * static_cast<std::size_t>(k), component));
+        out.push_back(component_value(
+            bytes.data() + begin + step * static_cast<std::uint64_t>(i) + size * static_cast<std::size_t>(k),
+            component));
     return out;
   }
 
@@ -184,7 +202,8 @@ std::vector<int> match_nodes(const Json& json, const Character& character) {
   if (!nodes.is_array() || !roots.is_array()) return {};
   std::vector<std::vector<int>> children(character.nodes.size());
   for (std::size_t i = 1; i < character.nodes.size(); ++i)
-    if (character.nodes[i].parent >= 0) children[static_cast<std::size_t>(character.nodes[i].parent)].push_back(static_cast<int>(i));
+    if (character.nodes[i].parent >= 0)
+      children[static_cast<std::size_t>(character.nodes[i].parent)].push_back(static_cast<int>(i));
 
   std::vector<int> out(nodes.size(), -1);
   std::vector<std::pair<std::int64_t, int>> stack;
@@ -201,15 +220,16 @@ std::vector<int> match_nodes(const Json& json, const Character& character) {
   while (!stack.empty()) {
     const auto [theirs, ours] = stack.back();
     stack.pop_back();
-    if (theirs < 0 || static_cast<std::size_t>(theirs) >= out.size() || out[static_cast<std::size_t>(theirs)] >= 0) return {};
+    if (theirs < 0 || static_cast<std::size_t>(theirs) >= out.size() || out[static_cast<std::size_t>(theirs)] >= 0)
+      return {};
     out[static_cast<std::size_t>(theirs)] = ours;
     if (!pair_up(member(element(nodes, theirs), "children"), children[static_cast<std::size_t>(ours)])) return {};
   }
   return out;
 }
 
-/// A channel that moves a part of a node leaves the other parts as the JSON has them (scale may hold a reflection that cannot be
-/// told from a rotation once it is in a matrix).
+/// A channel that moves a part of a node leaves the other parts as the JSON has them (scale may hold a reflection that
+/// cannot be told from a rotation once it is in a matrix).
 void fill_rest(const Json& node, Channel& channel) {
   if (node.contains("matrix")) return;
   double first = std::numeric_limits<double>::infinity();  // constant keys do not lengthen the clip
@@ -236,13 +256,16 @@ Result<Track> read_sampler(GltfFile& file, const Json& sampler, int width) {
   auto values = file.accessor(integer(member(sampler, "output"), -1), value_width);
   if (!values) return values.error();
   const std::string how = text(member(sampler, "interpolation"));
-  track.interpolation = how == "STEP" ? Interpolation::k_step : how == "CUBICSPLINE" ? Interpolation::k_cubic : Interpolation::k_linear;
+  track.interpolation = how == "STEP"          ? Interpolation::k_step
+                        : how == "CUBICSPLINE" ? Interpolation::k_cubic
+                                               : Interpolation::k_linear;
   track.times = std::move(*times);
   track.values = std::move(*values);
   const std::size_t per_key = track.interpolation == Interpolation::k_cubic ? 3 : 1;
   if (width == 0 && !track.times.empty()) width = static_cast<int>(track.values.size() / track.times.size() / per_key);
   track.width = width;
-  if (time_width != 1 || width == 0 || (width == 3 && value_width != 3 && value_width != 1) || track.values.size() != track.times.size() * track.stride())
+  if (time_width != 1 || width == 0 || (width == 3 && value_width != 3 && value_width != 1) ||
+      track.values.size() != track.times.size() * track.stride())
     return input_error("a sampler's keys and values do not match");
   for (std::size_t i = 1; i < track.times.size(); ++i)
     if (!(track.times[i] > track.times[i - 1])) return input_error("key times do not ascend");
@@ -262,13 +285,18 @@ Result<std::vector<Clip>> read_clips(GltfFile& file, const std::vector<int>& nod
       const Json& target = member(channels[c], "target");
       const std::int64_t node = integer(member(target, "node"), -1);
       const std::string path = text(member(target, "path"));
-      if (node < 0 || static_cast<std::size_t>(node) >= node_of.size() || node_of[static_cast<std::size_t>(node)] < 0) continue;
+      if (node < 0 || static_cast<std::size_t>(node) >= node_of.size() || node_of[static_cast<std::size_t>(node)] < 0)
+        continue;
       Channel& channel = of_node[static_cast<std::size_t>(node_of[static_cast<std::size_t>(node)])];
-      Track* track = path == "translation" ? &channel.translation : path == "rotation" ? &channel.rotation
-                   : path == "scale" ? &channel.scale : path == "weights" ? &channel.weights : nullptr;
+      Track* track = path == "translation" ? &channel.translation
+                     : path == "rotation"  ? &channel.rotation
+                     : path == "scale"     ? &channel.scale
+                     : path == "weights"   ? &channel.weights
+                                           : nullptr;
       if (track == nullptr) continue;
       const int width = path == "weights" ? 0 : path == "rotation" ? 4 : 3;
-      auto read = read_sampler(file, element(member(animations[a], "samplers"), integer(member(channels[c], "sampler"), -1)), width);
+      auto read = read_sampler(
+          file, element(member(animations[a], "samplers"), integer(member(channels[c], "sampler"), -1)), width);
       if (!read) return read.error();
       *track = std::move(*read);
       channel.node = static_cast<int>(node);  // of the JSON, until the rest is filled in
@@ -292,7 +320,8 @@ void read_rest_weights(const Json& json, const std::vector<int>& node_of, Charac
     if (node_of[n] < 0) continue;
     const Json& node = element(member(json, "nodes"), static_cast<std::int64_t>(n));
     std::vector<double> weights = numbers(member(node, "weights"));
-    if (weights.empty()) weights = numbers(member(element(member(json, "meshes"), integer(member(node, "mesh"), -1)), "weights"));
+    if (weights.empty())
+      weights = numbers(member(element(member(json, "meshes"), integer(member(node, "mesh"), -1)), "weights"));
     auto& rest = character.nodes[static_cast<std::size_t>(node_of[n])].morph_weights;
     for (std::size_t k = 0; k < rest.size() && k < weights.size(); ++k) rest[k] = weights[k];
   }
@@ -306,7 +335,8 @@ void read_gltf_clips(const std::filesystem::path& path, Character& character) {
     auto file = GltfFile::open(path);
     if (!file) return character.notes.push_back("animation read by assimp: " + file.error().what + doubt);
     const std::vector<int> node_of = match_nodes(file->json(), character);
-    if (node_of.empty()) return character.notes.push_back(std::string("animation read by assimp: node trees differ") + doubt);
+    if (node_of.empty())
+      return character.notes.push_back(std::string("animation read by assimp: node trees differ") + doubt);
     read_rest_weights(file->json(), node_of, character);
     auto clips = read_clips(*file, node_of, character);
     if (!clips) return character.notes.push_back("animation read by assimp: " + clips.error().what + doubt);

@@ -1,5 +1,5 @@
-// Animations of a glTF file, read from its JSON and buffers directly: assimp drops the interpolation of samplers (steps and
-// cubic splines became straight lines, up to 0.67 m wrong), and node names that occur twice.
+// Animations of a glTF file, read from its JSON and buffers directly: assimp drops the interpolation of samplers (steps
+// and cubic splines became straight lines, up to 0.67 m wrong), and node names that occur twice.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace ft {
 
-/// Replaces the clips and rest morph weights that assimp read. Where the file uses something that is not understood here
-/// (sparse or compressed accessors) the clips stay as they are, with a note.
+/// Replaces the clips and rest morph weights that assimp read. Where the file uses something that is not understood
+/// here (sparse or compressed accessors) the clips stay as they are, with a note.
 void read_gltf_clips(const std::filesystem::path& file, Character& character);
 
 }  // namespace ft

@@ -1,5 +1,5 @@
-// import_primary(): file -> clip -> place -> surface -> Trajectory. Reads like the list of decisions that an import takes; each
-// is a function of the files beside this one, and each thing that was repaired or guessed becomes a note.
+// import_primary(): file -> clip -> place -> surface -> Trajectory. Reads like the list of decisions that an import
+// takes; each is a function of the files beside this one, and each thing that was repaired or guessed becomes a note.
 #include "io/import/import.h"
 
 #include <algorithm>
@@ -17,11 +17,13 @@
 namespace ft {
 namespace {
 
-bool wanted(const CharacterMesh& mesh, const Character& character, const std::vector<std::string>& names, std::vector<char>& seen) {
+bool wanted(const CharacterMesh& mesh, const Character& character, const std::vector<std::string>& names,
+            std::vector<char>& seen) {
   if (names.empty()) return true;
   bool found = false;
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (mesh.name == names[i] || character.nodes[static_cast<std::size_t>(mesh.node)].name == names[i]) seen[i] = 1, found = true;
+    if (mesh.name == names[i] || character.nodes[static_cast<std::size_t>(mesh.node)].name == names[i])
+      seen[i] = 1, found = true;
   return found;
 }
 
@@ -36,17 +38,20 @@ std::vector<std::string> mesh_names(const Character& character) {
 }
 
 /// Indices of the meshes that make the collider.
-Result<std::vector<int>> choose_meshes(const Character& character, const std::vector<std::string>& names, const std::string& file) {
+Result<std::vector<int>> choose_meshes(const Character& character, const std::vector<std::string>& names,
+                                       const std::string& file) {
   std::vector<int> out;
   std::vector<char> seen(names.size(), 0);
   for (std::size_t m = 0; m < character.meshes.size(); ++m)
-    if (!character.meshes[m].triangles.empty() && wanted(character.meshes[m], character, names, seen)) out.push_back(static_cast<int>(m));
+    if (!character.meshes[m].triangles.empty() && wanted(character.meshes[m], character, names, seen))
+      out.push_back(static_cast<int>(m));
   const auto existing = mesh_names(character);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (seen[i]) continue;
     std::string hint;
     for (const std::string& name : existing) hint += (hint.empty() ? "there are: " : ", ") + name;
-    if (const std::string guess = nearest_name(names[i], existing); !guess.empty()) hint = "did you mean \"" + guess + "\"? " + hint;
+    if (const std::string guess = nearest_name(names[i], existing); !guess.empty())
+      hint = "did you mean \"" + guess + "\"? " + hint;
     return usage_error("mesh \"" + names[i] + "\" does not exist", file, hint);
   }
   if (out.empty())
@@ -74,7 +79,9 @@ void describe(const Character& character, const std::vector<int>& meshes, Charac
 }
 
 Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
-  const double fps = request.source_fps > 0 ? request.source_fps : request.file.extension() == ".mdd" ? 0 : request.shot_fps;
+  const double fps = request.source_fps > 0               ? request.source_fps
+                     : request.file.extension() == ".mdd" ? 0
+                                                          : request.shot_fps;
   auto cache = read_geometry_cache(request.file, request.topology, fps);
   if (!cache) return cache.error();
   const std::string name = request.file.string();
@@ -96,7 +103,9 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
     if (Status s = check_height(measured, placement, name); !s) return s.error();
   }
   const Clip whole{cache->format, 0, cache->times.back(), {}};
-  if (Status s = check_clip_range(whole, request.clip_start, request.duration, request.speed, request.shot_fps, name); !s) return s.error();
+  if (Status s = check_clip_range(whole, request.clip_start, request.duration, request.speed, request.shot_fps, name);
+      !s)
+    return s.error();
 
   ImportedPrimary out;
   out.content = cache->content;
@@ -122,7 +131,12 @@ Result<LoadedCharacter> load_with_animation(const ImportRequest& request, std::v
   auto clips = retarget_clips(motion->character, loaded->character, request.animation.string(), notes);
   if (!clips) return clips.error();
   loaded->character.clips = std::move(*clips);
-  loaded->content = Hasher().number(loaded->content.low).number(loaded->content.high).number(motion->content.low).number(motion->content.high).digest();
+  loaded->content = Hasher()
+                        .number(loaded->content.low)
+                        .number(loaded->content.high)
+                        .number(motion->content.low)
+                        .number(motion->content.high)
+                        .digest();
   return loaded;
 }
 
@@ -143,7 +157,8 @@ Result<ImportedPrimary> import_character(const ImportRequest& request) {
   auto placement = find_placement(character, request.unit_scale, request.up, bind.globals, notes);
   if (!placement) return placement.error();
   if (character.meshes.empty() && character.format == "BVH") {
-    if (Status s = add_body(character, request.body, placement->axes); !s) return Error{s.error().kind, s.error().what, name, s.error().hint};
+    if (Status s = add_body(character, request.body, placement->axes); !s)
+      return Error{s.error().kind, s.error().what, name, s.error().hint};
     bind = find_bind_pose(character);
     notes.push_back("has no body; one was built from the skeleton (" + request.body + ")");
   }
@@ -165,9 +180,13 @@ Result<ImportedPrimary> import_character(const ImportRequest& request) {
   }
   const Clip* clip = *clip_index < 0 ? nullptr : &character.clips[static_cast<std::size_t>(*clip_index)];
   if (clip != nullptr)
-    if (Status s = check_clip_range(*clip, request.clip_start, request.duration, request.speed, request.shot_fps, clip_file); !s) return s.error();
+    if (Status s =
+            check_clip_range(*clip, request.clip_start, request.duration, request.speed, request.shot_fps, clip_file);
+        !s)
+      return s.error();
   assign_parts(character, positions, skin);
-  if (bind.from_inverse_binds) notes.emplace_back("the nodes do not rest in the bind pose; it was taken from the inverse bind matrices");
+  if (bind.from_inverse_binds)
+    notes.emplace_back("the nodes do not rest in the bind pose; it was taken from the inverse bind matrices");
 
   describe(character, *meshes, out.info);
   out.info.unit_scale = placement->unit_scale, out.info.up = placement->up;
@@ -176,13 +195,15 @@ Result<ImportedPrimary> import_character(const ImportRequest& request) {
   const Playback playback{(clip != nullptr ? clip->start : 0) + request.clip_start, request.speed, request.preroll};
   const auto kept = std::make_shared<const Character>(std::move(character));
   const Clip* kept_clip = *clip_index < 0 ? nullptr : &kept->clips[static_cast<std::size_t>(*clip_index)];
-  out.trajectory = std::make_unique<CharacterTrajectory>(kept, kept_clip, std::move(skin), std::move(bind), pelvis, placement->matrix(), playback);
+  out.trajectory = std::make_unique<CharacterTrajectory>(kept, kept_clip, std::move(skin), std::move(bind), pelvis,
+                                                         placement->matrix(), playback);
 
   // Numbers that are finite one by one can still be far out together.
   for (const double t : {-request.preroll, 0.0, request.duration}) {
     out.trajectory->sample(t, positions);
     if (!all_finite(positions) || bounds(positions).size().norm() > 1e6)
-      return input_error("the character is not finite, or larger than 1000 km, " + std::to_string(t) + " s into the shot", clip_file);
+      return input_error(
+          "the character is not finite, or larger than 1000 km, " + std::to_string(t) + " s into the shot", clip_file);
   }
   return out;
 }
@@ -194,8 +215,10 @@ Result<ImportedPrimary> import_primary(const ImportRequest& request) {
   if (request.body != "blended" && request.body != "capsules")
     return usage_error("body = \"" + request.body + "\" is unknown", name, "\"blended\" or \"capsules\"");
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
-  if (!positive(request.speed) || !positive(request.shot_fps)) return usage_error("speed and fps have to be above 0", name);
-  if (!(request.height >= 0) || !std::isfinite(request.clip_start) || !(request.preroll >= 0) || !(request.duration >= 0))
+  if (!positive(request.speed) || !positive(request.shot_fps))
+    return usage_error("speed and fps have to be above 0", name);
+  if (!(request.height >= 0) || !std::isfinite(request.clip_start) || !(request.preroll >= 0) ||
+      !(request.duration >= 0))
     return usage_error("height, preroll and duration cannot be below 0", name);
   return is_geometry_cache(request.file) ? import_geometry_cache(request) : import_character(request);
 }
@@ -231,7 +254,8 @@ Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const
     for (const Mat4& m : bind.globals) positions.push_back((placement->matrix() * m).topRightCorner<3, 1>());
   info.bind_bounds = bounds(positions);
   if (meshes.empty()) info.notes.emplace_back("has no mesh: bounds are those of its skeleton");
-  if (bind.from_inverse_binds) info.notes.emplace_back("the nodes do not rest in the bind pose; it was taken from the inverse bind matrices");
+  if (bind.from_inverse_binds)
+    info.notes.emplace_back("the nodes do not rest in the bind pose; it was taken from the inverse bind matrices");
   return info;
 }
 

@@ -1,5 +1,5 @@
-// Primaries from files. A character is imported by a child process with limits on time and memory (a bad file can corrupt
-// memory), checked again here, cached under the hash of its bytes; a geometry cache is read directly.
+// Primaries from files. A character is imported by a child process with limits on time and memory (a bad file can
+// corrupt memory), checked again here, cached under the hash of its bytes; a geometry cache is read directly.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 namespace ft {
 
 struct ImportLimits {
-  double seconds = 60;                        ///< CPU time of the child
+  double seconds = 60;  ///< CPU time of the child
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
 };
 
@@ -27,9 +27,9 @@ struct ClipInfo {
 struct CharacterInfo {
   std::string format;
   int vertex_count = 0, triangle_count = 0, node_count = 0, bone_count = 0, morph_count = 0;
-  double unit_scale = 1;   ///< m per file unit that was applied
+  double unit_scale = 1;  ///< m per file unit that was applied
   std::string up;
-  Box bind_bounds;         ///< m
+  Box bind_bounds;  ///< m
   std::vector<ClipInfo> clips;
   std::vector<std::string> mesh_names;
   std::vector<std::string> notes;  ///< what was repaired or is odd: "weights normalised (sums 0.185..1.0)"
@@ -39,15 +39,15 @@ struct ImportRequest {
   std::filesystem::path file, animation, topology;
   std::string clip;
   double clip_start = 0, speed = 1;
-  double unit_scale = 0;    ///< 0: as the file says
-  std::string up;           ///< "": as the file says
-  double source_fps = 0;    ///< geometry caches; 0: shot_fps
+  double unit_scale = 0;  ///< 0: as the file says
+  std::string up;         ///< "": as the file says
+  double source_fps = 0;  ///< geometry caches; 0: shot_fps
   double shot_fps = 24;
   std::string body = "blended";
-  double height = 0;        ///< 0: as it is
+  double height = 0;  ///< 0: as it is
   std::vector<std::string> meshes;
-  double preroll = 1;       ///< s
-  double duration = 0;      ///< s of the shot: frames outside the clip are refused
+  double preroll = 1;                  ///< s
+  double duration = 0;                 ///< s of the shot: frames outside the clip are refused
   std::filesystem::path cache_folder;  ///< import cache; empty: none
   ImportLimits limits;
 };
@@ -55,13 +55,14 @@ struct ImportRequest {
 struct ImportedPrimary {
   std::unique_ptr<Trajectory> trajectory;
   CharacterInfo info;
-  Hash128 content;          ///< hash of the input bytes
+  Hash128 content;  ///< hash of the input bytes
 };
 
 Result<ImportedPrimary> import_primary(const ImportRequest& request);
 Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const ImportLimits& limits = {});
 
-/// The child's side: `followthrough --import-child IN OUT` ends here; returns the exit code. main() calls it before anything else.
+/// The child's side: `followthrough --import-child IN OUT` ends here; returns the exit code. main() calls it before
+/// anything else.
 int import_child_main(int argc, char** argv);
 
 }  // namespace ft

@@ -24,7 +24,8 @@ Hash128 content_hash(const Hash128& file, const Character& character) {
 
 }  // namespace
 
-Result<LoadedCharacter> load_character(const std::filesystem::path& file, const std::filesystem::path& cache_folder, const ImportLimits& limits) {
+Result<LoadedCharacter> load_character(const std::filesystem::path& file, const std::filesystem::path& cache_folder,
+                                       const ImportLimits& limits) {
   Hash128 file_hash;
   {
     const auto bytes = read_file(file);

@@ -1,5 +1,5 @@
-// Source: fork and exec as in "Advanced Programming in the UNIX Environment" 8; between them only calls that are safe after fork
-// in a program with threads. RLIMIT_AS is left out under sanitizers, whose shadow memory would not fit.
+// Source: fork and exec as in "Advanced Programming in the UNIX Environment" 8; between them only calls that are safe
+// after fork in a program with threads. RLIMIT_AS is left out under sanitizers, whose shadow memory would not fit.
 #include "io/import/import_child.h"
 
 #include <fcntl.h>
@@ -32,9 +32,9 @@
 namespace ft {
 namespace {
 
-constexpr int k_exit_refused = 3;       // the result file holds the reason, in words
+constexpr int k_exit_refused = 3;  // the result file holds the reason, in words
 constexpr int k_exit_out_of_memory = 9;
-constexpr int k_exit_threw = 10;        // not 1: with that a sanitizer ends the process
+constexpr int k_exit_threw = 10;  // not 1: with that a sanitizer ends the process
 
 /// A folder that only this import uses; removed with all in it.
 class ScratchFolder {
@@ -59,7 +59,8 @@ class ScratchFolder {
 
 void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   rlimit r{};
-  if (::getrlimit(what, &r) == 0 && r.rlim_max != RLIM_INFINITY) hard = std::min(hard, r.rlim_max), soft = std::min(soft, hard);
+  if (::getrlimit(what, &r) == 0 && r.rlim_max != RLIM_INFINITY)
+    hard = std::min(hard, r.rlim_max), soft = std::min(soft, hard);
   r.rlim_cur = soft, r.rlim_max = hard;
   ::setrlimit(what, &r);
 }
@@ -133,7 +134,8 @@ std::string seconds_text(double s) {
 Result<Character> import_in_child(const std::filesystem::path& file, const ImportLimits& limits) {
   const std::string name = file.string();
   const ScratchFolder scratch;
-  if (scratch.path().empty()) return output_error("cannot make a temporary folder for the import", name, std::strerror(errno));
+  if (scratch.path().empty())
+    return output_error("cannot make a temporary folder for the import", name, std::strerror(errno));
   const std::string in = std::filesystem::absolute(file).string(), out = (scratch.path() / "character").string();
   const auto seconds = static_cast<rlim_t>(std::ceil(std::max(limits.seconds, 0.0)));
   const pid_t parent = ::getpid();
@@ -149,9 +151,12 @@ Result<Character> import_in_child(const std::filesystem::path& file, const Impor
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGXCPU || signal == SIGKILL)
-      return input_error("import took more than " + seconds_text(limits.seconds) + " of CPU time, or was killed, and was stopped", name, hint);
+      return input_error(
+          "import took more than " + seconds_text(limits.seconds) + " of CPU time, or was killed, and was stopped",
+          name, hint);
     if (signal == SIGXFSZ) return input_error("import result is larger than the memory limit", name, hint);
-    return input_error(std::string("the importer crashed on it (") + ::strsignal(signal) + "); nothing of it was used", name, hint);
+    return input_error(std::string("the importer crashed on it (") + ::strsignal(signal) + "); nothing of it was used",
+                       name, hint);
   }
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == k_exit_refused) {
@@ -159,7 +164,8 @@ Result<Character> import_in_child(const std::filesystem::path& file, const Impor
     return input_error(reason ? printable(*reason) : std::string("cannot be read"), name);
   }
   if (code == k_exit_out_of_memory)
-    return input_error("import needs more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory", name, hint);
+    return input_error("import needs more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory", name,
+                       hint);
   if (code != 0)
     return input_error("the importing process ended with code " + std::to_string(code), name,
                        "it may have had too little memory to start");

@@ -1,5 +1,5 @@
-// Parts of a skinned surface: body segments that move as one. Each vertex belongs to its heaviest bone; bones whose piece is
-// small (fingers, eyes, twist bones) give it to the bone above, so that a part is a hand, a forearm, a thigh.
+// Parts of a skinned surface: body segments that move as one. Each vertex belongs to its heaviest bone; bones whose
+// piece is small (fingers, eyes, twist bones) give it to the bone above, so that a part is a hand, a forearm, a thigh.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -19,13 +19,14 @@ bool is_twist(const std::string& name) {
 }
 
 /// Volume of each group's piece: tetrahedra from the piece's own centre, so that an open end costs little.
-std::vector<double> volumes(std::span<const Vec3> positions, const std::vector<Triangle>& triangles, const std::vector<int>& group,
-                            std::size_t groups) {
+std::vector<double> volumes(std::span<const Vec3> positions, const std::vector<Triangle>& triangles,
+                            const std::vector<int>& group, std::size_t groups) {
   std::vector<Vec3> centre(groups, Vec3::Zero());
   std::vector<double> area(groups, 0), volume(groups, 0);
   const auto at = [&](int v) -> const Vec3& { return positions[static_cast<std::size_t>(v)]; };
   const auto group_of = [&](const Triangle& t) {  // of two corners that agree, else the first
-    const int a = group[static_cast<std::size_t>(t[0])], b = group[static_cast<std::size_t>(t[1])], c = group[static_cast<std::size_t>(t[2])];
+    const int a = group[static_cast<std::size_t>(t[0])], b = group[static_cast<std::size_t>(t[1])],
+              c = group[static_cast<std::size_t>(t[2])];
     return static_cast<std::size_t>(b == c ? b : a);
   };
   for (const Triangle& t : triangles) {
@@ -43,8 +44,8 @@ std::vector<double> volumes(std::span<const Vec3> positions, const std::vector<T
   return volume;
 }
 
-/// The node that really moves each node: itself when a clip moves it or it is a bone, else the next such one above. A rigid
-/// shell hung on a bone is a piece of that bone.
+/// The node that really moves each node: itself when a clip moves it or it is a bone, else the next such one above. A
+/// rigid shell hung on a bone is a piece of that bone.
 std::vector<int> carriers(const Character& character) {
   std::vector<char> moves(character.nodes.size(), 0);
   for (const Clip& clip : character.clips)
@@ -100,7 +101,9 @@ void assign_parts(const Character& character, std::span<const Vec3> positions, S
     if (!used[n] || size[n] >= k_least_share * total) continue;
     int best = -1;
     for (std::size_t c = n + 1; c < nodes; ++c)
-      if (used[c] && part_above(c) == static_cast<int>(n) && (best < 0 || size[c] > size[static_cast<std::size_t>(best)])) best = static_cast<int>(c);
+      if (used[c] && part_above(c) == static_cast<int>(n) &&
+          (best < 0 || size[c] > size[static_cast<std::size_t>(best)]))
+        best = static_cast<int>(c);
     if (best < 0) continue;
     merged[n] = best;
     size[static_cast<std::size_t>(best)] += size[n];
@@ -125,14 +128,17 @@ void assign_parts(const Character& character, std::span<const Vec3> positions, S
     while (merged[static_cast<std::size_t>(n)] != n) n = merged[static_cast<std::size_t>(n)];
     surface.part_of_vertex[i] = part_of_node[static_cast<std::size_t>(n)];
   }
-  // Small pieces without a part above (separate rigid shells) stay parts. The heaviest root is everybody's parent of last resort.
+  // Small pieces without a part above (separate rigid shells) stay parts. The heaviest root is everybody's parent of
+  // last resort.
   int root = -1;
   for (int p = 0; p < static_cast<int>(surface.parts.size()); ++p)
     if (surface.parts[static_cast<std::size_t>(p)].parent < 0 &&
-        (root < 0 || surface.parts[static_cast<std::size_t>(p)].size > surface.parts[static_cast<std::size_t>(root)].size))
+        (root < 0 ||
+         surface.parts[static_cast<std::size_t>(p)].size > surface.parts[static_cast<std::size_t>(root)].size))
       root = p;
   for (int p = 0; p < static_cast<int>(surface.parts.size()); ++p)
-    if (p != root && surface.parts[static_cast<std::size_t>(p)].parent < 0) surface.parts[static_cast<std::size_t>(p)].parent = root;
+    if (p != root && surface.parts[static_cast<std::size_t>(p)].parent < 0)
+      surface.parts[static_cast<std::size_t>(p)].parent = root;
 }
 
 }  // namespace ft

@@ -13,7 +13,8 @@ struct Unit {
   const char* name;
 };
 /// Units that BVH files are found in.
-constexpr Unit k_units[] = {{1, "metres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.05644, "5.644 cm (CMU)"}, {0.1, "decimetres"}};
+constexpr Unit k_units[] = {
+    {1, "metres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.05644, "5.644 cm (CMU)"}, {0.1, "decimetres"}};
 constexpr double k_usual_height = 1.6;  ///< m, from toes to the top joint, with children in mind
 
 constexpr const char* k_axes[2][3] = {{"x", "y", "z"}, {"-x", "-y", "-z"}};
@@ -28,7 +29,8 @@ std::string lower(const std::string& text) {
 Vec3 upwards(const Character& character, const std::vector<Mat4>& globals) {
   std::size_t root = 0;
   for (std::size_t i = 0; i < character.nodes.size(); ++i)
-    if (lower(character.nodes[i].name).find("hip") != std::string::npos || lower(character.nodes[i].name).find("pelvis") != std::string::npos) {
+    if (lower(character.nodes[i].name).find("hip") != std::string::npos ||
+        lower(character.nodes[i].name).find("pelvis") != std::string::npos) {
       root = i;
       break;
     }
@@ -96,7 +98,8 @@ Result<Placement> find_placement(const Character& character, double unit_scale, 
     notes.push_back("up axis guessed from the skeleton: " + out.up + " (up = ... says otherwise)");
   }
 
-  if (unit_scale < 0 || !std::isfinite(unit_scale)) return usage_error("unit_scale has to be above 0", "", "metres per file unit: 0.01 for centimetres");
+  if (unit_scale < 0 || !std::isfinite(unit_scale))
+    return usage_error("unit_scale has to be above 0", "", "metres per file unit: 0.01 for centimetres");
   out.unit_given = unit_scale > 0;
   out.unit_scale = out.unit_given ? unit_scale : character.file_unit;
   if (out.unit_scale == 0) {
@@ -108,7 +111,8 @@ Result<Placement> find_placement(const Character& character, double unit_scale, 
       if (off < least) least = off, best = &unit;
     }
     out.unit_scale = best != nullptr ? best->metres : 1;
-    notes.push_back(std::string("unit guessed from the skeleton's height: ") + (best != nullptr ? best->name : "metres") +
+    notes.push_back(std::string("unit guessed from the skeleton's height: ") +
+                    (best != nullptr ? best->name : "metres") +
                     format(", %.3g m tall (unit_scale = ... says otherwise)", size * out.unit_scale));
   }
   return out;

@@ -1,5 +1,5 @@
-// From file units and axes to metres and Y-up. What the file says is believed unless the user says otherwise, and the result is
-// looked at: characters a hundred times too large are the most frequent fault of all.
+// From file units and axes to metres and Y-up. What the file says is believed unless the user says otherwise, and the
+// result is looked at: characters a hundred times too large are the most frequent fault of all.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ struct Placement {
   Mat4 matrix() const;
 };
 
-/// unit_scale 0 and up "" leave what the file says. A BVH says nothing: its unit is the one of the usual five that makes the
-/// skeleton nearest to human size, its up axis the one from the hips to the head; both are noted.
+/// unit_scale 0 and up "" leave what the file says. A BVH says nothing: its unit is the one of the usual five that
+/// makes the skeleton nearest to human size, its up axis the one from the hips to the head; both are noted.
 Result<Placement> find_placement(const Character& character, double unit_scale, const std::string& up,
                                  const std::vector<Mat4>& bind_globals, std::vector<std::string>& notes);
 

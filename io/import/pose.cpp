@@ -1,9 +1,8 @@
 #include "io/import/pose.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/LU>
 
 namespace ft {
 namespace {
@@ -71,7 +70,8 @@ void sample_track(const Track& track, double time, bool rotation, std::span<doub
     else
       std::copy_n(value(key), width, out.begin());
   };
-  const auto next = static_cast<std::size_t>(std::upper_bound(track.times.begin(), track.times.end(), time) - track.times.begin());
+  const auto next =
+      static_cast<std::size_t>(std::upper_bound(track.times.begin(), track.times.end(), time) - track.times.begin());
   if (next == 0) return copy(0);
   const std::size_t last = next - 1;
   if (next == n || track.interpolation == Interpolation::k_step) return copy(last);
@@ -87,7 +87,8 @@ void sample_track(const Track& track, double time, bool rotation, std::span<doub
   const double u2 = u * u, u3 = u2 * u;
   for (std::size_t k = 0; k < width; ++k) {
     const double out_tangent = a[width + k] * span, in_tangent = *(b + k - width) * span;
-    out[k] = (2 * u3 - 3 * u2 + 1) * a[k] + (u3 - 2 * u2 + u) * out_tangent + (3 * u2 - 2 * u3) * b[k] + (u3 - u2) * in_tangent;
+    out[k] = (2 * u3 - 3 * u2 + 1) * a[k] + (u3 - 2 * u2 + u) * out_tangent + (3 * u2 - 2 * u3) * b[k] +
+             (u3 - u2) * in_tangent;
   }
   if (rotation) put(quaternion(out.data()), out);
 }
@@ -129,11 +130,13 @@ void ClipPose::sample(double time, std::span<Mat4> locals, std::span<double> mor
   for (const Moving& moving : moving_) {
     const Channel& c = moving.channel;
     const auto node = static_cast<std::size_t>(c.node);
-    if (!c.translation.empty() || !c.rotation.empty() || !c.scale.empty()) locals[node] = sample_channel(c, moving.rest, time).matrix();
+    if (!c.translation.empty() || !c.rotation.empty() || !c.scale.empty())
+      locals[node] = sample_channel(c, moving.rest, time).matrix();
     if (!c.weights.empty()) {
       weights.resize(static_cast<std::size_t>(c.weights.width));
       sample_track(c.weights, time, false, weights);
-      const auto begin = static_cast<std::size_t>(morph_start_[node]), end = static_cast<std::size_t>(morph_start_[node + 1]);
+      const auto begin = static_cast<std::size_t>(morph_start_[node]),
+                 end = static_cast<std::size_t>(morph_start_[node + 1]);
       for (std::size_t k = 0; k < weights.size() && begin + k < end; ++k) morphs[begin + k] = weights[k];
     }
   }

@@ -1,5 +1,6 @@
-// Where the nodes of a character are at a time of a clip. Own evaluator, in double: keys are searched by time, held outside
-// their range, steps stay steps, rotations go the short way round, cubic keys follow the glTF 2.0 specification (appendix C).
+// Where the nodes of a character are at a time of a clip. Own evaluator, in double: keys are searched by time, held
+// outside their range, steps stay steps, rotations go the short way round, cubic keys follow the glTF 2.0 specification
+// (appendix C).
 #pragma once
 
 #include <span>
@@ -17,7 +18,8 @@ struct NodeTransform {
   Mat4 matrix() const;
 };
 
-/// By polar decomposition (proper rotation); a singular matrix keeps an identity rotation and everything in the stretch.
+/// By polar decomposition (proper rotation); a singular matrix keeps an identity rotation and everything in the
+/// stretch.
 NodeTransform decompose(const Mat4& matrix);
 /// Translations and stretches linearly, rotations by slerp; exactly a at 0 and b at 1.
 NodeTransform blend(const NodeTransform& a, const NodeTransform& b, double weight);

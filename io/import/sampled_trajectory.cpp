@@ -12,7 +12,8 @@ namespace {
 
 Vec3 tangent(const GeometryCache& cache, std::size_t i, std::size_t vertex) {
   const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < cache.times.size() ? i + 1 : i;
-  return (cache.sample(after)[vertex] - cache.sample(before)[vertex]).cast<double>() / (cache.times[after] - cache.times[before]);
+  return (cache.sample(after)[vertex] - cache.sample(before)[vertex]).cast<double>() /
+         (cache.times[after] - cache.times[before]);
 }
 
 }  // namespace
@@ -21,7 +22,8 @@ std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> tr
   std::vector<int> root(static_cast<std::size_t>(vertex_count));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int v) {
-    while (root[static_cast<std::size_t>(v)] != v) v = root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
+    while (root[static_cast<std::size_t>(v)] != v)
+      v = root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
     return v;
   };
   std::vector<char> used(root.size(), 0);
@@ -58,7 +60,9 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
   for (int p = 0; p < pieces; ++p) surface_.parts.push_back({"piece " + std::to_string(p + 1), -1, 0});
   for (const Triangle& t : surface_.triangles) {
     const auto piece = static_cast<std::size_t>(surface_.part_of_vertex[static_cast<std::size_t>(t[0])]);
-    const auto p = [&](int k) -> const Vec3& { return positions[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+    const auto p = [&](int k) -> const Vec3& {
+      return positions[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+    };
     surface_.parts[piece].size += (p(0) - positions[0]).dot((p(1) - positions[0]).cross(p(2) - positions[0])) / 6;
   }
   int largest = 0;

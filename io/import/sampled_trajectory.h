@@ -1,5 +1,6 @@
-// A geometry cache as a Trajectory: cubic between samples (Catmull-Rom with the samples' own times; Hermite ends are one-sided),
-// held before the first and after the last; before the shot it is the first pose, set back by the run-up (run_up.h). It has no bind pose of its own: garments are modelled on its first sample of the shot.
+// A geometry cache as a Trajectory: cubic between samples (Catmull-Rom with the samples' own times; Hermite ends are
+// one-sided), held before the first and after the last; before the shot it is the first pose, set back by the run-up
+// (run_up.h). It has no bind pose of its own: garments are modelled on its first sample of the shot.
 #pragma once
 
 #include "baker/core/trajectory.h"
@@ -28,8 +29,8 @@ class SampledTrajectory : public Trajectory {
   Vec3 start_velocity_ = Vec3::Zero();  ///< mean over the vertices at the first frame [m/s]
 };
 
-/// Pieces of a surface that are not joined by triangles: one index per vertex, numbered by first vertex; vertices without
-/// triangles join piece 0.
+/// Pieces of a surface that are not joined by triangles: one index per vertex, numbered by first vertex; vertices
+/// without triangles join piece 0.
 std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> triangles, int& piece_count);
 
 }  // namespace ft

@@ -32,7 +32,8 @@ void append(std::string& key, const Vec3& v) {
 
 bool degenerate(const Triangle& t, const std::vector<Vec3>& p) {
   if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
-  const Vec3 &a = p[static_cast<std::size_t>(t[0])], &b = p[static_cast<std::size_t>(t[1])], &c = p[static_cast<std::size_t>(t[2])];
+  const Vec3 &a = p[static_cast<std::size_t>(t[0])], &b = p[static_cast<std::size_t>(t[1])],
+             &c = p[static_cast<std::size_t>(t[2])];
   const Vec3 u = b - a, v = c - a, w = c - b;
   const double longest = std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()});
   return !(u.cross(v).norm() > 1e-9 * longest);
@@ -59,7 +60,8 @@ void drop_unused(Skin& skin) {
   for (const Skin::Morph& morph : skin.morphs) {
     Skin::Morph m{morph.weight_index, {}, {}};
     for (std::size_t k = 0; k < morph.vertices.size(); ++k)
-      if (const int v = to[static_cast<std::size_t>(morph.vertices[k])]; v >= 0) m.vertices.push_back(v), m.deltas.push_back(morph.deltas[k]);
+      if (const int v = to[static_cast<std::size_t>(morph.vertices[k])]; v >= 0)
+        m.vertices.push_back(v), m.deltas.push_back(morph.deltas[k]);
     if (!m.vertices.empty()) kept.morphs.push_back(std::move(m));
   }
   kept.bindings = std::move(skin.bindings);
@@ -78,13 +80,15 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
   BindingTable table;
   std::unordered_map<std::string, int> seen;
   std::vector<int> morph_start{0};
-  for (const CharacterNode& node : character.nodes) morph_start.push_back(morph_start.back() + static_cast<int>(node.morph_weights.size()));
+  for (const CharacterNode& node : character.nodes)
+    morph_start.push_back(morph_start.back() + static_cast<int>(node.morph_weights.size()));
   int split = 0, flat = 0;
   std::string key;
   for (const int m : meshes) {
     const CharacterMesh& mesh = character.meshes[static_cast<std::size_t>(m)];
     std::vector<int> binding_of_bone;
-    for (const SkinBone& bone : mesh.bones) binding_of_bone.push_back(table.add(bone.node, bone.inverse_bind, skin.bindings));
+    for (const SkinBone& bone : mesh.bones)
+      binding_of_bone.push_back(table.add(bone.node, bone.inverse_bind, skin.bindings));
     const int own = table.add(mesh.node, Mat4::Identity(), skin.bindings);
     const int first_morph = morph_start[static_cast<std::size_t>(mesh.node)];
     const int morph_room = morph_start[static_cast<std::size_t>(mesh.node) + 1] - first_morph;
@@ -97,7 +101,8 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
       const std::size_t row = skin.binding.size();
       if (!mesh.bones.empty())
         for (int k = mesh.influence_start[v]; k < mesh.influence_start[v + 1]; ++k) {
-          skin.binding.push_back(binding_of_bone[static_cast<std::size_t>(mesh.influence_bone[static_cast<std::size_t>(k)])]);
+          skin.binding.push_back(
+              binding_of_bone[static_cast<std::size_t>(mesh.influence_bone[static_cast<std::size_t>(k)])]);
           skin.weight.push_back(mesh.influence_weight[static_cast<std::size_t>(k)]);
         }
       if (skin.binding.size() == row) skin.binding.push_back(own), skin.weight.push_back(1);
@@ -130,7 +135,8 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
         }
     }
     for (const Triangle& t : mesh.triangles) {
-      const Triangle joined{to[static_cast<std::size_t>(t[0])], to[static_cast<std::size_t>(t[1])], to[static_cast<std::size_t>(t[2])]};
+      const Triangle joined{to[static_cast<std::size_t>(t[0])], to[static_cast<std::size_t>(t[1])],
+                            to[static_cast<std::size_t>(t[2])]};
       if (degenerate(joined, skin.base))
         ++flat;
       else
@@ -143,8 +149,8 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
   return skin;
 }
 
-void deform(const Skin& skin, const Mat4& placement, std::span<const Mat4> globals, std::span<const double> morph_weights,
-            std::span<Vec3> positions) {
+void deform(const Skin& skin, const Mat4& placement, std::span<const Mat4> globals,
+            std::span<const double> morph_weights, std::span<Vec3> positions) {
   using Mat34 = Eigen::Matrix<double, 3, 4>;
   std::vector<Mat34> matrices(skin.bindings.size());
   for (std::size_t b = 0; b < matrices.size(); ++b) {
@@ -155,14 +161,16 @@ void deform(const Skin& skin, const Mat4& placement, std::span<const Mat4> globa
   for (const Skin::Morph& morph : skin.morphs) {
     const double w = morph_weights[static_cast<std::size_t>(morph.weight_index)];
     if (w == 0) continue;
-    for (std::size_t k = 0; k < morph.vertices.size(); ++k) positions[static_cast<std::size_t>(morph.vertices[k])] += w * morph.deltas[k];
+    for (std::size_t k = 0; k < morph.vertices.size(); ++k)
+      positions[static_cast<std::size_t>(morph.vertices[k])] += w * morph.deltas[k];
   }
   parallel_for(skin.base.size(), 2048, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector4d p = positions[i].homogeneous();
       Vec3 sum = Vec3::Zero();
       for (int k = skin.start[i]; k < skin.start[i + 1]; ++k)
-        sum += skin.weight[static_cast<std::size_t>(k)] * (matrices[static_cast<std::size_t>(skin.binding[static_cast<std::size_t>(k)])] * p);
+        sum += skin.weight[static_cast<std::size_t>(k)] *
+               (matrices[static_cast<std::size_t>(skin.binding[static_cast<std::size_t>(k)])] * p);
       positions[i] = sum;
     }
   });

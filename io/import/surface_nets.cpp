@@ -24,7 +24,8 @@ bool one_sheet(unsigned inside) {
   for (unsigned axis = 0; axis < 3; ++axis)
     for (unsigned side = 0; side < 2; ++side) {
       const unsigned u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, base = side << axis;
-      const bool a = inside >> base & 1, b = inside >> (base | u) & 1, c = inside >> (base | u | v) & 1, d = inside >> (base | v) & 1;
+      const bool a = inside >> base & 1, b = inside >> (base | u) & 1, c = inside >> (base | u | v) & 1,
+                 d = inside >> (base | v) & 1;
       if (a == c && b == d && a != b) return false;
     }
   return true;
@@ -43,7 +44,8 @@ void separate_sheets(FieldGrid& grid) {
           for (int c = 0; c < 8; ++c) {
             const int at[3] = {x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)};
             const std::size_t i = grid.index(at[0], at[1], at[2]);
-            const bool border = at[0] == 0 || at[1] == 0 || at[2] == 0 || at[0] == grid.nx - 1 || at[1] == grid.ny - 1 || at[2] == grid.nz - 1;
+            const bool border = at[0] == 0 || at[1] == 0 || at[2] == 0 || at[0] == grid.nx - 1 ||
+                                at[1] == grid.ny - 1 || at[2] == grid.nz - 1;
             if (grid.values[i] < 0)
               inside |= 1u << c;
             else if (!border && (nearest == grid.values.size() || grid.values[i] < grid.values[nearest]))
@@ -59,9 +61,12 @@ void separate_sheets(FieldGrid& grid) {
 NetSurface surface_nets(const FieldGrid& grid) {
   NetSurface out;
   const int cx = grid.nx - 1, cy = grid.ny - 1, cz = grid.nz - 1;
-  std::vector<int> vertex(static_cast<std::size_t>(cx) * static_cast<std::size_t>(cy) * static_cast<std::size_t>(cz), -1);
+  std::vector<int> vertex(static_cast<std::size_t>(cx) * static_cast<std::size_t>(cy) * static_cast<std::size_t>(cz),
+                          -1);
   const auto cell = [&](int x, int y, int z) -> int& {
-    return vertex[static_cast<std::size_t>(x) + static_cast<std::size_t>(cx) * (static_cast<std::size_t>(y) + static_cast<std::size_t>(cy) * static_cast<std::size_t>(z))];
+    return vertex[static_cast<std::size_t>(x) +
+                  static_cast<std::size_t>(cx) *
+                      (static_cast<std::size_t>(y) + static_cast<std::size_t>(cy) * static_cast<std::size_t>(z))];
   };
   // A vertex in every cell that the surface crosses: the mean of the crossings of its edges.
   for (int z = 0; z < cz; ++z)
@@ -95,7 +100,8 @@ NetSurface surface_nets(const FieldGrid& grid) {
         for (int axis = 0; axis < 3; ++axis) {
           if ((axis != 0 && x == 0) || (axis != 1 && y == 0) || (axis != 2 && z == 0)) continue;  // on the border
           const int to[3] = {x + (axis == 0), y + (axis == 1), z + (axis == 2)};
-          const bool here = grid.values[grid.index(x, y, z)] < 0, there = grid.values[grid.index(to[0], to[1], to[2])] < 0;
+          const bool here = grid.values[grid.index(x, y, z)] < 0,
+                     there = grid.values[grid.index(to[0], to[1], to[2])] < 0;
           if (here == there) continue;
           const int u = (axis + 1) % 3, v = (axis + 2) % 3;
           std::array<int, 4> quad{};

@@ -1,12 +1,13 @@
-// An interval is the time between two frames. It is a jump when the motion in it is unlike the motion in the interval before and
-// unlike the one after: a start, a stop, a crash is like one of the two. Medians over the body's vertices, so that limbs do not
-// count; a jump that the source's frame rate spreads over two intervals is looked for as well.
+// An interval is the time between two frames. It is a jump when the motion in it is unlike the motion in the interval
+// before and unlike the one after: a start, a stop, a crash is like one of the two. Medians over the body's vertices,
+// so that limbs do not count; a jump that the source's frame rate spreads over two intervals is looked for as well.
 #include "io/import/teleport_scan.h"
+
+#include <fmt/format.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -17,19 +18,21 @@
 namespace ft {
 namespace {
 
-/// Leaving the expected way by D within a time t and being back to the expected velocity takes an acceleration of 4 D / t2. Above
-/// 80 g nobody is alive [m/s2].
+/// Leaving the expected way by D within a time t and being back to the expected velocity takes an acceleration of 4 D /
+/// t2. Above 80 g nobody is alive [m/s2].
 constexpr double k_acceleration = 800;
 /// The same about an axis [rad/s2].
 constexpr double k_angular_acceleration = 1500;
 /// And what is shorter than this share of the body's size is no teleport at any frame rate: cloth survives it.
 constexpr double k_share_of_size = 0.25;
 constexpr double k_least_turn = std::numbers::pi / 3;  ///< rad
-/// A body that turns on the spot moves most of its points by more than this share of its size; a kick only seems to turn it.
+/// A body that turns on the spot moves most of its points by more than this share of its size; a kick only seems to
+/// turn it.
 constexpr double k_turning_share = 0.03;
 /// Limbs accelerate more than bodies do.
 constexpr double k_limb = 1.6;
-/// The body's velocity before and after differs by this when the cut leads into another motion [m/s]; less is its acceleration.
+/// The body's velocity before and after differs by this when the cut leads into another motion [m/s]; less is its
+/// acceleration.
 constexpr double k_other_motion = 2;
 constexpr int k_trimming_rounds = 6;
 constexpr std::size_t k_most_vertices = 256;  ///< looked at in every frame
@@ -78,7 +81,8 @@ Eigen::Isometry3d rigid_fit(const std::vector<Vec3>& from, const std::vector<Vec
   return out;
 }
 
-/// The same for the half of the points that moves most alike: limbs have no say (least trimmed squares, Rousseeuw 1984).
+/// The same for the half of the points that moves most alike: limbs have no say (least trimmed squares, Rousseeuw
+/// 1984).
 Eigen::Isometry3d trunk_fit(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   std::vector<int> used(from.size());
   std::iota(used.begin(), used.end(), 0);
@@ -88,7 +92,8 @@ Eigen::Isometry3d trunk_fit(const std::vector<Vec3>& from, const std::vector<Vec
     for (std::size_t i = 0; i < from.size(); ++i) miss[i] = (fit * from[i] - to[i]).squaredNorm();
     used.resize(from.size());
     std::iota(used.begin(), used.end(), 0);
-    std::sort(used.begin(), used.end(), [&](int a, int b) { return miss[at(a)] < miss[at(b)] || (miss[at(a)] == miss[at(b)] && a < b); });
+    std::sort(used.begin(), used.end(),
+              [&](int a, int b) { return miss[at(a)] < miss[at(b)] || (miss[at(a)] == miss[at(b)] && a < b); });
     used.resize(std::max<std::size_t>(3, from.size() / 2));
     used.resize(std::min(used.size(), from.size()));
     std::sort(used.begin(), used.end());
@@ -97,11 +102,14 @@ Eigen::Isometry3d trunk_fit(const std::vector<Vec3>& from, const std::vector<Vec
   return fit;
 }
 
-double angle_between(const Mat3& a, const Mat3& b) { return Eigen::AngleAxisd(Mat3(a * b.transpose())).angle(); }
+double angle_between(const Mat3& a, const Mat3& b) {
+  return Eigen::AngleAxisd(Mat3(a * b.transpose())).angle();
+}
 
 class Scan {
  public:
-  Scan(const Trajectory& trajectory, const TeleportScanSettings& settings) : trajectory_(trajectory), settings_(settings) {
+  Scan(const Trajectory& trajectory, const TeleportScanSettings& settings)
+      : trajectory_(trajectory), settings_(settings) {
     first_ = settings.first_frame - settings.preroll_frames;
     count_ = at(settings.last_frame - first_ + 1);
     std::vector<Vec3> bind(at(trajectory.surface().vertex_count()));
@@ -137,7 +145,8 @@ class Scan {
 
   void record() {
     const Surface& surface = trajectory_.surface();
-    const std::size_t vertices = at(surface.vertex_count()), stride = std::max<std::size_t>(1, vertices / k_most_vertices);
+    const std::size_t vertices = at(surface.vertex_count()),
+                      stride = std::max<std::size_t>(1, vertices / k_most_vertices);
     std::vector<double> members(surface.parts.size(), 0.0);
     for (const int part : surface.part_of_vertex) ++members[at(part)];
     frames_.resize(count_);
@@ -171,7 +180,8 @@ class Scan {
     if (begin + length < moves_.size()) compare(begin + length);
     if (!std::isfinite(moved)) return false;  // nothing to compare with
     return moved > std::max(k_share_of_size * size_, 0.25 * k_acceleration * time * time) ||
-           (turned > std::max(k_least_turn, 0.25 * k_angular_acceleration * time * time) && moved > k_turning_share * size_);
+           (turned > std::max(k_least_turn, 0.25 * k_angular_acceleration * time * time) &&
+            moved > k_turning_share * size_);
   }
 
   void find_jumps() {
@@ -188,7 +198,9 @@ class Scan {
       PartJump jump;
       const Vec3 body = mean(moves_[i]);
       for (std::size_t p = 0; p < parts.size(); ++p) {
-        const auto move = [&](std::size_t k) -> Vec3 { return frames_[k + 1].parts[p] - frames_[k].parts[p] - mean(moves_[k]); };
+        const auto move = [&](std::size_t k) -> Vec3 {
+          return frames_[k + 1].parts[p] - frames_[k].parts[p] - mean(moves_[k]);
+        };
         const Vec3 now = frames_[i + 1].parts[p] - frames_[i].parts[p] - body;
         if (now.norm() <= least) continue;
         double moved = std::numeric_limits<double>::infinity();
@@ -203,8 +215,8 @@ class Scan {
     }
   }
 
-  /// Fits the jump itself, without the body's own motion in the meantime: from the middle of the interval as the motion before
-  /// foretells it to the middle as the motion after has it. The body's acceleration is in both and cancels.
+  /// Fits the jump itself, without the body's own motion in the meantime: from the middle of the interval as the motion
+  /// before foretells it to the middle as the motion after has it. The body's acceleration is in both and cancels.
   Teleport measure(std::size_t i, TeleportScan& out) const {
     const bool before = i > 0 && !jumps_[i - 1], after = i + 2 < count_ && !jumps_[i + 1];
     std::vector<Vec3> from = sample(i), to = sample(i + 1);
@@ -242,21 +254,26 @@ class Scan {
 
 }  // namespace
 
-TeleportScan scan_teleports(const Trajectory& trajectory, const TeleportScanSettings& settings) { return Scan(trajectory, settings).run(); }
+TeleportScan scan_teleports(const Trajectory& trajectory, const TeleportScanSettings& settings) {
+  return Scan(trajectory, settings).run();
+}
 
 std::vector<std::string> teleport_notes(const TeleportScan& scan, const std::string& primary, std::size_t most) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < scan.teleports.size(); ++i) {
     const int frame = scan.teleports[i].frame;
     const double turn_deg = scan.turns[i] * 180 / std::numbers::pi;
-    out.push_back(fmt::format("primary \"{}\" jumps {:.2f} m{} between frames {} and {}: the cloth is carried along", primary, scan.distances[i],
-                              turn_deg >= 1 ? fmt::format(" and turns {:.0f} degrees", turn_deg) : std::string(), frame - 1, frame));
+    out.push_back(fmt::format("primary \"{}\" jumps {:.2f} m{} between frames {} and {}: the cloth is carried along",
+                              primary, scan.distances[i],
+                              turn_deg >= 1 ? fmt::format(" and turns {:.0f} degrees", turn_deg) : std::string(),
+                              frame - 1, frame));
   }
   for (const PartJump& jump : scan.part_jumps)
-    out.push_back(fmt::format("primary \"{}\": part \"{}\"{} jumps {:.2f} m between frames {} and {} and the body does not: "
-                              "nothing can be carried along, look at these frames",
-                              primary, jump.part, jump.part_count > 1 ? fmt::format(" (one of {})", jump.part_count) : std::string(),
-                              jump.distance, jump.frame - 1, jump.frame));
+    out.push_back(fmt::format(
+        "primary \"{}\": part \"{}\"{} jumps {:.2f} m between frames {} and {} and the body does not: "
+        "nothing can be carried along, look at these frames",
+        primary, jump.part, jump.part_count > 1 ? fmt::format(" (one of {})", jump.part_count) : std::string(),
+        jump.distance, jump.frame - 1, jump.frame));
   if (out.size() > most) {
     const std::size_t more = out.size() - most;
     out.resize(most);

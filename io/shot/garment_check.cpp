@@ -177,7 +177,8 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
         " exactly on another (merge them by distance in the modelling tool, or set weld for this cloth)");
 }
 
-/// More places than this for one vertex is a broken file: four panels meet in a corner, each sewn to each and both ways.
+/// More places than this for one vertex is a broken file: four panels meet in a corner, each sewn to each and both
+/// ways.
 constexpr int k_most_stitches = 16;
 
 void judge_stitches(const Mesh& mesh, GarmentFindings& out) {
@@ -203,11 +204,13 @@ void judge_stitches(const Mesh& mesh, GarmentFindings& out) {
   if (own.count > 0)
     out.faults.push_back(places(own.count, "stitch sews", "stitches sew", own.first) + " a vertex to itself");
   if (loose.count > 0)
-    out.faults.push_back(places(loose.count, "stitch sews", "stitches sew", loose.first) + " a vertex that no face uses");
+    out.faults.push_back(places(loose.count, "stitch sews", "stitches sew", loose.first) +
+                         " a vertex that no face uses");
   if (crowded.count > 0)
     out.faults.push_back(places(crowded.count, "vertex is", "vertices are", crowded.first) + " sewn to more than " +
                          std::to_string(k_most_stitches) + " places");
-  if (sorted.size() < all) out.notes.push_back(std::to_string(all - sorted.size()) + " stitches are there twice; each counts once");
+  if (sorted.size() < all)
+    out.notes.push_back(std::to_string(all - sorted.size()) + " stitches are there twice; each counts once");
 }
 
 /// Connected pieces of the faces; seams join them or not.
@@ -244,7 +247,9 @@ void count_pieces(const Mesh& mesh, GarmentFindings& out) {
 
 }  // namespace
 
-int panel_count(const Mesh& mesh) { return static_cast<int>(pieces_of(mesh, false)); }
+int panel_count(const Mesh& mesh) {
+  return static_cast<int>(pieces_of(mesh, false));
+}
 
 GarmentFindings inspect_garment(const Mesh& mesh) {
   GarmentFindings out;
@@ -256,7 +261,8 @@ GarmentFindings inspect_garment(const Mesh& mesh) {
     out.faults.push_back("has faces that name vertices which do not exist");
     return out;
   }
-  if (!std::all_of(mesh.stitches.begin(), mesh.stitches.end(), [&](const Stitch& s) { return names_vertices(mesh, s); })) {
+  if (!std::all_of(mesh.stitches.begin(), mesh.stitches.end(),
+                   [&](const Stitch& s) { return names_vertices(mesh, s); })) {
     out.faults.push_back("has stitches that name vertices which do not exist");
     return out;
   }
@@ -281,7 +287,8 @@ Status check_garment(const Mesh& mesh) {
 Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes) {
   const std::string where = mesh.name.empty() ? "mesh" : "mesh \"" + mesh.name + "\"";
   if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size())
-    return input_error("has no pattern: its faces need texture vertices (vt)", where, "export with uvs, or write rest = \"mesh\"");
+    return input_error("has no pattern: its faces need texture vertices (vt)", where,
+                       "export with uvs, or write rest = \"mesh\"");
   Finding flat;
   double pattern_area = 0, mesh_area = 0;
   std::size_t begin = 0;
@@ -301,7 +308,9 @@ Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& n
     begin += size;
   }
   if (flat.count > 0)
-    return input_error("cannot be cut from its pattern: " + places(flat.count, "face has", "faces have", flat.first) + " no area in vt", where);
+    return input_error("cannot be cut from its pattern: " + places(flat.count, "face has", "faces have", flat.first) +
+                           " no area in vt",
+                       where);
   const double ratio = std::sqrt(pattern_area / mesh_area);
   if (!(ratio > 0.5 && ratio < 2))
     notes.push_back("its pattern is " + std::to_string(ratio) + " times as long as the mesh: is pattern_scale right?");

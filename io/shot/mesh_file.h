@@ -14,8 +14,9 @@
 namespace ft {
 
 /// Reads v, vt, f (negative and v/vt/vn indices), g/o (face groups become vertex groups), vertex colours (groups "red",
-/// "green", "blue" with the channel as weight), seam and stitch lines (see obj_read.cpp). Unknown lines are skipped. Refuses numbers that are not finite, faces
-/// with fewer than three corners and indices that name nothing; uvs are kept only when every corner has one.
+/// "green", "blue" with the channel as weight), seam and stitch lines (see obj_read.cpp). Unknown lines are skipped.
+/// Refuses numbers that are not finite, faces with fewer than three corners and indices that name nothing; uvs are kept
+/// only when every corner has one.
 Result<Mesh> read_obj(const std::filesystem::path& path);
 
 /// The same from text; `where` stands in front of line numbers in messages.
@@ -33,15 +34,16 @@ struct GarmentFindings {
 GarmentFindings inspect_garment(const Mesh& mesh);
 
 /// Refuses what cannot be simulated: no faces, NaN or infinite vertices, zero-area faces, edges with more than two
-/// faces, vertices used twice in a face, coincident vertices, stitches of a vertex with itself or with what is in no face. One message with the count and the first places of each
-/// fault. Vertices that no face uses are tolerated: they stay in the cache.
+/// faces, vertices used twice in a face, coincident vertices, stitches of a vertex with itself or with what is in no
+/// face. One message with the count and the first places of each fault. Vertices that no face uses are tolerated: they
+/// stay in the cache.
 Status check_garment(const Mesh& mesh);
 
 /// Pieces of connected faces, before anything is sewn.
 int panel_count(const Mesh& mesh);
 
-/// Refuses a mesh whose uvs are no pattern to cut it from: none, or faces without an area in them. Assumes a mesh that is good.
-/// `notes` says what looks wrong: a pattern of quite another size than the mesh, at `scale` m per unit of uvs.
+/// Refuses a mesh whose uvs are no pattern to cut it from: none, or faces without an area in them. Assumes a mesh that
+/// is good. `notes` says what looks wrong: a pattern of quite another size than the mesh, at `scale` m per unit of uvs.
 Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes);
 
 }  // namespace ft

@@ -1,7 +1,8 @@
 // OBJ reader (Wavefront's "Advanced Visualizer" appendix B1): v, vt, f, g, o; the rest is skipped. One pass over the
 // text, numbers by std::from_chars. Caution: faces may name vertices that come later, so indices are judged at the end.
-// Sewing as the Codimensional IPC garments write it, which no standard knows: "seam N" opens a seam of N stitches, "stitch v a b t"
-// sews vertex v to the point (1 - t) a + t b, "stitch v w" a vertex to a vertex. These count vertices from 0.
+// Sewing as the Codimensional IPC garments write it, which no standard knows: "seam N" opens a seam of N stitches,
+// "stitch v a b t" sews vertex v to the point (1 - t) a + t b, "stitch v w" a vertex to a vertex. These count vertices
+// from 0.
 #include <algorithm>
 #include <charconv>
 #include <cmath>

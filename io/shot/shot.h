@@ -44,9 +44,9 @@ struct PrimarySpec {
 struct PinSpec {
   enum class Select { k_group, k_within, k_vertices, k_file };
   Select select = Select::k_group;
-  std::string group;          ///< vertex group of the garment's mesh
-  double within = 0;          ///< garment vertices nearer than this to the body in the bind pose [m]
-  std::vector<int> vertices;  ///< garment vertices, from 0, file order
+  std::string group;           ///< vertex group of the garment's mesh
+  double within = 0;           ///< garment vertices nearer than this to the body in the bind pose [m]
+  std::vector<int> vertices;   ///< garment vertices, from 0, file order
   std::filesystem::path file;  ///< values file with a weight per vertex, see vertex_values.h
   std::string column;          ///< of `file`; empty: the only one
   double stiffness = 1e6;  ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
@@ -77,7 +77,8 @@ struct ClothSpec {
   double unit_scale = 1;  ///< m per mesh unit
   std::string up = "y";
   Vec3 offset = Vec3::Zero();  ///< m, added after scale and axis
-  std::string rest;            ///< "mesh": rest lengths of the placed mesh; "pattern": of the flat pattern in vt; "": pattern if it is sewn
+  std::string rest;  ///< "mesh": rest lengths of the placed mesh; "pattern": of the flat pattern in vt; "": pattern if
+                     ///< it is sewn
   double pattern_scale = 1;    ///< m per unit of vt
   double sewing_time = 0;      ///< s from the start of the pre-roll until seams are closed; 0: half of the pre-roll
   double thickness = 3e-3;     ///< m: contact begins at this distance from the body, 0.5e-3..10e-3

@@ -92,8 +92,8 @@ void read_vertices(const ValueReader& reader, const Value& value, std::vector<in
 void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin, FaultList& faults) {
   const Member *until = value.find("until"), *fade = value.find("fade");
   if (until && pin.from && pin.until && !(*pin.from < *pin.until))
-    faults.add(until->place, owner + ": until = " + number_text(*pin.until) + " is not after from = " + number_text(*pin.from) +
-                                 ": it would never hold");
+    faults.add(until->place, owner + ": until = " + number_text(*pin.until) +
+                                 " is not after from = " + number_text(*pin.from) + ": it would never hold");
   if (fade && !until && !value.find("from"))
     faults.add(fade->place, owner + ": fade needs until (or from), the frame at which it begins");
 }

@@ -70,7 +70,8 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"offset", &ClothSpec::offset, -1000, 1000, "m", "", false, "translate position move",
        "Added after scale and axis"},
       {"rest", &ClothSpec::rest, 0, 0, "", "mesh pattern", false, "rest_shape rest_length rest_lengths",
-       "Where rest lengths come from: the `mesh` as it is placed, or the flat `pattern` in `vt`. Without it the pattern where "
+       "Where rest lengths come from: the `mesh` as it is placed, or the flat `pattern` in `vt`. Without it the "
+       "pattern where "
        "the mesh has stitches, else the mesh"},
       {"pattern_scale", &ClothSpec::pattern_scale, 1e-6, 1000, "m per vt unit", "", false, "uv_scale vt_scale",
        "Size of the pattern; 0.01 for a pattern in centimetres"},
@@ -118,9 +119,11 @@ std::span<const ShotKey<MapSpec>> map_keys() {
       {"file", &MapSpec::file, 0, 0, "", "", false, "values path csv",
        "A number for every vertex of the mesh: text or CSV, a line each; a first line with words names the columns"},
       {"of", &MapSpec::of, 0, 0, "", "@maps", true, "what name kind property target",
-       "What varies: factors of the fabric's stiffness (`stretch`, which includes shear; `bend`), `thickness` [m], `mass_per_area` [kg/m2]"},
+       "What varies: factors of the fabric's stiffness (`stretch`, which includes shear; `bend`), `thickness` [m], "
+       "`mass_per_area` [kg/m2]"},
       {"column", &MapSpec::column, 0, 0, "", "", false, "field header", "Column of `file`, where it has several"},
-      {"low", &MapSpec::low, 0, 0, "", "", false, "min minimum black zero", "Value where the weight is 0; linear between"},
+      {"low", &MapSpec::low, 0, 0, "", "", false, "min minimum black zero",
+       "Value where the weight is 0; linear between"},
       {"high", &MapSpec::high, 0, 0, "", "", false, "max maximum white one",
        "Value where the weight is 1. A file may do without both: its numbers are the values then"},
   };

@@ -20,9 +20,10 @@ struct TeleportsKey {};
 
 template <class Spec>
 struct ShotKey {
-  using Target = std::variant<int Spec::*, double Spec::*, bool Spec::*, std::string Spec::*,
-                              std::filesystem::path Spec::*, std::optional<double> Spec::*, Vec3 Spec::*,
-                              std::vector<std::string> Spec::*, FramesKey, PinsKey, SinglePinKey, MapsKey, TeleportsKey>;
+  using Target =
+      std::variant<int Spec::*, double Spec::*, bool Spec::*, std::string Spec::*, std::filesystem::path Spec::*,
+                   std::optional<double> Spec::*, Vec3 Spec::*, std::vector<std::string> Spec::*, FramesKey, PinsKey,
+                   SinglePinKey, MapsKey, TeleportsKey>;
   std::string_view name;
   Target target;
   double lowest = 0, highest = 0;  ///< of numbers, and of every component of vectors; both 0: no range

@@ -31,7 +31,8 @@ void judge_source(const std::string& owner, const Value& value, const MapSpec& m
   if (from && file)
     faults.add(value.place, owner + ": has both from and file; a map takes its values from one of them");
   else if (!from && !file)
-    faults.add(value.place, owner + ": needs from = \"red\" (a colour channel or vertex group) or file = \"values.csv\"");
+    faults.add(value.place,
+               owner + ": needs from = \"red\" (a colour channel or vertex group) or file = \"values.csv\"");
   if (from && map.from.empty() && from->value.kind == Value::Kind::k_text)
     faults.add(from->value.place, owner + ": from is empty; it names a vertex group or a colour channel");
   judge_column(owner, value, faults);
@@ -39,7 +40,9 @@ void judge_source(const std::string& owner, const Value& value, const MapSpec& m
 
 }  // namespace
 
-std::span<const MapKind> map_kinds() { return k_kinds; }
+std::span<const MapKind> map_kinds() {
+  return k_kinds;
+}
 
 const MapKind* find_map_kind(std::string_view name) {
   const auto found = std::find_if(k_kinds.begin(), k_kinds.end(), [&](const MapKind& k) { return k.name == name; });
@@ -68,7 +71,8 @@ void judge_map(const std::string& owner, const Value& value, const MapSpec& map,
     faults.add(value.place, owner + ": from needs low and high, " + ends);
   const MapKind* kind = find_map_kind(map.of);
   if (!kind && of && of->value.kind == Value::Kind::k_text)
-    faults.add(of->value.place, with_hint(owner + ": of = " + in_quotes(map.of) + " is nothing that can vary", guess(map.of)));
+    faults.add(of->value.place,
+               with_hint(owner + ": of = " + in_quotes(map.of) + " is nothing that can vary", guess(map.of)));
   if (!kind) return;
   for (const Member* end : {low, high})
     if (end && (end->value.kind == Value::Kind::k_integer || end->value.kind == Value::Kind::k_number))

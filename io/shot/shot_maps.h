@@ -1,5 +1,5 @@
-// Maps of the shot file: what of a cloth can vary over its surface, within which range, and what is wrong with a table of
-// maps. For the reader, the reference, and the conductor, which judges the values themselves by the same ranges.
+// Maps of the shot file: what of a cloth can vary over its surface, within which range, and what is wrong with a table
+// of maps. For the reader, the reference, and the conductor, which judges the values themselves by the same ranges.
 #pragma once
 
 #include <span>

@@ -267,7 +267,8 @@ class ShotReader {
       } else if (value.kind == Value::Kind::k_list || number) {
         spec.teleports = Teleports::k_frames;
         for (const Value& item : number ? std::vector<Value>{value} : value.items)
-          if (const auto frame = reader.number(item, allowed(key, true))) spec.teleport_frames.push_back(static_cast<int>(*frame));
+          if (const auto frame = reader.number(item, allowed(key, true)))
+            spec.teleport_frames.push_back(static_cast<int>(*frame));
         auto& frames = spec.teleport_frames;
         std::sort(frames.begin(), frames.end());
         frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
@@ -323,10 +324,9 @@ class ShotReader {
                vertices = value.find("vertices") != nullptr, file = value.find("file") != nullptr;
     const int selections = group + within + vertices + file;
     if (selections != 1)
-      faults_.add(value.place,
-                  owner + ": needs one of group, within, vertices, file, and has " +
-                      (selections == 0 ? "none" : std::to_string(selections)) +
-                      " (several pins are written as several { } in the list)");
+      faults_.add(value.place, owner + ": needs one of group, within, vertices, file, and has " +
+                                   (selections == 0 ? "none" : std::to_string(selections)) +
+                                   " (several pins are written as several { } in the list)");
     if (group && pin.group.empty()) faults_.add(value.place, owner + ": the name of a vertex group is empty");
     judge_column(owner, value, faults_);
     judge_hold(owner, value, pin, faults_);

@@ -60,18 +60,10 @@ std::string relative_text(const std::filesystem::path& path, const std::filesyst
 std::string pin_text(const PinSpec& pin, const std::filesystem::path& folder) {
   std::string out = "{ ";
   switch (pin.select) {
-    case PinSpec::Select::k_group:
-      out.append("group = ").append(in_quotes(pin.group));
-      break;
-    case PinSpec::Select::k_within:
-      out.append("within = ").append(number_text(pin.within));
-      break;
-    case PinSpec::Select::k_vertices:
-      out.append("vertices = ").append(in_quotes(vertices_text(pin.vertices)));
-      break;
-    case PinSpec::Select::k_file:
-      out.append("file = ").append(relative_text(pin.file, folder));
-      break;
+    case PinSpec::Select::k_group: out.append("group = ").append(in_quotes(pin.group)); break;
+    case PinSpec::Select::k_within: out.append("within = ").append(number_text(pin.within)); break;
+    case PinSpec::Select::k_vertices: out.append("vertices = ").append(in_quotes(vertices_text(pin.vertices))); break;
+    case PinSpec::Select::k_file: out.append("file = ").append(relative_text(pin.file, folder)); break;
   }
   if (!pin.column.empty()) out.append(", column = ").append(in_quotes(pin.column));
   out.append(", stiffness = ")
@@ -122,7 +114,8 @@ struct ValueText {
   std::string operator()(SinglePinKey) const { return {}; }
   std::string operator()(TeleportsKey) const {
     if constexpr (std::is_same_v<Spec, PrimarySpec>) {
-      if (spec.teleports != Teleports::k_frames) return in_quotes(spec.teleports == Teleports::k_detect ? "detect" : "ignore");
+      if (spec.teleports != Teleports::k_frames)
+        return in_quotes(spec.teleports == Teleports::k_detect ? "detect" : "ignore");
       std::string out = "[";
       for (const int frame : spec.teleport_frames) out.append(out.size() > 1 ? ", " : "").append(std::to_string(frame));
       return out.append("]");

@@ -119,20 +119,13 @@ Member* Value::find(std::string_view key) {
 
 std::string describe(const Value& value) {
   switch (value.kind) {
-    case Value::Kind::k_flag:
-      return value.flag ? "true" : "false";
-    case Value::Kind::k_integer:
-      return std::string("the number ").append(std::to_string(value.integer));
-    case Value::Kind::k_number:
-      return std::string("the number ").append(number_text(value.number));
-    case Value::Kind::k_text:
-      return std::string("the text \"").append(printable(value.text)).append("\"");
-    case Value::Kind::k_list:
-      return "a list";
-    case Value::Kind::k_table:
-      return "a table";
-    case Value::Kind::k_date:
-      return "a date";
+    case Value::Kind::k_flag: return value.flag ? "true" : "false";
+    case Value::Kind::k_integer: return std::string("the number ").append(std::to_string(value.integer));
+    case Value::Kind::k_number: return std::string("the number ").append(number_text(value.number));
+    case Value::Kind::k_text: return std::string("the text \"").append(printable(value.text)).append("\"");
+    case Value::Kind::k_list: return "a list";
+    case Value::Kind::k_table: return "a table";
+    case Value::Kind::k_date: return "a date";
   }
   return "something else";
 }

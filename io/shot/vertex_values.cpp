@@ -29,7 +29,9 @@ std::string_view trimmed(std::string_view text) {
 /// Cells of a line: between semicolons, else commas, else blanks.
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> out;
-  const char mark = line.find(';') != std::string_view::npos ? ';' : line.find(',') != std::string_view::npos ? ',' : ' ';
+  const char mark = line.find(';') != std::string_view::npos   ? ';'
+                    : line.find(',') != std::string_view::npos ? ','
+                                                               : ' ';
   while (true) {
     if (mark == ' ') {
       const std::size_t begin = line.find_first_not_of(k_blanks);
@@ -51,10 +53,13 @@ bool parse_number(std::string_view word, double& out) {
 
 bool is_header(const std::vector<std::string_view>& cells) {
   double ignored = 0;
-  return std::any_of(cells.begin(), cells.end(), [&](std::string_view c) { return !c.empty() && !parse_number(c, ignored); });
+  return std::any_of(cells.begin(), cells.end(),
+                     [&](std::string_view c) { return !c.empty() && !parse_number(c, ignored); });
 }
 
-std::string named(const std::string& column) { return column.empty() ? std::string() : "column " + in_quotes(column) + " "; }
+std::string named(const std::string& column) {
+  return column.empty() ? std::string() : "column " + in_quotes(column) + " ";
+}
 
 }  // namespace
 
@@ -79,19 +84,22 @@ Result<VertexValues> parse_vertex_values(std::string_view text, std::string_view
     }
     const std::string vertex = "vertex " + std::to_string(out.lines.size());
     if (cells.size() != out.columns.size())
-      return input_error("has " + std::to_string(cells.size()) + " numbers for " + vertex + ", the line before it has " +
-                             std::to_string(out.columns.size()),
+      return input_error("has " + std::to_string(cells.size()) + " numbers for " + vertex +
+                             ", the line before it has " + std::to_string(out.columns.size()),
                          place);
     for (std::size_t c = 0; c < cells.size(); ++c) {
       double number = 0;
       if (!parse_number(cells[c], number))
         return input_error("has \"" + printable(cells[c]) + "\" for a number of " + vertex, place);
-      if (!std::isfinite(number)) return input_error("has " + named(out.columns[c]) + printable(cells[c]) + " for " + vertex, place, "every vertex needs a finite number");
+      if (!std::isfinite(number))
+        return input_error("has " + named(out.columns[c]) + printable(cells[c]) + " for " + vertex, place,
+                           "every vertex needs a finite number");
       out.values[c].push_back(number);
     }
     out.lines.push_back(line_number);
   }
-  if (out.lines.empty()) return input_error("holds no numbers", std::string(where), "one line for each vertex of the mesh is needed");
+  if (out.lines.empty())
+    return input_error("holds no numbers", std::string(where), "one line for each vertex of the mesh is needed");
   return out;
 }
 
@@ -101,8 +109,8 @@ Result<VertexValues> read_vertex_values(const std::filesystem::path& path) {
   return parse_vertex_values(*text, path.filename().string());
 }
 
-Result<std::vector<double>> vertex_column(const std::filesystem::path& path, const std::string& column, int vertex_count,
-                                          double lowest, double highest, std::string_view unit) {
+Result<std::vector<double>> vertex_column(const std::filesystem::path& path, const std::string& column,
+                                          int vertex_count, double lowest, double highest, std::string_view unit) {
   auto table = read_vertex_values(path);
   if (!table) return table.error();
   const std::string file = path.filename().string();
@@ -121,13 +129,15 @@ Result<std::vector<double>> vertex_column(const std::filesystem::path& path, con
   }
   std::vector<double>& values = table->values[chosen];
   if (values.size() != at(vertex_count))
-    return input_error("has " + std::to_string(values.size()) + " lines of numbers, the mesh has " + std::to_string(vertex_count) + " vertices",
+    return input_error("has " + std::to_string(values.size()) + " lines of numbers, the mesh has " +
+                           std::to_string(vertex_count) + " vertices",
                        file, "one line for each vertex in the mesh's order is needed");
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] >= lowest && values[i] <= highest) continue;
     const Allowed allowed{lowest, highest, unit};
-    return input_error(named(column) + "= " + number_text(values[i]) + " for vertex " + std::to_string(i) + " is outside [" +
-                           number_text(lowest) + ", " + number_text(highest) + "]" + (unit.empty() || unit == "1" ? "" : " " + std::string(unit)),
+    return input_error(named(column) + "= " + number_text(values[i]) + " for vertex " + std::to_string(i) +
+                           " is outside [" + number_text(lowest) + ", " + number_text(highest) + "]" +
+                           (unit.empty() || unit == "1" ? "" : " " + std::string(unit)),
                        file + ":" + std::to_string(table->lines[i]), unit_slip(values[i], allowed));
   }
   return std::move(values);

@@ -15,8 +15,8 @@ struct WeldedMesh {
 };
 
 /// Vertices nearer than `distance` [m, > 0] to an earlier kept one become that one, first come, first kept; their order
-/// stays. Faces that lose their area by it (fewer than three different corners) are dropped, uvs are kept per corner; stitches that
-/// it closes are dropped.
+/// stays. Faces that lose their area by it (fewer than three different corners) are dropped, uvs are kept per corner;
+/// stitches that it closes are dropped.
 WeldedMesh weld(const Mesh& mesh, double distance);
 
 /// Positions of the joined mesh, handed back to all vertices of the file.

@@ -16,9 +16,7 @@ struct Cells {
   Vec2 origin = Vec2::Zero();
   std::vector<int> piece;
   std::vector<int> piece_size;  ///< index 0 unused
-  Vec2 centre(int cell) const {
-    return origin + k_cell * Vec2(cell % columns + 0.5, cell / columns + 0.5);
-  }
+  Vec2 centre(int cell) const { return origin + k_cell * Vec2(cell % columns + 0.5, cell / columns + 0.5); }
 };
 
 void number_pieces(Cells& cells) {
@@ -66,7 +64,8 @@ Cells slice_cells(const Body& body, std::span<const int> candidates, double heig
       ends[count++] = Vec2(p.x() + s * (q.x() - p.x()), p.z() + s * (q.z() - p.z()));
     }
     if (count < 2) continue;
-    const Vec3 normal = (body.positions[at(t[1])] - body.positions[at(t[0])]).cross(body.positions[at(t[2])] - body.positions[at(t[0])]);
+    const Vec3 normal = (body.positions[at(t[1])] - body.positions[at(t[0])])
+                            .cross(body.positions[at(t[2])] - body.positions[at(t[0])]);
     const int sign = normal.x() > 0 ? 1 : -1;
     if (ends[0].y() > ends[1].y()) std::swap(ends[0], ends[1]);
     const int first = std::max(0, static_cast<int>(std::ceil((ends[0].y() - cells.origin.y()) / k_cell - 0.5)));
@@ -130,9 +129,8 @@ std::vector<bool> follow(const Cells& cells, const Cells& neighbour, const std::
 }  // namespace
 
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
+  std::sort(points.begin(), points.end(),
+            [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
   };
@@ -226,7 +224,8 @@ Result<BodyShape> measure_body(const Body& body, double waist) {
   if (waist <= 0) {
     waist_index = index_of(0.55);
     for (int k = index_of(0.55); k <= index_of(0.68); ++k)
-      if (cells[at(k)].piece_size[at(largest(k))] < cells[at(waist_index)].piece_size[at(largest(waist_index))]) waist_index = k;
+      if (cells[at(k)].piece_size[at(largest(k))] < cells[at(waist_index)].piece_size[at(largest(waist_index))])
+        waist_index = k;
   }
   if (cells[at(waist_index)].piece_size[at(largest(waist_index))] == 0)
     return input_error("no closed cross-section at the height of the waist: is this a standing body with Y up?");

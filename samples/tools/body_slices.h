@@ -1,7 +1,8 @@
-// Horizontal slices of a body in its bind pose, and the landmarks that a tailor needs: waist, crotch, neck, width of the chest.
-// For make_garments. Works on any closed or nearly closed surface (several overlapping shells too): a cell of a slice is
-// inside when the winding number of its row is not zero. The torso is followed from the waist slice by slice, so that hands
-// that hang beside the hips are not taken for hips. Caution: a body whose arms lie on the torso reads as one wide torso.
+// Horizontal slices of a body in its bind pose, and the landmarks that a tailor needs: waist, crotch, neck, width of
+// the chest. For make_garments. Works on any closed or nearly closed surface (several overlapping shells too): a cell
+// of a slice is inside when the winding number of its row is not zero. The torso is followed from the waist slice by
+// slice, so that hands that hang beside the hips are not taken for hips. Caution: a body whose arms lie on the torso
+// reads as one wide torso.
 #pragma once
 
 #include <span>
@@ -23,8 +24,8 @@ struct Slice {
   std::vector<Vec2> outline;  ///< convex hull of it in (x, z), counter-clockwise; empty where nothing is
   double area = 0;            ///< m2, of the inside, not of the hull
   Vec2 centre = Vec2::Zero();
-  int component_count = 0;    ///< 1 torso, 2 legs
-  double width_x = 0;         ///< m
+  int component_count = 0;  ///< 1 torso, 2 legs
+  double width_x = 0;       ///< m
 };
 
 struct BodyShape {
@@ -33,8 +34,8 @@ struct BodyShape {
   std::vector<Slice> slices;  ///< from the feet up
   double waist = 0;           ///< heights [m]
   double crotch = 0;
-  double neck = 0;            ///< narrowest
-  double neck_base = 0;       ///< where the shoulders begin
+  double neck = 0;       ///< narrowest
+  double neck_base = 0;  ///< where the shoulders begin
   Vec2 waist_centre = Vec2::Zero();
   double chest_half_width = 0;  ///< m, between waist and shoulders
 

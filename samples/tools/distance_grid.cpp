@@ -17,7 +17,8 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
   const Vec3 n = (b - a).cross(c - a);
   const double area2 = n.squaredNorm();
   if (area2 > 1e-24) {
-    const bool over = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 && n.dot((a - c).cross(p - c)) >= 0;
+    const bool over =
+        n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 && n.dot((a - c).cross(p - c)) >= 0;
     if (over) return std::abs(n.dot(p - a)) / std::sqrt(area2);
   }
   return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
@@ -34,8 +35,10 @@ void vote(const Body& body, const DistanceGrid& grid, int axis, std::vector<unsi
     if (area == 0) continue;
     // Rays go through the nodes, a hair aside so that they do not run along the edges of symmetric bodies.
     const double aside_u = 1.7e-4, aside_v = 2.9e-4;
-    const int u0 = static_cast<int>(std::floor(std::min({p[0][u], p[1][u], p[2][u]}))), u1 = static_cast<int>(std::ceil(std::max({p[0][u], p[1][u], p[2][u]})));
-    const int v0 = static_cast<int>(std::floor(std::min({p[0][v], p[1][v], p[2][v]}))), v1 = static_cast<int>(std::ceil(std::max({p[0][v], p[1][v], p[2][v]})));
+    const int u0 = static_cast<int>(std::floor(std::min({p[0][u], p[1][u], p[2][u]}))),
+              u1 = static_cast<int>(std::ceil(std::max({p[0][u], p[1][u], p[2][u]})));
+    const int v0 = static_cast<int>(std::floor(std::min({p[0][v], p[1][v], p[2][v]}))),
+              v1 = static_cast<int>(std::ceil(std::max({p[0][v], p[1][v], p[2][v]})));
     for (int j = std::max(0, v0); j <= std::min(rows - 1, v1); ++j)
       for (int i = std::max(0, u0); i <= std::min(columns - 1, u1); ++i) {
         const double x = i + aside_u, y = j + aside_v;
@@ -46,7 +49,9 @@ void vote(const Body& body, const DistanceGrid& grid, int axis, std::vector<unsi
           w[k] = ((b[u] - a[u]) * (y - a[v]) - (b[v] - a[v]) * (x - a[u])) / area;
           hit = hit && w[k] >= 0;
         }
-        if (hit) crossings[at(j * columns + i)].emplace_back(w[0] * p[0][axis] + w[1] * p[1][axis] + w[2] * p[2][axis], area > 0 ? 1 : -1);
+        if (hit)
+          crossings[at(j * columns + i)].emplace_back(w[0] * p[0][axis] + w[1] * p[1][axis] + w[2] * p[2][axis],
+                                                      area > 0 ? 1 : -1);
       }
   }
   for (int j = 0; j < rows; ++j)
@@ -78,7 +83,8 @@ double DistanceGrid::value(const Vec3& p) const {
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-    sum += (dx ? s[0] : 1 - s[0]) * (dy ? s[1] : 1 - s[1]) * (dz ? s[2] : 1 - s[2]) * values[at(index(base[0] + dx, base[1] + dy, base[2] + dz))];
+    sum += (dx ? s[0] : 1 - s[0]) * (dy ? s[1] : 1 - s[1]) * (dz ? s[2] : 1 - s[2]) *
+           values[at(index(base[0] + dx, base[1] + dy, base[2] + dz))];
   }
   return sum;
 }
@@ -114,7 +120,8 @@ DistanceGrid make_distance_grid(const Body& body, const Box& box, double cell, d
           double& d = grid.values[at(grid.index(x, y, z))];
           const Vec3 p = grid.node(x, y, z);
           if ((own.lo - p).cwiseMax(p - own.hi).cwiseMax(0.0).squaredNorm() >= d * d) continue;
-          d = std::min(d, distance_to_triangle(p, body.positions[at(t[0])], body.positions[at(t[1])], body.positions[at(t[2])]));
+          d = std::min(
+              d, distance_to_triangle(p, body.positions[at(t[0])], body.positions[at(t[1])], body.positions[at(t[2])]));
         }
   }
   std::vector<unsigned char> inside(grid.values.size(), 0);

@@ -1,5 +1,6 @@
-// Signed distance to a body on a regular grid, exact near the surface: negative inside, +-band far away. For make_garments.
-// Overlapping shells count as one body (inside where the winding number is not zero, by the vote of three axes).
+// Signed distance to a body on a regular grid, exact near the surface: negative inside, +-band far away. For
+// make_garments. Overlapping shells count as one body (inside where the winding number is not zero, by the vote of
+// three axes).
 #pragma once
 
 #include <vector>
@@ -10,9 +11,9 @@ namespace ft::garments {
 
 struct DistanceGrid {
   Vec3 origin = Vec3::Zero();
-  double cell = 0;                ///< m
-  std::array<int, 3> size{};      ///< nodes along x, y, z
-  std::vector<double> values;     ///< m, x fastest
+  double cell = 0;             ///< m
+  std::array<int, 3> size{};   ///< nodes along x, y, z
+  std::vector<double> values;  ///< m, x fastest
 
   int index(int x, int y, int z) const { return (z * size[1] + y) * size[0] + x; }
   Vec3 node(int x, int y, int z) const { return origin + cell * Vec3(x, y, z); }

@@ -8,7 +8,9 @@ namespace ft::garments {
 namespace {
 
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto volume = [](const Vec3& u, const Vec3& v, const Vec3& w, const Vec3& x) { return (v - u).cross(w - u).dot(x - u); };
+  const auto volume = [](const Vec3& u, const Vec3& v, const Vec3& w, const Vec3& x) {
+    return (v - u).cross(w - u).dot(x - u);
+  };
   const double sp = volume(a, b, c, p), sq = volume(a, b, c, q);
   if ((sp > 0) == (sq > 0)) return false;
   const double s0 = volume(p, q, a, b), s1 = volume(p, q, b, c), s2 = volume(p, q, c, a);
@@ -59,7 +61,8 @@ ShapeQuality shape_quality(std::span<const Vec3> positions, std::span<const Tria
   for (const Edge& e : unique_edges(triangles)) edges.push_back((positions[at(e[0])] - positions[at(e[1])]).norm());
   for (const Triangle& t : triangles)
     for (int k = 0; k < 3; ++k) {
-      const Vec3 u = positions[at(t[at((k + 1) % 3)])] - positions[at(t[at(k)])], v = positions[at(t[at((k + 2) % 3)])] - positions[at(t[at(k)])];
+      const Vec3 u = positions[at(t[at((k + 1) % 3)])] - positions[at(t[at(k)])],
+                 v = positions[at(t[at((k + 2) % 3)])] - positions[at(t[at(k)])];
       angles.push_back(std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / std::numbers::pi);
     }
   std::sort(edges.begin(), edges.end());

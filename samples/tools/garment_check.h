@@ -1,4 +1,5 @@
-// Is a garment ready to wear: nothing of it inside the body or through it, its triangles well shaped? For make_garments.
+// Is a garment ready to wear: nothing of it inside the body or through it, its triangles well shaped? For
+// make_garments.
 #pragma once
 
 #include <span>
@@ -8,7 +9,8 @@
 
 namespace ft::garments {
 
-/// Edges of either that pass through a triangle of the other. Exact up to rounding; every pair near in a grid is looked at.
+/// Edges of either that pass through a triangle of the other. Exact up to rounding; every pair near in a grid is looked
+/// at.
 int count_crossings(std::span<const Vec3> a, std::span<const Triangle> a_triangles, std::span<const Vec3> b,
                     std::span<const Triangle> b_triangles);
 

@@ -1,6 +1,6 @@
-// make_garments CHARACTER --kind skirt|top --out FILE.obj: tailors a garment to a character's bind pose, for the samples.
-// The character is read as a bake reads it (import_primary), so the garment fits in place; a plain OBJ is taken as the body
-// itself, in metres, Y-up. Says how well the result fits and ends with 1 when it touches the body.
+// make_garments CHARACTER --kind skirt|top --out FILE.obj: tailors a garment to a character's bind pose, for the
+// samples. The character is read as a bake reads it (import_primary), so the garment fits in place; a plain OBJ is
+// taken as the body itself, in metres, Y-up. Says how well the result fits and ends with 1 when it touches the body.
 // Caution: the tailoring is geometric and knows standing two-legged bodies only.
 #include <fmt/format.h>
 
@@ -49,9 +49,13 @@ Result<Mesh> tailor(Body body, const Arguments& arguments) {
   for (Vec3& p : body.positions) p = turn * p;
   auto shape = measure_body(body, arguments.waist);
   if (!shape) return shape.error();
-  fmt::print("body: {:.3f} m tall, waist at {:.3f} m, crotch {:.3f}, neck {:.3f}, shoulders begin at {:.3f}, chest {:.3f} wide\n",
-             shape->bounds.size().y(), shape->waist, shape->crotch, shape->neck, shape->neck_base, 2 * shape->chest_half_width);
-  Result<Mesh> mesh = arguments.kind == "top" ? make_top(body, *shape, arguments.top) : Result<Mesh>(make_skirt(*shape, arguments.skirt));
+  fmt::print(
+      "body: {:.3f} m tall, waist at {:.3f} m, crotch {:.3f}, neck {:.3f}, shoulders begin at {:.3f}, chest {:.3f} "
+      "wide\n",
+      shape->bounds.size().y(), shape->waist, shape->crotch, shape->neck, shape->neck_base,
+      2 * shape->chest_half_width);
+  Result<Mesh> mesh = arguments.kind == "top" ? make_top(body, *shape, arguments.top)
+                                              : Result<Mesh>(make_skirt(*shape, arguments.skirt));
   if (!mesh) return mesh;
   // A hundredth of a millimetre is fine enough for a tailor, and keeps the file short.
   for (Vec3& p : mesh->positions) p = ((turn.inverse() * p) * 1e5).array().round() / 1e5;
@@ -68,7 +72,9 @@ int run(const Arguments& arguments) {
   auto body = read_body(arguments);
   if (!body) return fail(body.error());
   if (!arguments.body_out.empty())
-    if (Status status = write_obj(arguments.body_out, make_triangle_mesh("body", body->positions, body->triangles)); !status) return fail(status.error());
+    if (Status status = write_obj(arguments.body_out, make_triangle_mesh("body", body->positions, body->triangles));
+        !status)
+      return fail(status.error());
   auto mesh = tailor(*body, arguments);
   if (!mesh) return fail(mesh.error());
   if (Status status = check_garment(*mesh); !status) return fail(status.error());
@@ -76,9 +82,11 @@ int run(const Arguments& arguments) {
   const std::vector<Triangle> triangles = triangulate(*mesh);
   const ShapeQuality quality = shape_quality(mesh->positions, triangles);
   const int crossings = count_crossings(mesh->positions, triangles, body->positions, body->triangles);
-  fmt::print("{}: {} vertices, {} faces, edges {:.1f} to {:.1f} mm (median {:.1f}), smallest angle {:.0f} degrees (1 % below {:.0f}), {} crossings with the body\n",
-             arguments.out, mesh->vertex_count(), mesh->face_count(), 1e3 * quality.shortest_edge, 1e3 * quality.longest_edge,
-             1e3 * quality.median_edge, quality.smallest_angle_deg, quality.angle_deg_p1, crossings);
+  fmt::print(
+      "{}: {} vertices, {} faces, edges {:.1f} to {:.1f} mm (median {:.1f}), smallest angle {:.0f} degrees (1 % below "
+      "{:.0f}), {} crossings with the body\n",
+      arguments.out, mesh->vertex_count(), mesh->face_count(), 1e3 * quality.shortest_edge, 1e3 * quality.longest_edge,
+      1e3 * quality.median_edge, quality.smallest_angle_deg, quality.angle_deg_p1, crossings);
   return crossings == 0 ? 0 : 1;
 }
 
@@ -97,7 +105,8 @@ int main_checked(int argc, char** argv) {
   app.add_option("--body", arguments.request.body, "of motion capture: blended or capsules");
   app.add_option("--fps", arguments.request.shot_fps, "frames per second of the shot");
   app.add_option("--source-fps", arguments.request.source_fps, "frames per second of a geometry cache");
-  app.add_option("--waist", arguments.waist, "waist height in shares of the body's height, 0.4..0.8")->check(CLI::Range(0.4, 0.8));
+  app.add_option("--waist", arguments.waist, "waist height in shares of the body's height, 0.4..0.8")
+      ->check(CLI::Range(0.4, 0.8));
   app.add_option("--rings", arguments.skirt.rings, "skirt: points from waist to hem")->check(CLI::Range(3, 2000));
   app.add_option("--segments", arguments.skirt.segments, "skirt: points around")->check(CLI::Range(8, 5000));
   app.add_option("--length", arguments.skirt.length, "skirt: metres")->check(CLI::Range(0.02, 3.0));

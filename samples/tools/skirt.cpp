@@ -29,8 +29,8 @@ std::vector<double> profile(const BodyShape& shape, double from, double to, doub
   return radius;
 }
 
-/// Averages over +-8 degrees and +-24 mm of height: the slices are pixels, the cloth shall not show them. Convex places lose
-/// about a millimetre.
+/// Averages over +-8 degrees and +-24 mm of height: the slices are pixels, the cloth shall not show them. Convex places
+/// lose about a millimetre.
 void round_off(std::vector<std::vector<double>>& levels) {
   const int count = static_cast<int>(levels.size());
   std::vector<std::vector<double>> around = levels;
@@ -72,7 +72,7 @@ Mesh make_skirt(const BodyShape& shape, const SkirtSettings& settings) {
   // Fine levels from waist to hem; the rings are chosen among them afterwards.
   const int level_count = std::max(2, static_cast<int>(std::ceil(length / 4e-3)));
   std::vector<std::vector<double>> levels;
-  std::vector<double> meridian{0.0};  // mean arc length down to each level
+  std::vector<double> meridian{0.0};                     // mean arc length down to each level
   const double allowance = settings.clearance + 3.5e-3;  // half a pixel of the slices, and what rounding off takes
   for (int level = 0; level <= level_count; ++level) {
     const double y = shape.waist - length * level / level_count;
@@ -98,9 +98,11 @@ Mesh make_skirt(const BodyShape& shape, const SkirtSettings& settings) {
     const double wanted = meridian.back() * ring / (settings.rings - 1);
     int level = 0;
     while (level + 1 < level_count && meridian[at(level + 1)] < wanted) ++level;
-    const double s = std::clamp((wanted - meridian[at(level)]) / (meridian[at(level + 1)] - meridian[at(level)]), 0.0, 1.0);
+    const double s =
+        std::clamp((wanted - meridian[at(level)]) / (meridian[at(level + 1)] - meridian[at(level)]), 0.0, 1.0);
     std::vector<double> radius(at(k_directions));
-    for (int k = 0; k < k_directions; ++k) radius[at(k)] = (1 - s) * levels[at(level)][at(k)] + s * levels[at(level + 1)][at(k)];
+    for (int k = 0; k < k_directions; ++k)
+      radius[at(k)] = (1 - s) * levels[at(level)][at(k)] + s * levels[at(level + 1)][at(k)];
     const double y = shape.waist - length * (level + s) / level_count;
     double around = 0;
     const std::vector<Vec2> points = share_equally(radius, shape.waist_centre, settings.segments);

@@ -17,10 +17,12 @@ struct QuadMesh {
   std::vector<std::array<int, 4>> quads;  ///< the last corner is -1 in a triangle
 };
 
-int corner_count(const std::array<int, 4>& quad) { return quad[3] < 0 ? 3 : 4; }
+int corner_count(const std::array<int, 4>& quad) {
+  return quad[3] < 0 ? 3 : 4;
+}
 
-/// Naive surface nets of field = 0 over the cells of a box: one vertex per cell that the surface passes, one quad per grid
-/// edge that it crosses. Quads at the border of the box, which miss a cell, are left out: that is the cut.
+/// Naive surface nets of field = 0 over the cells of a box: one vertex per cell that the surface passes, one quad per
+/// grid edge that it crosses. Quads at the border of the box, which miss a cell, are left out: that is the cut.
 QuadMesh surface_nets(const Field& field, const Box& box, double cell) {
   std::array<int, 3> n;
   for (int k = 0; k < 3; ++k) n[at(k)] = static_cast<int>(std::lround(box.size()[k] / cell));
@@ -110,8 +112,8 @@ void keep_largest_piece(QuadMesh& mesh) {
   mesh = std::move(kept);
 }
 
-/// A cut that slants through the grid leaves a staircase. Corners that only one quad uses are cut off (a triangle stays), and
-/// quads with two such corners go.
+/// A cut that slants through the grid leaves a staircase. Corners that only one quad uses are cut off (a triangle
+/// stays), and quads with two such corners go.
 void cut_stairs(QuadMesh& mesh) {
   for (bool again = true; again;) {
     again = false;
@@ -145,8 +147,8 @@ struct Cut {
   double place = 0;
 };
 
-/// Evens out the quads: every vertex to the middle of its neighbours, border vertices along their border and in their plane,
-/// then back onto the surface.
+/// Evens out the quads: every vertex to the middle of its neighbours, border vertices along their border and in their
+/// plane, then back onto the surface.
 void relax(QuadMesh& mesh, const Field& field, const std::vector<Cut>& planes, double cell, int rounds) {
   std::map<Edge, int> uses;
   for (const auto& q : mesh.quads)
@@ -198,7 +200,8 @@ Result<Mesh> make_top(const Body& body, const BodyShape& shape, const TopSetting
   box.hi = Vec3(middle + half, shape.neck_base + settings.distance + cell, shape.bounds.hi.z() + margin);
   for (int k = 0; k < 3; ++k) {
     const double cells = std::ceil(box.size()[k] / cell);
-    if (!(cells > 2 && cells < 400)) return input_error("the body gives a top no sensible size", "", "try another --waist or --cell");
+    if (!(cells > 2 && cells < 400))
+      return input_error("the body gives a top no sensible size", "", "try another --waist or --cell");
     box.hi[k] = box.lo[k] + cells * cell;
   }
   Box wide = box;
@@ -207,15 +210,18 @@ Result<Mesh> make_top(const Body& body, const BodyShape& shape, const TopSetting
   // A little blur takes the crease out of the armpits.
   const Field field = [&](const Vec3& p) {
     double sum = 2 * distance.value(p);
-    for (int k = 0; k < 3; ++k) sum += distance.value(p + 0.7 * cell * Vec3::Unit(k)) + distance.value(p - 0.7 * cell * Vec3::Unit(k));
+    for (int k = 0; k < 3; ++k)
+      sum += distance.value(p + 0.7 * cell * Vec3::Unit(k)) + distance.value(p - 0.7 * cell * Vec3::Unit(k));
     return sum / 8 - settings.distance;
   };
   QuadMesh net = surface_nets(field, box, cell);
   cut_stairs(net);
   keep_largest_piece(net);
   if (net.quads.size() < 100) return input_error("found no torso to put a top on", "", "try another --waist");
-  const std::vector<Cut> planes = {{0, box.lo.x() + 0.5 * cell}, {0, box.hi.x() - 0.5 * cell},
-                                   {1, box.lo.y() + 0.5 * cell}, {1, box.hi.y() - 0.5 * cell}};
+  const std::vector<Cut> planes = {{0, box.lo.x() + 0.5 * cell},
+                                   {0, box.hi.x() - 0.5 * cell},
+                                   {1, box.lo.y() + 0.5 * cell},
+                                   {1, box.hi.y() - 0.5 * cell}};
   relax(net, field, planes, cell, 30);
   for (Vec3& p : net.positions)
     for (int step = 0; step < 8 && distance.value(p) < settings.clearance; ++step) {

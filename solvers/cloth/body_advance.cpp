@@ -13,7 +13,8 @@ constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
 /// Newton iterations of a shortened piece: a gap that an unconverged solve leaves closed blocks the next advance.
 constexpr int k_shortened_newton = 4;
-/// Cloth that wants to leave its slack by more than k_negligible gets more, with some to spare: what is held back loses momentum [m].
+/// Cloth that wants to leave its slack by more than k_negligible gets more, with some to spare: what is held back loses
+/// momentum [m].
 constexpr double k_negligible = 5e-4;
 constexpr double k_spare = 5e-4;
 constexpr double k_asked = 1.5;  ///< of what is missing
@@ -48,8 +49,8 @@ struct BodyAdvance::Scratch {
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
 BodyAdvance::~BodyAdvance() = default;
 
-/// Carries the cloth and collects candidates; cloth that would touch is carried as one, which costs candidates and not time. Returns
-/// the share of the motion that is free then.
+/// Carries the cloth and collects candidates; cloth that would touch is carried as one, which costs candidates and not
+/// time. Returns the share of the motion that is free then.
 double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   Scratch& s = *scratch_;
   s.candidates.find_near(cloth, h, s.piece);
@@ -60,7 +61,8 @@ double BodyAdvance::plan(const ClothMotion& cloth, double h) {
 }
 
 /// Solves for the cloth at the end of a piece and moves its history on.
-void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, ClothMotion& cloth, AdvanceReport& report) {
+void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool shortened, ClothMotion& cloth,
+                        AdvanceReport& report) {
   Scratch& s = *scratch_;
   s.pins.resize(in.pins_t0.size());
   for (std::size_t p = 0; p < s.pins.size(); ++p) s.pins[p] = in.pins_t0[p] + end * (in.pins_t1[p] - in.pins_t0[p]);

@@ -1,6 +1,6 @@
-// One substep: the body advances with the cloth carried along, as far as conservative CCD allows; the cloth is then solved for with
-// the body still; what is left of the substep follows in the same way. Where there is no room at all, the cloth is let through
-// the part that blocks it (released), so that the walk never stops.
+// One substep: the body advances with the cloth carried along, as far as conservative CCD allows; the cloth is then
+// solved for with the body still; what is left of the substep follows in the same way. Where there is no room at all,
+// the cloth is let through the part that blocks it (released), so that the walk never stops.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,9 @@ namespace ft {
 /// The changing part of a cloth system, as vectors; saved in State by cloth_solver.cpp.
 struct ClothMotion {
   std::vector<Vec3> x, v, x_previous, v_previous;
-  double h_previous = 0;            ///< s; 0: no history
-  std::vector<double> released;     ///< per cloth vertex: collider part that it may pass, -1 none
-  std::vector<double> tangled;      ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
+  double h_previous = 0;         ///< s; 0: no history
+  std::vector<double> released;  ///< per cloth vertex: collider part that it may pass, -1 none
+  std::vector<double> tangled;   ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
 };
 
 /// Position, velocity and history to the new place.
@@ -25,13 +25,13 @@ void carry(const Teleport& teleport, ClothMotion& motion);
 
 /// What one substep knows of the outside.
 struct SubstepInput {
-  std::span<const Vec3> body_t0, body_t1;       ///< feasible collider at both ends
-  std::span<const Vec3> pins_t0, pins_t1;       ///< pin targets at both ends
-  std::span<const Vec3> push;                   ///< as StepInput's [m/s2]
-  double friction_share = 1;                    ///< as StepInput's [1]
-  double h = 0;                                 ///< s
-  double time_t0 = 0;                           ///< s
-  double shortest = 0;                          ///< pieces shorter than this [s] make the walk release
+  std::span<const Vec3> body_t0, body_t1;  ///< feasible collider at both ends
+  std::span<const Vec3> pins_t0, pins_t1;  ///< pin targets at both ends
+  std::span<const Vec3> push;              ///< as StepInput's [m/s2]
+  double friction_share = 1;               ///< as StepInput's [1]
+  double h = 0;                            ///< s
+  double time_t0 = 0;                      ///< s
+  double shortest = 0;                     ///< pieces shorter than this [s] make the walk release
 };
 
 struct AdvanceReport {

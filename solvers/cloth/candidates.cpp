@@ -13,15 +13,17 @@ namespace {
 constexpr std::size_t k_block = 2048;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 
-// Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity and the
-// acceleration of the last step. Too small a ball holds cloth back (it then asks for more), too large a one costs candidates.
-constexpr double k_slack_way = 0.6;            ///< of the way between the two; half of it reaches both
-constexpr double k_slack_acceleration = 0.6;   ///< of what the last step's acceleration makes in this one, on top
-constexpr double k_slack_gravity = 0.6;        ///< of h2 g
-constexpr double k_slack_let_go = 6;           ///< of h2 g, in a step without history: what was let go may jump
-constexpr double k_most_acceleration = 2e-3;   ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
-constexpr double k_slack_body = 0.03;          ///< of the body's motion near the cloth: rubbing and the carry's own error
-constexpr double k_slack_least = 3e-4;         ///< m
+// Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity
+// and the acceleration of the last step. Too small a ball holds cloth back (it then asks for more), too large a one
+// costs candidates.
+constexpr double k_slack_way = 0.6;           ///< of the way between the two; half of it reaches both
+constexpr double k_slack_acceleration = 0.6;  ///< of what the last step's acceleration makes in this one, on top
+constexpr double k_slack_gravity = 0.6;       ///< of h2 g
+constexpr double k_slack_let_go = 6;          ///< of h2 g, in a step without history: what was let go may jump
+constexpr double k_most_acceleration =
+    2e-3;                              ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
+constexpr double k_slack_body = 0.03;  ///< of the body's motion near the cloth: rubbing and the carry's own error
+constexpr double k_slack_least = 3e-4;  ///< m
 
 /// Collider triangles in the common numbering.
 std::vector<Triangle> shifted_triangles(const ClothModel& model) {
@@ -71,8 +73,8 @@ int Candidates::part_of(const Stencil& stencil) const {
   return -1;
 }
 
-/// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself, tangled
-/// cloth with tangled cloth, or what a seam holds together.
+/// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself,
+/// tangled cloth with tangled cloth, or what a seam holds together.
 bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const {
   const int part = part_of(stencil);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
@@ -177,8 +179,10 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   finder_.find(boxes_, any_self_, found_);
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
-  const double t = filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face, blocked_.vertex_face);
-  return std::min(t, filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, blocked_.edge_edge));
+  const double t =
+      filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face, blocked_.vertex_face);
+  return std::min(t,
+                  filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, blocked_.edge_edge));
 }
 
 /// The pairs of changed_ vertices anew, all others as they are.
@@ -240,8 +244,8 @@ void Candidates::grow(const ClothMotion& cloth, std::span<const double> more, Pi
 }
 
 /// Keeps what can come nearer than the contact radius, and finds the first time of contact among it.
-double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
-                          std::vector<Stencil>& kept, std::vector<Stencil>& blocked) {
+double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth,
+                          const PieceMotion& piece, std::vector<Stencil>& kept, std::vector<Stencil>& blocked) {
   const std::size_t blocks = block_count(found.size(), k_block);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
   if (kept_.size() < blocks) kept_.resize(blocks);
@@ -262,7 +266,8 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
       }
       const bool self = found[p].v[split] < model_.vertex_count() && found[p].v[0] < model_.vertex_count();
       const double radius = self ? self_radius_ : radius_;
-      const double reach = std::max(relative, largest_difference(gather(piece.centre, found[p]), split) + slack_a + slack_b) + radius;
+      const double reach =
+          std::max(relative, largest_difference(gather(piece.centre, found[p]), split) + slack_a + slack_b) + radius;
       if (box_gap_squared(x, split) >= reach * reach || !counts(cloth, kind, found[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
@@ -292,7 +297,8 @@ int Candidates::release_blocked(ClothMotion& cloth) {
     for (const Stencil& stencil : *blocked) {
       const int part = part_of(stencil);
       for (const int v : stencil.v)
-        if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part) cloth.released[at(v)] = part, ++freed;
+        if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part)
+          cloth.released[at(v)] = part, ++freed;
     }
   drop_blocked();
   return freed;
@@ -301,7 +307,8 @@ int Candidates::release_blocked(ClothMotion& cloth) {
 void Candidates::drop_blocked() {
   const auto drop = [](std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
     if (blocked.empty()) return;
-    std::erase_if(pairs, [&](const Stencil& stencil) { return std::binary_search(blocked.begin(), blocked.end(), stencil); });
+    std::erase_if(pairs,
+                  [&](const Stencil& stencil) { return std::binary_search(blocked.begin(), blocked.end(), stencil); });
   };
   drop(pairs_.vertex_face, blocked_.vertex_face);
   drop(pairs_.edge_edge, blocked_.edge_edge);

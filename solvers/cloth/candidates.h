@@ -1,14 +1,14 @@
-// What can meet in one piece of a substep: the pairs between carried cloth, body and cloth, and how far the body can advance
-// before the first of them touches (conservative CCD over the carried motion). Pairs are collected in a frame that moves with the
-// cloth's mean carry, so that a fast character does not sweep its boxes through everything.
+// What can meet in one piece of a substep: the pairs between carried cloth, body and cloth, and how far the body can
+// advance before the first of them touches (conservative CCD over the carried motion). Pairs are collected in a frame
+// that moves with the cloth's mean carry, so that a fast character does not sweep its boxes through everything.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "solvers/cloth/body_advance.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
+#include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/motion_zones.h"
 
 namespace ft {
@@ -19,8 +19,9 @@ struct PieceMotion {
   std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
   std::vector<Vec3> carry;        ///< per cloth vertex [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
-  std::vector<Vec3> centre;       ///< per vertex: from the start to the middle of where the solve may put it; the body's motion [m]
-  std::vector<double> slack;      ///< per cloth vertex: how far the solve may put it from there [m]
+  std::vector<Vec3>
+      centre;  ///< per vertex: from the start to the middle of where the solve may put it; the body's motion [m]
+  std::vector<double> slack;  ///< per cloth vertex: how far the solve may put it from there [m]
 };
 
 class Candidates {
@@ -31,16 +32,17 @@ class Candidates {
   void find_near(const ClothMotion& cloth, double h, const PieceMotion& piece);
   /// Fills piece.carry: near the body its motion, else the cloth's own. After find_near(); forgets zones.
   void carry(const ClothMotion& cloth, double h, PieceMotion& piece);
-  /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch. After carry().
+  /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
+  /// After carry().
   double collect(const ClothMotion& cloth, double h, PieceMotion& piece);
-  /// After a collect() or join_blocked() that gave less than 1: carries the cloth of the pairs that would touch as one, brings
-  /// pairs() up to it and returns the share anew.
+  /// After a collect() or join_blocked() that gave less than 1: carries the cloth of the pairs that would touch as one,
+  /// brings pairs() up to it and returns the share anew.
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
-  /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is carried already.
-  /// What release_blocked() has dropped stays out.
+  /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is
+  /// carried already. What release_blocked() has dropped stays out.
   void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
-  /// Takes out the pairs that collect() or join_blocked() last saw touch: their cloth vertices are let through the collider's part (noted in
-  /// cloth.released; returns how many), pairs of cloth with cloth are only dropped.
+  /// Takes out the pairs that collect() or join_blocked() last saw touch: their cloth vertices are let through the
+  /// collider's part (noted in cloth.released; returns how many), pairs of cloth with cloth are only dropped.
   int release_blocked(ClothMotion& cloth);
 
   const ContactPairs& pairs() const { return pairs_; }
@@ -61,11 +63,11 @@ class Candidates {
   bool any_self_ = false;
 
   // Of the piece.
-  double range_ = 0;             ///< of near_body_ [m]
-  double fastest_ = 0;           ///< largest body motion near the cloth, relative to the cloth's mean [m]
-  double h_ = 0;                 ///< s
-  Vec3 frame_ = Vec3::Zero();    ///< mean carry: boxes move with it [m]
-  std::vector<char> changed_;    ///< per vertex: what renew() has to look at
+  double range_ = 0;           ///< of near_body_ [m]
+  double fastest_ = 0;         ///< largest body motion near the cloth, relative to the cloth's mean [m]
+  double h_ = 0;               ///< s
+  Vec3 frame_ = Vec3::Zero();  ///< mean carry: boxes move with it [m]
+  std::vector<char> changed_;  ///< per vertex: what renew() has to look at
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;
   std::vector<Vec3> inertia_;

@@ -36,7 +36,8 @@ std::vector<Pull> find_pulls(const CarryInput& in) {
       if (k > begin && v[0] != pairs[k - 1].v[0]) run = mine.size();
       const PairGeometry geo = vertex_face_geometry(in.x[at(v[0])], in.x[at(v[1])], in.x[at(v[2])], in.x[at(v[3])]);
       if (geo.distance >= in.range || geo.distance <= 0) continue;
-      // A body vertex beside a cloth face, not behind it, says nothing: its slanted normal would lift cloth that glides past.
+      // A body vertex beside a cloth face, not behind it, says nothing: its slanted normal would lift cloth that glides
+      // past.
       if (v[0] >= n && std::max({geo.weight[1], geo.weight[2], geo.weight[3]}) > -1e-3) continue;
       const double d = std::max(geo.distance, 1e-5);
       Pull pull{v, geo.weight, geo.normal, 1.0 / (d * d) - g, 0, 0, 0};
@@ -46,7 +47,8 @@ std::vector<Pull> find_pulls(const CarryInput& in) {
           body += geo.weight[c] * in.body_motion[at(v[c] - n)];
           pull.part = in.part_of_body_vertex[at(v[c] - n)];
         }
-      // sum weight * displacement over all four vertices is the relative motion: the cloth's part shall cancel the body's.
+      // sum weight * displacement over all four vertices is the relative motion: the cloth's part shall cancel the
+      // body's.
       pull.target = -geo.normal.dot(body);
       pull.body_motion = body.norm();
       const auto same = std::find_if(mine.begin() + static_cast<std::ptrdiff_t>(run), mine.end(),

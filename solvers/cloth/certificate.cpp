@@ -17,8 +17,8 @@ constexpr std::size_t k_incidents_per_frame = 16;
 constexpr double k_notable_depth = 1e-3;
 
 /// Something happened at a cloth vertex.
-void add_incident(const ClothModel& model, const ClothMotion& m, Incident::Kind kind, int vertex, double depth, std::string text,
-                  FrameReport& report) {
+void add_incident(const ClothModel& model, const ClothMotion& m, Incident::Kind kind, int vertex, double depth,
+                  std::string text, FrameReport& report) {
   const int garment = model.garment_of(vertex);
   Incident out;
   out.kind = kind;
@@ -40,9 +40,10 @@ bool any_released_to(int part, std::span<const int> cloth_vertices, const ClothM
   return std::any_of(cloth_vertices.begin(), cloth_vertices.end(), [&](int v) { return m.released[at(v)] == part; });
 }
 
-/// Crossings with the feasible collider; notes which of its parts cloth crosses. Returns those that could have been avoided.
-int certify_body(const ClothModel& model, std::span<const Crossing> crossings, const ClothMotion& m, std::vector<char>& touched,
-                 FrameReport& report) {
+/// Crossings with the feasible collider; notes which of its parts cloth crosses. Returns those that could have been
+/// avoided.
+int certify_body(const ClothModel& model, std::span<const Crossing> crossings, const ClothMotion& m,
+                 std::vector<char>& touched, FrameReport& report) {
   const auto parts = model.collider->part_of_vertex();
   const auto& names = model.collider->trajectory().surface().parts;
   touched.assign(names.size(), 0);
@@ -99,8 +100,8 @@ void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<c
 }
 
 /// Where the cloth is inside the body as it is drawn: the body overlaps itself there, or leaves no room.
-void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const CheckedSurface& drawn, const ClothMotion& m,
-                    FrameReport& report) {
+void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const CheckedSurface& drawn,
+                    const ClothMotion& m, FrameReport& report) {
   std::vector<Penetration> inside;
   parallel_tasks(2, [&](std::size_t task) {
     if (task == 0)
@@ -119,7 +120,8 @@ void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const 
 }  // namespace
 
 Certificate::Certificate(const ClothModel& model)
-    : model_(model), cloth_(model.triangles),
+    : model_(model),
+      cloth_(model.triangles),
       collider_(model.collider ? model.collider->triangles() : std::span<const Triangle>{}),
       drawn_(model.collider ? model.collider->trajectory().surface().triangles : std::span<const Triangle>{}) {}
 

@@ -1,6 +1,7 @@
-// What is certified of a frame of cloth, from positions alone: exact crossings, cloth that was let through, strain, energy, depth in
-// the drawn body. For cloth_solver.cpp, which walks a frame anew when a crossing could have been avoided. Nothing here moves the
-// cloth; certify() only decides which vertices are let through and which are tangled from here on.
+// What is certified of a frame of cloth, from positions alone: exact crossings, cloth that was let through, strain,
+// energy, depth in the drawn body. For cloth_solver.cpp, which walks a frame anew when a crossing could have been
+// avoided. Nothing here moves the cloth; certify() only decides which vertices are let through and which are tangled
+// from here on.
 #pragma once
 
 #include <span>
@@ -15,11 +16,13 @@ class Certificate {
  public:
   explicit Certificate(const ClothModel& model);
 
-  /// Counts the crossings at a frame's end. Parts that no cloth touches any more hold the cloth again, and tangles are marked anew.
-  /// `body` is the feasible collider [m]. Returns the number of crossings that neither released nor tangled cloth explains.
+  /// Counts the crossings at a frame's end. Parts that no cloth touches any more hold the cloth again, and tangles are
+  /// marked anew. `body` is the feasible collider [m]. Returns the number of crossings that neither released nor
+  /// tangled cloth explains.
   int certify(std::span<const Vec3> body, ClothMotion& motion, FrameReport& report);
 
-  /// Strain, energy, and what is inside the drawn body [m]; then sorts the incidents, worst first, and keeps at most 16.
+  /// Strain, energy, and what is inside the drawn body [m]; then sorts the incidents, worst first, and keeps at
+  /// most 16.
   void describe(std::span<const Vec3> drawn, const ClothMotion& motion, FrameReport& report);
 
  private:

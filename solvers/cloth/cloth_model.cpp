@@ -39,9 +39,12 @@ Status check(const ClothSetup& setup) {
     if (!all_finite(g.mesh.positions)) return input_error("cloth \"" + g.name + "\" has a vertex that is not a number");
     for (const Stitch& s : g.mesh.stitches)
       for (const int v : {s.vertex, s.edge[0], s.edge[1]})
-        if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] || !(s.place >= 0 && s.place <= 1))
-          return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) + " cannot be sewn");
-    for (const auto map : {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness}) {
+        if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] ||
+            !(s.place >= 0 && s.place <= 1))
+          return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) +
+                             " cannot be sewn");
+    for (const auto map :
+         {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness}) {
       const std::vector<double>& values = g.maps.*map;
       if (!values.empty() && values.size() != g.mesh.positions.size())
         return input_error("cloth \"" + g.name + "\": a map needs one value per vertex");
@@ -60,7 +63,8 @@ Status check(const ClothSetup& setup) {
         return input_error("cloth \"" + g.name + "\": a pin needs one weight per vertex");
     }
   }
-  if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps || setup.newton_iterations < 1)
+  if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps ||
+      setup.newton_iterations < 1)
     return input_error("cloth settings are out of range");
   return {};
 }
@@ -112,7 +116,8 @@ void weigh(ClothModel& model) {
     const auto& rest = model.contact.rest;
     const std::size_t index = static_cast<std::size_t>(&t - model.triangles.data());
     const bool cut = model.topology->pieces[at(model.topology->triangle_piece[index])].pattern_scale > 0;
-    const double area = cut ? model.topology->rest_area[index] : triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
+    const double area =
+        cut ? model.topology->rest_area[index] : triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
     for (const int v : t) {
       model.contact.area[at(v)] += area / 3;
       model.unused[at(v)] = 0;

@@ -1,5 +1,5 @@
-// What never changes of a cloth system: all garments of a setup as one numbering of vertices, their rest shape, masses, contact
-// data and pins. Built once by build_cloth_model().
+// What never changes of a cloth system: all garments of a setup as one numbering of vertices, their rest shape, masses,
+// contact data and pins. Built once by build_cloth_model().
 #pragma once
 
 #include <memory>
@@ -31,22 +31,22 @@ struct PinPoint {
 
 struct ClothModel {
   ClothSetup setup;
-  std::vector<int> first_vertex;              ///< of each garment; one more at the end
-  std::vector<Vec3> start;                    ///< placed at the start of the pre-roll [m]
-  std::vector<double> mass;                   ///< lumped [kg]
+  std::vector<int> first_vertex;  ///< of each garment; one more at the end
+  std::vector<Vec3> start;        ///< placed at the start of the pre-roll [m]
+  std::vector<double> mass;       ///< lumped [kg]
   std::vector<Triangle> triangles;
   RestEdges rest_edges;
-  std::vector<char> self_collides;            ///< per vertex
-  std::vector<char> unused;                   ///< vertices of no face: carried along, never solved for
+  std::vector<char> self_collides;  ///< per vertex
+  std::vector<char> unused;         ///< vertices of no face: carried along, never solved for
   ContactModel contact;
-  SewnPairs sewn;                             ///< pairs that a seam holds together
-  std::vector<double> sewn_until;             ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
+  SewnPairs sewn;                  ///< pairs that a seam holds together
+  std::vector<double> sewn_until;  ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
   std::vector<PinPoint> pins;
   std::vector<std::unique_ptr<Energy>> energies;
   BlockPattern pattern;
   std::unique_ptr<ClothTopology> topology;
-  std::unique_ptr<MovingCollider> collider;   ///< null: cloth alone
-  double start_depth = 0;                     ///< how deep the deepest vertex started inside the body [m]
+  std::unique_ptr<MovingCollider> collider;  ///< null: cloth alone
+  double start_depth = 0;                    ///< how deep the deepest vertex started inside the body [m]
 
   int vertex_count() const { return static_cast<int>(mass.size()); }
   int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
@@ -54,7 +54,8 @@ struct ClothModel {
 
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup);
 
-/// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without a body.
+/// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without
+/// a body.
 PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles);
 
 /// Where the pins are, from the drawn body's positions.

@@ -1,9 +1,10 @@
 // The walk of a frame:
-//   collider at both ends (where the primary is cut to another place, cloth and collider at t0 go there first) -> substeps from the body's speed near the cloth
+//   collider at both ends (where the primary is cut to another place, cloth and collider at t0 go there first) ->
+//   substeps from the body's speed near the cloth
 //     per substep: collider and pins at its end -> BodyAdvance (carry, CCD, Newton, truncation)
-//   certificate.cpp: exact crossings; any that released cloth does not explain: back to the frame's start, twice the substeps,
-//   at most three times and as long as it helps
-//   parts that no cloth touches any more hold the cloth again; report
+//   certificate.cpp: exact crossings; any that released cloth does not explain: back to the frame's start, twice the
+//   substeps, at most three times and as long as it helps parts that no cloth touches any more hold the cloth again;
+//   report
 #include "solvers/cloth/cloth_solver.h"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ ClothMotion load(const State& state, std::size_t count) {
 
 class ClothSolver final : public Solver {
  public:
-  explicit ClothSolver(std::unique_ptr<ClothModel> model) : model_(std::move(model)), advance_(*model_), certificate_(*model_) {}
+  explicit ClothSolver(std::unique_ptr<ClothModel> model)
+      : model_(std::move(model)), advance_(*model_), certificate_(*model_) {}
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
   const Mesh& system_mesh(int system) const override { return model_->setup.garments[at(system)].mesh; }
@@ -77,7 +79,8 @@ class ClothSolver final : public Solver {
     const auto all = as_points(*x);
     const auto first = at(model_->first_vertex[at(system)]), end = at(model_->first_vertex[at(system) + 1]);
     CHECK(out.size() == end - first && end <= all.size());
-    std::copy(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(end), out.begin());
+    std::copy(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(end),
+              out.begin());
   }
 
   std::span<const Triangle> collider_triangles() const override {
@@ -200,7 +203,8 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
 
 void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
-  std::vector<Vec3> drawn = frame.drawn_t0, body = frame.body_t0, body_next, pins(model_->pins.size()), pins_next(pins.size());
+  std::vector<Vec3> drawn = frame.drawn_t0, body = frame.body_t0, body_next, pins(model_->pins.size()),
+                    pins_next(pins.size());
   std::vector<Vec3> push;
   pin_targets(*model_, drawn, pins);
   for (int k = 0; k < substeps; ++k) {
@@ -213,7 +217,8 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
       } else {
         if (frame.cut) {
           const double share = (k + 1.0) / substeps;
-          for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i] = frame.drawn_t0[i] + share * (frame.drawn_t1[i] - frame.drawn_t0[i]);
+          for (std::size_t i = 0; i < drawn.size(); ++i)
+            drawn[i] = frame.drawn_t0[i] + share * (frame.drawn_t1[i] - frame.drawn_t0[i]);
         } else {
           model_->collider->drawn(t0 + h, drawn);
         }
@@ -248,14 +253,15 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
   }
 }
 
-/// Something lets go or takes hold at once. BDF2 is then started anew by a step of implicit Euler: the history knows nothing of the new
-/// force, and cloth that is let go would stay behind free fall by half a substep for good.
+/// Something lets go or takes hold at once. BDF2 is then started anew by a step of implicit Euler: the history knows
+/// nothing of the new force, and cloth that is let go would stay behind free fall by half a substep for good.
 bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
-  return std::any_of(model_->pins.begin(), model_->pins.end(), [&](const PinPoint& pin) { return pin.hold.jumps(time_t0, time_t1); });
+  return std::any_of(model_->pins.begin(), model_->pins.end(),
+                     [&](const PinPoint& pin) { return pin.hold.jumps(time_t0, time_t1); });
 }
 
-/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of sewing. False when
-/// nothing does.
+/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of
+/// sewing. False when nothing does.
 bool ClothSolver::push_cloth(double time, ClothMotion& m, std::vector<Vec3>& push) const {
   const bool tangled = any_tangled(m.tangled), sewn = !model_->sewn_until.empty();
   if (!tangled && !sewn) return false;
@@ -328,7 +334,8 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   report = std::move(best_report);
   motion = std::move(best);
   report.profile = spent;
-  if (!std::isfinite(report.smallest_gap)) report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
+  if (!std::isfinite(report.smallest_gap))
+    report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
   certificate_.describe(frame.drawn_t1, motion, report);
   report.profile.certificate += elapsed(certificate);

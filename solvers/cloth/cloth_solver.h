@@ -1,6 +1,7 @@
-// Cloth on a moving body: all garments of a primary in one system, one potential. Per substep the body advances while the cloth
-// is carried along, checked by conservative CCD; then Newton minimises inertia + elasticity + contact + friction + pins with
-// the body still, every displacement truncated so that nothing crosses. See cloth_solver.cpp for the walk of a frame.
+// Cloth on a moving body: all garments of a primary in one system, one potential. Per substep the body advances while
+// the cloth is carried along, checked by conservative CCD; then Newton minimises inertia + elasticity + contact +
+// friction + pins with the body still, every displacement truncated so that nothing crosses. See cloth_solver.cpp for
+// the walk of a frame.
 #pragma once
 
 #include <memory>
@@ -20,25 +21,25 @@ namespace ft {
 
 /// Vertices that are held to the body: each follows the nearest point of the body's bind pose.
 struct ClothPin {
-  std::vector<int> vertices;     ///< garment's file order
-  std::vector<double> weights;   ///< 0..1 each, scales the stiffness; empty: all 1
-  double stiffness = 1e6;        ///< N/m3: spring per garment area and displacement
-  double max_pull = 5e3;         ///< Pa: force limit per garment area; contact wins over pins
-  HoldSpan hold{};               ///< when
+  std::vector<int> vertices;    ///< garment's file order
+  std::vector<double> weights;  ///< 0..1 each, scales the stiffness; empty: all 1
+  double stiffness = 1e6;       ///< N/m3: spring per garment area and displacement
+  double max_pull = 5e3;        ///< Pa: force limit per garment area; contact wins over pins
+  HoldSpan hold{};              ///< when
 };
 
 struct ClothGarment {
   std::string name;
-  Mesh mesh;                     ///< bind-pose placement, m; its positions are the rest shape unless pattern_scale says otherwise
-  double pattern_scale = 0;      ///< m per unit of uvs, which are the rest shape then; 0: the positions are
-  double sewing_time = 0;        ///< s from the start of the pre-roll until its stitches are closed; 0: half of the pre-roll
+  Mesh mesh;  ///< bind-pose placement, m; its positions are the rest shape unless pattern_scale says otherwise
+  double pattern_scale = 0;  ///< m per unit of uvs, which are the rest shape then; 0: the positions are
+  double sewing_time = 0;  ///< s from the start of the pre-roll until its stitches are closed; 0: half of the pre-roll
   Fabric fabric;
   std::vector<ClothPin> pins;
-  double thickness = 3e-3;       ///< contact begins at this distance from the body [m], 0.5e-3..10e-3
-  double friction = 0.4;         ///< Coulomb, against the body [1]
-  double self_friction = 0.3;    ///< among cloths [1]
+  double thickness = 3e-3;     ///< contact begins at this distance from the body [m], 0.5e-3..10e-3
+  double friction = 0.4;       ///< Coulomb, against the body [1]
+  double self_friction = 0.3;  ///< among cloths [1]
   bool self_collision = true;
-  VertexMaps maps;               ///< one value per vertex of `mesh`, or empty
+  VertexMaps maps;  ///< one value per vertex of `mesh`, or empty
 };
 
 struct ClothSetup {
@@ -47,15 +48,15 @@ struct ClothSetup {
   int first_frame = 1;
   double fps = 24;
   int preroll_frames = 24;
-  Vec3 gravity = Vec3(0, -k_gravity, 0);      ///< m/s2
-  Vec3 wind = Vec3::Zero();                   ///< m/s
-  double air_density = 1.225;                 ///< kg/m3; 0: vacuum
-  int min_substeps = 4, max_substeps = 32;    ///< a frame
+  Vec3 gravity = Vec3(0, -k_gravity, 0);    ///< m/s2
+  Vec3 wind = Vec3::Zero();                 ///< m/s
+  double air_density = 1.225;               ///< kg/m3; 0: vacuum
+  int min_substeps = 4, max_substeps = 32;  ///< a frame
   int newton_iterations = 3;
   double linear_tolerance = 3e-2;
-  bool bdf2 = true;                           ///< false: implicit Euler
+  bool bdf2 = true;  ///< false: implicit Euler
   FeasibleSettings feasible;
-  std::vector<Teleport> teleports;            ///< of the primary: the cloth goes along
+  std::vector<Teleport> teleports;  ///< of the primary: the cloth goes along
 };
 
 /// Checks the setup (pins in range, garments not empty) and builds the model.

@@ -9,7 +9,7 @@ namespace ft {
 namespace {
 
 constexpr std::size_t k_block = 2048;
-constexpr float k_rounding = 1.0001f;     ///< of float sums of ways
+constexpr float k_rounding = 1.0001f;  ///< of float sums of ways
 constexpr float k_no_way = 1e30f;
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
 constexpr double k_truncation_reach = 2.3;
@@ -20,8 +20,8 @@ PairGeometry geometry_of(bool vertex_face, const std::array<int, 4>& v, std::spa
 }
 
 /// At the closest point of the vertices [begin, end) of a pair. Where they agree it is exactly their value.
-double side_radius(const std::array<int, 4>& v, const PairGeometry& geometry, std::span<const double> radius, std::size_t begin,
-                   std::size_t end) {
+double side_radius(const std::array<int, 4>& v, const PairGeometry& geometry, std::span<const double> radius,
+                   std::size_t begin, std::size_t end) {
   const double first = radius[at(v[begin])];
   double r = first;
   for (std::size_t k = begin + 1; k < end; ++k) r += std::abs(geometry.weight[k]) * (radius[at(v[k])] - first);
@@ -46,7 +46,8 @@ ContactLaw contact_law(double d, double r, double k) {
   return {0.125 * k * r * r - a * std::log(safe / half), a / safe, a / (safe * safe)};
 }
 
-void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h, double friction_share) {
+void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h,
+                             double friction_share) {
   pairs_ = &pairs;
   friction_share_ = friction_share;
   x_start_ = x_start;
@@ -70,7 +71,8 @@ double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_fa
       mu = std::max(mu, model_.self_friction[at(i)]);
       a += 0.25 * model_.area[at(i)];
     }
-    r = std::min(side_radius(v, geometry, model_.self_radius, 0, split), side_radius(v, geometry, model_.self_radius, split, 4));
+    r = std::min(side_radius(v, geometry, model_.self_radius, 0, split),
+                 side_radius(v, geometry, model_.self_radius, split, 4));
     if (model_.garment[at(v[0])] == model_.garment[at(v[3])]) {
       const double rest = geometry_of(vertex_face, v, model_.rest).distance;
       r = std::min(r, 0.5 * rest);
@@ -84,14 +86,16 @@ double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_fa
       ++count;
     }
     a /= std::max(count, 1);
-    r = first_cloth ? side_radius(v, geometry, model_.radius, 0, split) : side_radius(v, geometry, model_.radius, split, 4);
+    r = first_cloth ? side_radius(v, geometry, model_.radius, 0, split)
+                    : side_radius(v, geometry, model_.radius, split, 4);
   }
   *friction = mu;
   *area = a;
   return r;
 }
 
-/// How far the features of a pair can have come nearer, at most: way_ of the farthest vertex on either side; the body stands still.
+/// How far the features of a pair can have come nearer, at most: way_ of the farthest vertex on either side; the body
+/// stands still.
 float ContactPotential::way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const {
   const std::size_t split = vertex_face ? 1 : 2;
   float side[2] = {farthest ? 0.f : k_no_way, farthest ? 0.f : k_no_way};
@@ -119,7 +123,8 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x) {
       double largest = 0;
       for (const int i : v)
         if (i < n) largest = std::max(largest, self ? model_.self_radius[at(i)] : model_.radius[at(i)]);
-      if (s.distance >= 0 && s.distance - k_rounding * (way_of(v, vertex_face, true) - s.way) > static_cast<float>(largest) + 1e-6f)
+      if (s.distance >= 0 &&
+          s.distance - k_rounding * (way_of(v, vertex_face, true) - s.way) > static_cast<float>(largest) + 1e-6f)
         continue;
       const PairGeometry g = geometry_of(vertex_face, v, x);
       s = {static_cast<float>(g.distance), way_of(v, vertex_face, false)};
@@ -223,7 +228,8 @@ void ContactPotential::near_pairs(std::span<const Vec3> dx, double floor, Contac
       for (const int i : list[p].v)
         if (i < n) largest = std::max(largest, dx[at(i)].squaredNorm());
       const auto reach = static_cast<float>(k_truncation_reach * std::sqrt(largest) + floor) + 1e-6f;
-      if (state[p].distance - k_rounding * (way_of(list[p].v, vertex_face, true) - state[p].way) < reach) to.push_back(list[p]);
+      if (state[p].distance - k_rounding * (way_of(list[p].v, vertex_face, true) - state[p].way) < reach)
+        to.push_back(list[p]);
     }
   };
   take(pairs_->vertex_face, state_vf_, true, out.vertex_face);

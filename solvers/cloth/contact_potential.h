@@ -1,10 +1,11 @@
 // Contact and friction as terms of the incremental potential, over the pairs that can touch in one solve.
 //   E(d) = k/2 (r - d)^2             r/2 < d < r
 //   E(d) = -k r^2/4 ln(2d/r) + c     d < r/2      (C2 at r/2: force k r/2, stiffness k; unbounded as d -> 0)
-// k = stiffness per area times the lumped cloth area of the pair, so that pressure does not depend on the mesh. The radius is
-// cut to half the rest distance for pairs of cloth that are near each other at rest: neighbours never repel. Friction is lagged
-// (normal force of the current linearisation), relative to the moving surface, smooth below eps_v.
-// Offset geometric contact's rule keeps each contact once: edge-edge pairs count only where both parameters are interior.
+// k = stiffness per area times the lumped cloth area of the pair, so that pressure does not depend on the mesh. The
+// radius is cut to half the rest distance for pairs of cloth that are near each other at rest: neighbours never repel.
+// Friction is lagged (normal force of the current linearisation), relative to the moving surface, smooth below eps_v.
+// Offset geometric contact's rule keeps each contact once: edge-edge pairs count only where both parameters are
+// interior.
 #pragma once
 
 #include <span>
@@ -16,21 +17,21 @@
 
 namespace ft {
 
-/// Per vertex of the common numbering (cloth first). A side of a pair takes the radius at its closest point, linear between its vertices, so
-/// that a contact feels no step where it slides from one triangle to the next; between two cloths the smaller of the sides counts.
-/// Of areas the pair takes the mean, of friction the larger.
+/// Per vertex of the common numbering (cloth first). A side of a pair takes the radius at its closest point, linear
+/// between its vertices, so that a contact feels no step where it slides from one triangle to the next; between two
+/// cloths the smaller of the sides counts. Of areas the pair takes the mean, of friction the larger.
 struct ContactModel {
   int cloth_vertex_count = 0;
-  /// N/m3. 1e5 soft as flesh, 1e7 hard; gravity on cotton is 1.5 Pa, so 5e5 rests 3 um deep. Much harder contacts hold cloth between
-  /// two surfaces so fast that friction tears at it.
+  /// N/m3. 1e5 soft as flesh, 1e7 hard; gravity on cotton is 1.5 Pa, so 5e5 rests 3 um deep. Much harder contacts hold
+  /// cloth between two surfaces so fast that friction tears at it.
   double stiffness_per_area = 5e5;
-  double sliding_speed = 2e-5;        ///< below this speed friction is viscous [m/s]: the creep of a contact at rest
-  std::vector<double> area;           ///< lumped area of each cloth vertex [m2]
-  std::vector<double> radius;         ///< contact radius against the body of each cloth vertex [m]
-  std::vector<double> self_radius;    ///< among cloths [m]
+  double sliding_speed = 2e-5;      ///< below this speed friction is viscous [m/s]: the creep of a contact at rest
+  std::vector<double> area;         ///< lumped area of each cloth vertex [m2]
+  std::vector<double> radius;       ///< contact radius against the body of each cloth vertex [m]
+  std::vector<double> self_radius;  ///< among cloths [m]
   std::vector<double> friction, self_friction;  ///< Coulomb coefficient [1]
-  std::vector<Vec3> rest;             ///< rest positions of the cloth vertices [m]
-  std::vector<int> garment;           ///< of each cloth vertex
+  std::vector<Vec3> rest;                       ///< rest positions of the cloth vertices [m]
+  std::vector<int> garment;                     ///< of each cloth vertex
 };
 
 /// One active contact of the current linearisation.
@@ -44,11 +45,12 @@ class ContactPotential {
  public:
   explicit ContactPotential(const ContactModel& model) : model_(model) {}
 
-  /// Takes the pairs of one solve. x_start: all positions at the start of the step (friction measures slip from there), h: its
-  /// length [s], friction_share: of all friction [1].
+  /// Takes the pairs of one solve. x_start: all positions at the start of the step (friction measures slip from there),
+  /// h: its length [s], friction_share: of all friction [1].
   void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h, double friction_share = 1);
 
-  /// Finds the active contacts at x (all vertices). Distances are evaluated anew only where the pair can have come within reach.
+  /// Finds the active contacts at x (all vertices). Distances are evaluated anew only where the pair can have come
+  /// within reach.
   void update(std::span<const Vec3> x);
   /// Fixes normal forces for friction at the contacts of the last update.
   void lag_friction();
@@ -70,7 +72,8 @@ class ContactPotential {
     std::array<int, 4> vertex;
     double friction;
   };
-  double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction, double* area) const;
+  double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction,
+                     double* area) const;
   void update_kind(bool vertex_face, std::span<const Vec3> x);
   float way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const;
 
@@ -78,7 +81,7 @@ class ContactPotential {
   const ContactPairs* pairs_ = nullptr;
   std::span<const Vec3> x_start_;
   double h_ = 0, friction_share_ = 1;
-  std::vector<float> way_;     ///< how far each cloth vertex has gone in this solve [m]
+  std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]
   std::vector<Vec3> x_last_;
   /// Distance when it was last evaluated (-1: never) and what the pair's vertices had gone then, at least [m].
   struct PairState {

@@ -14,8 +14,8 @@ namespace {
 constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
-/// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in the direction,
-/// and cloth that glides over edges would stop there for good.
+/// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
+/// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
 /// Truncation and lagged friction leave the exact descent direction: a rise by this share is no reason to halve.
 constexpr double k_tolerated_rise = 1e-3;
@@ -123,7 +123,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     e *= 0.5 * inertia;
     for (const auto& energy : model_.energies) e += energy->value(x);
     for (std::size_t p = 0; p < model_.pins.size(); ++p)
-      if (s.pin_share[p] > 0) e += pin_force(model_.pins[p], s.pin_share[p], x[at(model_.pins[p].vertex)], in.pin_target[p]).energy;
+      if (s.pin_share[p] > 0)
+        e += pin_force(model_.pins[p], s.pin_share[p], x[at(model_.pins[p].vertex)], in.pin_target[p]).energy;
     return e + s.contact.value(all);
   };
 

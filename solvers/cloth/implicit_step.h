@@ -1,8 +1,8 @@
 // One implicit step of the cloth with the body standing still: minimises
 //   1/(2 (beta h)^2) |x - y|_M^2 + elasticity + contact + friction + pins
-// by Newton's method with a positive definite Hessian, every displacement truncated so that no pair crosses, with energy backtracking
-// as a safety net. Time integration is BDF2 with variable steps (implicit Euler as an option and where the step ratio exceeds 2,
-// beyond which BDF2 is not zero-stable).
+// by Newton's method with a positive definite Hessian, every displacement truncated so that no pair crosses, with
+// energy backtracking as a safety net. Time integration is BDF2 with variable steps (implicit Euler as an option and
+// where the step ratio exceeds 2, beyond which BDF2 is not zero-stable).
 #pragma once
 
 #include <functional>
@@ -28,14 +28,14 @@ struct StepInput {
   std::span<const Vec3> all_start;                 ///< cloth and body at the start: slip is measured from here
   std::span<const Vec3> all_begin;                 ///< carried cloth and body at the end of the step
   std::span<const Vec3> pin_target;                ///< per pin, at the end of the step
-  std::span<const Vec3> centre;                    ///< of the ball that each cloth vertex has to stay in; all_begin is inside
-  std::span<const double> slack;                   ///< its radius [m]
-  std::span<const Vec3> push;                      ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
-  double friction_share = 1;                       ///< of all friction [1]
-  const ContactPairs* pairs = nullptr;             ///< complete within the slack
+  std::span<const Vec3> centre;         ///< of the ball that each cloth vertex has to stay in; all_begin is inside
+  std::span<const double> slack;        ///< its radius [m]
+  std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
+  double friction_share = 1;            ///< of all friction [1]
+  const ContactPairs* pairs = nullptr;  ///< complete within the slack
   int newton_iterations = 3;
-  /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m]. It may give
-  /// more: slack and pairs are looked at again. May be empty.
+  /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m].
+  /// It may give more: slack and pairs are looked at again. May be empty.
   std::function<void(std::span<const double> missing)> more_room;
   double enough_room = 0;  ///< m
 };

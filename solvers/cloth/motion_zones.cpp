@@ -16,7 +16,8 @@ int MotionZones::root(int vertex) const {
   return vertex;
 }
 
-void MotionZones::join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& d) {
+void MotionZones::join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x,
+                       const std::array<Vec3, 4>& d) {
   const int n = static_cast<int>(parent_.size());
   int first = -1;
   for (const int v : stencil.v) {

@@ -1,6 +1,6 @@
-// Zones of cloth that is carried as one. Where carried surfaces would meet, their vertices are given one common motion, the body's
-// where the body is in it: what moves alike cannot meet. Provot's impact zones (1997) reduced to translations, and harmless here: the
-// carry is only where the solve starts from, not where it ends.
+// Zones of cloth that is carried as one. Where carried surfaces would meet, their vertices are given one common motion,
+// the body's where the body is in it: what moves alike cannot meet. Provot's impact zones (1997) reduced to
+// translations, and harmless here: the carry is only where the solve starts from, not where it ends.
 #pragma once
 
 #include <span>
@@ -15,7 +15,8 @@ class MotionZones {
  public:
   /// No zones among so many cloth vertices; vertices of the common numbering past them are the body's.
   void clear(int cloth_vertex_count);
-  /// The cloth of a pair moves as one from now on, with the body if the body is in the pair. x: the pair's places, d: its motions [m].
+  /// The cloth of a pair moves as one from now on, with the body if the body is in the pair. x: the pair's places, d:
+  /// its motions [m].
   void join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& d);
   /// Gives every zone its motion: the mean of the body's where it was met, else of what its vertices had [m].
   void apply(std::span<Vec3> motion) const;

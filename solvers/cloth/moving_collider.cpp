@@ -67,8 +67,7 @@ double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const
       if (blocked[v]) inset[v] = std::min(inset[v] + 2e-3, k_deepest_start + clearance);
     const std::vector<double> before = inset;
     for (const Edge& e : edges)
-      for (int k = 0; k < 2; ++k)
-        inset[at(e[at(k)])] = std::max(inset[at(e[at(k)])], 0.8 * before[at(e[at(1 - k)])]);
+      for (int k = 0; k < 2; ++k) inset[at(e[at(k)])] = std::max(inset[at(e[at(k)])], 0.8 * before[at(e[at(1 - k)])]);
   }
   inset_ = std::move(inset);
   largest_inset_ = inset_.empty() ? 0 : *std::max_element(inset_.begin(), inset_.end());

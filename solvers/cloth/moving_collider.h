@@ -1,5 +1,5 @@
-// The body as the cloth solver meets it: the drawn pose of the trajectory, refined, made feasible, and during the pre-roll drawn in
-// where garments start inside it, so that the growing surface pushes them out without a crossing.
+// The body as the cloth solver meets it: the drawn pose of the trajectory, refined, made feasible, and during the
+// pre-roll drawn in where garments start inside it, so that the growing surface pushes them out without a crossing.
 #pragma once
 
 #include <memory>
@@ -20,8 +20,9 @@ class MovingCollider {
   std::span<const int> part_of_vertex() const { return feasible_->part_of_vertex(); }
   const Trajectory& trajectory() const { return *primary_; }
 
-  /// Draws the body in at the start of the pre-roll so that this cloth (placed by bind_to_start) does not cross it and keeps
-  /// about `clearance` [m]. Returns how deep the deepest point was inside [m]. Without a pre-roll nothing is drawn in.
+  /// Draws the body in at the start of the pre-roll so that this cloth (placed by bind_to_start) does not cross it and
+  /// keeps about `clearance` [m]. Returns how deep the deepest point was inside [m]. Without a pre-roll nothing is
+  /// drawn in.
   double draw_in_for(std::span<const Vec3> points, std::span<const Triangle> cloth, double clearance);
   /// Largest inset [m].
   double largest_inset() const { return largest_inset_; }

@@ -16,7 +16,8 @@ constexpr double k_weight_back = 0.5, k_friction_back = 0.25;
 /// Seams that do not say how long they take are closed after this share of the pre-roll.
 constexpr double k_share_of_preroll = 0.5;
 
-/// Rest length of every edge of the mesh at which a vertex lies on the border, halves added up: the seam that its stitches hold [m].
+/// Rest length of every edge of the mesh at which a vertex lies on the border, halves added up: the seam that its
+/// stitches hold [m].
 std::vector<double> border_lengths(const ClothTopology& topology) {
   struct Side {
     Edge edge;

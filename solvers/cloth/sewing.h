@@ -1,7 +1,7 @@
-// Panels into garments, in the pre-roll: seams shrink from where the panels were placed until they are closed. Meanwhile the cloth
-// weighs nothing and is slowed down, so that panels come straight from their places to each other instead of falling first, and it
-// slides, so that the garment comes to hang where it fits and not where a seam first met the body. Weight returns, then friction.
-// A function of the time alone: nothing to save.
+// Panels into garments, in the pre-roll: seams shrink from where the panels were placed until they are closed.
+// Meanwhile the cloth weighs nothing and is slowed down, so that panels come straight from their places to each other
+// instead of falling first, and it slides, so that the garment comes to hang where it fits and not where a seam first
+// met the body. Weight returns, then friction. A function of the time alone: nothing to save.
 #pragma once
 
 #include <span>
@@ -18,7 +18,8 @@ void sew(ClothModel& model);
 /// Rest lengths of edges of pieces that are cut from a pattern [m]; others stay.
 void lengths_from_pattern(const ClothTopology& topology, RestEdges& edges);
 
-/// Adds, per vertex, what takes weight and speed from cloth that is being sewn at this time [m/s2]. False when there is none.
+/// Adds, per vertex, what takes weight and speed from cloth that is being sewn at this time [m/s2]. False when there is
+/// none.
 bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, std::span<Vec3> acceleration);
 
 /// Share of friction at this time [1]: none while anything is sewn and until it has its weight, then it grows.

@@ -1,6 +1,6 @@
-// Cloth that crosses cloth where it starts: a garment modelled with its lapel through its front, a body that closed on it. The two
-// sides cannot hold each other there, so pairs of tangled vertices with each other are left out of contact until nothing near them
-// crosses any more; everything else goes on as ever. A function of the positions alone.
+// Cloth that crosses cloth where it starts: a garment modelled with its lapel through its front, a body that closed on
+// it. The two sides cannot hold each other there, so pairs of tangled vertices with each other are left out of contact
+// until nothing near them crosses any more; everything else goes on as ever. A function of the positions alone.
 #pragma once
 
 #include <span>

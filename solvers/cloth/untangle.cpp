@@ -11,7 +11,8 @@ namespace {
 constexpr double k_push = 50;
 /// An edge nearer to the face's plane than this (sine of the angle) says nothing about which way shortens.
 constexpr double k_flat = 1e-6;
-/// The contour's shortening by a unit of motion that is less than this is rounding: the pulls of both sides are in balance.
+/// The contour's shortening by a unit of motion that is less than this is rounding: the pulls of both sides are in
+/// balance.
 constexpr double k_balanced = 1e-9;
 
 struct EdgeSide {
@@ -46,10 +47,12 @@ void untangling(std::span<const Vec3> x, std::span<const Triangle> triangles, st
     const Vec3 normal = (b - a).cross(d - a).normalized(), along = (q - p).normalized();
     const double across = along.dot(normal);
     if (!(std::abs(across) > k_flat) || !normal.allFinite()) continue;
-    // The contour leaves the edge into each of its faces; moving the edge by m shortens it by m . (sum of way_in - 2 (E.way_in)/(E.N) N).
+    // The contour leaves the edge into each of its faces; moving the edge by m shortens it by m . (sum of way_in - 2
+    // (E.way_in)/(E.N) N).
     Vec3 shorter = Vec3::Zero();
     const Edge key{std::min(c.edge[0], c.edge[1]), std::max(c.edge[0], c.edge[1])};
-    for (auto side = std::lower_bound(sides.begin(), sides.end(), EdgeSide{key, -1}); side != sides.end() && side->edge == key; ++side) {
+    for (auto side = std::lower_bound(sides.begin(), sides.end(), EdgeSide{key, -1});
+         side != sides.end() && side->edge == key; ++side) {
       const Vec3 to_opposite = x[at(side->opposite)] - p;
       const Vec3 inwards = to_opposite - to_opposite.dot(along) * along;
       Vec3 way_in = along.cross(inwards).cross(normal);

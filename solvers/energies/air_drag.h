@@ -1,8 +1,10 @@
 // Air drag of cloth panels, per area, relative to the wind:
-//   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: normal and tangential parts of the panel's velocity against the wind
-// A third of each panel moves with each of its corners. The normal and the speed are those expected at the end of the step, the law
-// is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0| v0, so that the potential is quadratic, stable for any wind
-// and step, and second order in time. Vacuum (density or coefficients 0) is exactly nothing.
+//   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: normal and tangential parts of the panel's velocity against the
+//   wind
+// A third of each panel moves with each of its corners. The normal and the speed are those expected at the end of the
+// step, the law is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0| v0, so that the potential is
+// quadratic, stable for any wind and step, and second order in time. Vacuum (density or coefficients 0) is exactly
+// nothing.
 #pragma once
 
 #include <vector>
@@ -14,8 +16,8 @@
 namespace ft {
 
 struct AirSettings {
-  double density = 1.225;      ///< kg/m3; 0 vacuum, 1.225 air at sea level
-  Vec3 wind = Vec3::Zero();    ///< m/s
+  double density = 1.225;    ///< kg/m3; 0 vacuum, 1.225 air at sea level
+  Vec3 wind = Vec3::Zero();  ///< m/s
 };
 
 class AirDrag final : public Energy {
@@ -29,7 +31,8 @@ class AirDrag final : public Energy {
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
 
  private:
-  /// A panel's damping matrix [kg/s] per corner and the force that its linearised law has at zero velocity [N] per corner.
+  /// A panel's damping matrix [kg/s] per corner and the force that its linearised law has at zero velocity [N] per
+  /// corner.
   struct Panel {
     Mat3 damping = Mat3::Zero();
     Vec3 force = Vec3::Zero();

@@ -205,7 +205,8 @@ void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
       edges(g, x, h);
       hinge_gradient_lanes(h.e, h.a, h.b, g.floor2, g.floor3, d);
       alignas(32) HingeLane root;
-      for (int l = 0; l < k_lanes; ++l) root[l] = std::sqrt(g.coupling[0][l] * (1 + g.damping_time[l] * inverse_rate_time_));
+      for (int l = 0; l < k_lanes; ++l)
+        root[l] = std::sqrt(g.coupling[0][l] * (1 + g.damping_time[l] * inverse_rate_time_));
       for (int k = 0; k < 3; ++k) {
         alignas(32) float one[k_lanes], two[k_lanes], three[k_lanes];
         for (int l = 0; l < k_lanes; ++l) {
@@ -214,7 +215,8 @@ void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
           two[l] = static_cast<float>(a);
           three[l] = static_cast<float>(b);
         }
-        std::memcpy(&v[1][k], one, sizeof one), std::memcpy(&v[2][k], two, sizeof two), std::memcpy(&v[3][k], three, sizeof three);
+        std::memcpy(&v[1][k], one, sizeof one), std::memcpy(&v[2][k], two, sizeof two),
+            std::memcpy(&v[3][k], three, sizeof three);
         v[0][k] = -(v[1][k] + v[2][k] + v[3][k]);
       }
       const std::size_t first = i * k_lanes, used = hinge_schedule_.used(i);
@@ -224,7 +226,8 @@ void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
             for (int r = 0; r < 3; ++r) block[3 * c + r] = v[a][r] * v[b][c];
           Mat3f* blocks = hessian.blocks.data();
           add_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * a + b]; });
-          if (a != b) add_transposed_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * b + a]; });
+          if (a != b)
+            add_transposed_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * b + a]; });
         }
     }
   });

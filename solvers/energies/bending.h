@@ -1,12 +1,13 @@
-// Out-of-plane elasticity of cloth. The angles theta of all inner edges, less those of the rest shape, are coupled triangle by
-// triangle, because three of them make the curvature of one (cloth_topology_bending.cpp):
-//   U = 1/2 phi.K.phi + 1/2 rho.K.rho,  phi = theta - rest,  rho = sqrt(d) (theta - theta_ref),  d and the reference as in membrane.h
-// K holds up to five numbers per edge and never changes. Hessian: Gauss-Newton with the diagonal of K, sum (1 + d) K_ii grad theta_i
-// grad theta_i^T: positive semidefinite, blind to rigid rotation, and of the plain hinge pattern. Dropping the coupling keeps the
-// matrix a third smaller and its assembly several times cheaper; the true Hessian stays below twice this one, so that a Newton
-// step never overshoots (the contract test measures the ratio).
-// For garments, whose rest shape is not flat, with rigidities of warp and weft in N m.
-// Caution: theta jumps at +-pi; contact keeps cloth from folding through itself.
+// Out-of-plane elasticity of cloth. The angles theta of all inner edges, less those of the rest shape, are coupled
+// triangle by triangle, because three of them make the curvature of one (cloth_topology_bending.cpp):
+//   U = 1/2 phi.K.phi + 1/2 rho.K.rho,  phi = theta - rest,  rho = sqrt(d) (theta - theta_ref),  d and the reference as
+//   in membrane.h
+// K holds up to five numbers per edge and never changes. Hessian: Gauss-Newton with the diagonal of K, sum (1 + d) K_ii
+// grad theta_i grad theta_i^T: positive semidefinite, blind to rigid rotation, and of the plain hinge pattern. Dropping
+// the coupling keeps the matrix a third smaller and its assembly several times cheaper; the true Hessian stays below
+// twice this one, so that a Newton step never overshoots (the contract test measures the ratio). For garments, whose
+// rest shape is not flat, with rigidities of warp and weft in N m. Caution: theta jumps at +-pi; contact keeps cloth
+// from folding through itself.
 #pragma once
 
 #include <vector>
@@ -33,22 +34,23 @@ class Bending final : public Energy {
   /// k_lanes hinges; no coupling in padding.
   struct HingeGroup {
     int vertex[4][k_lanes];
-    int neighbour[k_couplings][k_lanes];    ///< slots of the hinges of a row of K; itself first
-    double coupling[k_couplings][k_lanes];  ///< N m
-    double rest_angle[k_lanes];             ///< rad
-    double damping_time[k_lanes];           ///< s
+    int neighbour[k_couplings][k_lanes];      ///< slots of the hinges of a row of K; itself first
+    double coupling[k_couplings][k_lanes];    ///< N m
+    double rest_angle[k_lanes];               ///< rad
+    double damping_time[k_lanes];             ///< s
     double floor2[k_lanes], floor3[k_lanes];  ///< see hinge_gradient_lanes() [m4]
-    double reference[k_lanes];              ///< theta_ref of the step [rad]
+    double reference[k_lanes];                ///< theta_ref of the step [rad]
   };
+
  private:
   void measure(std::span<const Vec3> x) const;
 
   std::vector<std::array<int, 4>> hinges_;
   ElementSchedule hinge_schedule_;
   std::vector<HingeGroup> hinge_groups_;
-  double inverse_rate_time_ = 0;             ///< 1/s; 0: no damping
+  double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
   mutable BlockPositions<4> positions_;
-  mutable std::vector<double> phi_, rho_;    ///< scratch, per hinge slot
+  mutable std::vector<double> phi_, rho_;  ///< scratch, per hinge slot
 };
 
 }  // namespace ft

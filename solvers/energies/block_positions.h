@@ -1,5 +1,6 @@
 // Where the blocks of every element sit in the matrix, looked up once per pattern, so that assembly never searches.
-// For the energies that add element matrices. Caution: a pattern is recognised by its address and size; it must not be edited in place.
+// For the energies that add element matrices. Caution: a pattern is recognised by its address and size; it must not be
+// edited in place.
 #pragma once
 
 #include <array>

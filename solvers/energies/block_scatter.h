@@ -1,5 +1,6 @@
-// Adds k_lanes 3x3 blocks, computed side by side in vector registers, to their places in the matrix: one transposition in registers,
-// then nine consecutive floats per block. For the energies; GCC and Clang vector extensions, so it compiles for any machine.
+// Adds k_lanes 3x3 blocks, computed side by side in vector registers, to their places in the matrix: one transposition
+// in registers, then nine consecutive floats per block. For the energies; GCC and Clang vector extensions, so it
+// compiles for any machine.
 #pragma once
 
 #include <cstring>

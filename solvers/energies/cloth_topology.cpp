@@ -78,7 +78,8 @@ double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x
 }
 
 ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Triangle> triangles,
-                                  std::span<const ClothPiece> pieces, std::span<const std::array<Vec2, 3>> triangle_uvs) {
+                                  std::span<const ClothPiece> pieces,
+                                  std::span<const std::array<Vec2, 3>> triangle_uvs) {
   CHECK(triangle_uvs.empty() || triangle_uvs.size() == triangles.size());
   CHECK(!pieces.empty());
   ClothTopology out;

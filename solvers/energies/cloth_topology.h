@@ -1,7 +1,7 @@
-// The rest shape of a cloth system as the energies need it: triangles with material axes, hinges with rest angles, lumped masses.
-// Several garments share one numbering; each piece has its own fabric. Never changes after it is built.
-// Caution: uvs give only the direction of the yarns, and lengths are those of the rest positions, unless a piece is cut from its
-// pattern. Material axis 1 is weft (pattern u), axis 2 is warp (pattern v).
+// The rest shape of a cloth system as the energies need it: triangles with material axes, hinges with rest angles,
+// lumped masses. Several garments share one numbering; each piece has its own fabric. Never changes after it is built.
+// Caution: uvs give only the direction of the yarns, and lengths are those of the rest positions, unless a piece is cut
+// from its pattern. Material axis 1 is weft (pattern u), axis 2 is warp (pattern v).
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace ft {
 
-/// What varies over a garment, one value per vertex of it; an empty list changes nothing. Between vertices values run linearly: a triangle
-/// takes the mean of its corners.
+/// What varies over a garment, one value per vertex of it; an empty list changes nothing. Between vertices values run
+/// linearly: a triangle takes the mean of its corners.
 struct VertexMaps {
   std::vector<double> stretch;        ///< factor of the fabric's stretch and shear stiffness [1]; above 0
   std::vector<double> bend;           ///< factor of the fabric's bending rigidity [1]; 0 folds freely
@@ -27,8 +27,8 @@ struct ClothPiece {
   int first_vertex = 0;
   int vertex_count = 0;
   Fabric fabric;
-  /// m per unit of the uvs, from which lengths, areas and masses come then; they lie flat and may be mirrored. 0: from the rest positions,
-  /// which otherwise say only what is near what.
+  /// m per unit of the uvs, from which lengths, areas and masses come then; they lie flat and may be mirrored. 0: from
+  /// the rest positions, which otherwise say only what is near what.
   double pattern_scale = 0;
   VertexMaps maps{};
 };
@@ -36,19 +36,19 @@ struct ClothPiece {
 /// Two triangles at a common edge: (v0, v1, v2) and (v1, v0, v3) in the orientation of the first.
 struct Hinge {
   std::array<int, 4> vertex{};
-  double rest_angle = 0;    ///< rad, -pi..pi, signed as hinge_angle() says
-  double rest_area = 0;     ///< of both triangles [m2]
+  double rest_angle = 0;  ///< rad, -pi..pi, signed as hinge_angle() says
+  double rest_area = 0;   ///< of both triangles [m2]
   std::array<int, 2> triangle{};
   int piece = 0;
 };
 
-/// Bending of one triangle: its curvature follows from the angles at its edges. U = bends.M.bends / 2, with bends = angle - rest
-/// angle of each edge's hinge, signed by this triangle's orientation. Edge k is opposite to corner k.
+/// Bending of one triangle: its curvature follows from the angles at its edges. U = bends.M.bends / 2, with bends =
+/// angle - rest angle of each edge's hinge, signed by this triangle's orientation. Edge k is opposite to corner k.
 struct BendElement {
   int triangle = 0;
-  std::array<int, 3> hinge{-1, -1, -1};   ///< of each edge; -1: free edge
-  std::array<int, 3> sign{1, 1, 1};       ///< -1: the hinge sees this triangle from behind
-  Mat3 stiffness = Mat3::Zero();          ///< M [N m / rad2]; rows of free edges are zero
+  std::array<int, 3> hinge{-1, -1, -1};  ///< of each edge; -1: free edge
+  std::array<int, 3> sign{1, 1, 1};      ///< -1: the hinge sees this triangle from behind
+  Mat3 stiffness = Mat3::Zero();         ///< M [N m / rad2]; rows of free edges are zero
 };
 
 /// A vertex that is sewn to the point (1 - place) x[edge[0]] + place x[edge[1]]; see seams.h.
@@ -56,25 +56,26 @@ struct SeamPoint {
   int vertex = 0;
   std::array<int, 2> edge{};
   double place = 0;
-  double start_gap = 0;              ///< distance at which the seam starts to close [m]
+  double start_gap = 0;                ///< distance at which the seam starts to close [m]
   double opens_at = 0, closed_at = 0;  ///< the gap shrinks to nothing between these times [s]
-  double stiffness = 0;              ///< N/m
-  double pull = 0, hold = 0;         ///< force limit while it closes, and afterwards [N]
+  double stiffness = 0;                ///< N/m
+  double pull = 0, hold = 0;           ///< force limit while it closes, and afterwards [N]
 };
 
 struct ClothTopology {
   int vertex_count = 0;
-  std::vector<Vec3> rest;                        ///< m
+  std::vector<Vec3> rest;  ///< m
   std::vector<Triangle> triangles;
   std::vector<int> triangle_piece;
-  std::vector<double> rest_area;                 ///< of each triangle [m2]; 0 where the triangle is degenerate and carries nothing
-  /// Inverse of the 2x2 matrix of rest edges (x1 - x0, x2 - x0) in material axes, row by row [1/m]; zero when degenerate.
+  std::vector<double> rest_area;  ///< of each triangle [m2]; 0 where the triangle is degenerate and carries nothing
+  /// Inverse of the 2x2 matrix of rest edges (x1 - x0, x2 - x0) in material axes, row by row [1/m]; zero when
+  /// degenerate.
   std::vector<std::array<double, 4>> rest_inverse;
   std::vector<Hinge> hinges;
-  std::vector<BendElement> bends;                ///< one per triangle that has a hinge and resists bending
-  std::vector<double> mass;                      ///< kg per vertex: a third of each triangle around it
+  std::vector<BendElement> bends;  ///< one per triangle that has a hinge and resists bending
+  std::vector<double> mass;        ///< kg per vertex: a third of each triangle around it
   std::vector<ClothPiece> pieces;
-  std::vector<SeamPoint> seams;                  ///< none unless something is sewn
+  std::vector<SeamPoint> seams;  ///< none unless something is sewn
 
   const Fabric& fabric_of_triangle(std::size_t t) const {
     return pieces[static_cast<std::size_t>(triangle_piece[t])].fabric;
@@ -83,8 +84,8 @@ struct ClothTopology {
   double factor(std::size_t t, std::vector<double> VertexMaps::*map) const;
 };
 
-/// triangle_uvs: pattern coordinates of the three corners of each triangle, or empty. Without them (or where they are degenerate)
-/// warp is the rest shape's vertical, projected into the triangle; in flat-lying triangles, world z.
+/// triangle_uvs: pattern coordinates of the three corners of each triangle, or empty. Without them (or where they are
+/// degenerate) warp is the rest shape's vertical, projected into the triangle; in flat-lying triangles, world z.
 /// Vertices of no piece get no mass; a triangle belongs to the piece of its first vertex.
 ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Triangle> triangles,
                                   std::span<const ClothPiece> pieces,

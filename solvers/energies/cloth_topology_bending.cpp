@@ -1,9 +1,10 @@
 // Curvature of a triangle from the angles theta_i at its edges:
-//   kappa = sum_i theta_i l_i / (A + A_i) t_i t_i^T        l_i edge length, t_i its in-plane normal, A_i the triangle beyond
-// which is exact for sheets bent on regular meshes of any direction (the rotation-free shell triangle of Onate and Zarate 2000, with
-// the angle shared between the two triangles in proportion to their heights). Energy A/2 kappa.D.kappa with D from the bending
-// rigidities of weft and warp; no Poisson effect in bending.
-// The single-hinge energy 3 B |e|^2 / (A1 + A2) theta^2 / 2 common in graphics (Grinspun et al. 2003) has a stiffness that depends on
+//   kappa = sum_i theta_i l_i / (A + A_i) t_i t_i^T        l_i edge length, t_i its in-plane normal, A_i the triangle
+//   beyond
+// which is exact for sheets bent on regular meshes of any direction (the rotation-free shell triangle of Onate and
+// Zarate 2000, with the angle shared between the two triangles in proportion to their heights). Energy A/2
+// kappa.D.kappa with D from the bending rigidities of weft and warp; no Poisson effect in bending. The single-hinge
+// energy 3 B |e|^2 / (A1 + A2) theta^2 / 2 common in graphics (Grinspun et al. 2003) has a stiffness that depends on
 // the direction of the edges: measured here from 0.8 to 3 times B on grids, after dividing out its factor 3.
 // At a free edge the angle is whatever costs least: it is eliminated, which leaves no moment there.
 #include "solvers/energies/cloth_topology_bending.h"
@@ -25,8 +26,8 @@ struct EdgeUse {
 }  // namespace
 
 void add_hinges(ClothTopology& out) {
-  // Sorted by edge: independent of the order of the triangles. An edge of more than two triangles (a pocket, a seam sewn flat) gets
-  // a hinge for each consecutive pair.
+  // Sorted by edge: independent of the order of the triangles. An edge of more than two triangles (a pocket, a seam
+  // sewn flat) gets a hinge for each consecutive pair.
   std::vector<EdgeUse> uses;
   uses.reserve(3 * out.triangles.size());
   for (std::size_t t = 0; t < out.triangles.size(); ++t) {
@@ -63,7 +64,8 @@ void add_bend_elements(ClothTopology& out) {
       const Triangle& tri = out.triangles[at(t)];
       for (std::size_t k = 0; k < 3; ++k) {
         const int c = tri[(k + 1) % 3], d = tri[(k + 2) % 3];
-        const bool same = c == hinge.vertex[0] && d == hinge.vertex[1], reversed = c == hinge.vertex[1] && d == hinge.vertex[0];
+        const bool same = c == hinge.vertex[0] && d == hinge.vertex[1],
+                   reversed = c == hinge.vertex[1] && d == hinge.vertex[0];
         if ((!same && !reversed) || elements[at(t)].hinge[k] >= 0) continue;
         elements[at(t)].hinge[k] = static_cast<int>(h);
         // The first triangle runs along the hinge; a second one that does too looks the other way.

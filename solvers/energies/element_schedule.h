@@ -1,7 +1,7 @@
-// In which order the energies visit their elements: sorted along a space-filling curve, in chunks of equal size, chunks coloured so
-// that two of one colour share no vertex. Chunks of a colour may run at the same time and add straight into the result; every entry
-// receives its terms in an order that does not depend on the number of threads.
-// For membrane and bending. Elements of a chunk come in groups of k_lanes, for vector instructions.
+// In which order the energies visit their elements: sorted along a space-filling curve, in chunks of equal size, chunks
+// coloured so that two of one colour share no vertex. Chunks of a colour may run at the same time and add straight into
+// the result; every entry receives its terms in an order that does not depend on the number of threads. For membrane
+// and bending. Elements of a chunk come in groups of k_lanes, for vector instructions.
 #pragma once
 
 #include <array>
@@ -34,8 +34,10 @@ inline constexpr std::size_t k_chunk_groups = 32;
 ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest);
 
 template <std::size_t Corners>
-ElementSchedule make_element_schedule(const std::vector<std::array<int, Corners>>& stencils, std::span<const Vec3> rest) {
-  return make_element_schedule({stencils.empty() ? nullptr : stencils[0].data(), Corners * stencils.size()}, Corners, rest);
+ElementSchedule make_element_schedule(const std::vector<std::array<int, Corners>>& stencils,
+                                      std::span<const Vec3> rest) {
+  return make_element_schedule({stencils.empty() ? nullptr : stencils[0].data(), Corners * stencils.size()}, Corners,
+                               rest);
 }
 
 /// body(first group, end group) for every chunk, colour after colour.

@@ -1,6 +1,7 @@
-// One term of the incremental potential. Value, gradient and a positive semidefinite Hessian; the same bits for any thread count.
-// Energies are listed in solvers/energies/registry.cpp; the contract test (gradient against differences, Hessian against
-// differences of the gradient where it is exact, rigid motion invariance, rest state at zero force) runs over the list.
+// One term of the incremental potential. Value, gradient and a positive semidefinite Hessian; the same bits for any
+// thread count. Energies are listed in solvers/energies/registry.cpp; the contract test (gradient against differences,
+// Hessian against differences of the gradient where it is exact, rigid motion invariance, rest state at zero force)
+// runs over the list.
 #pragma once
 
 #include <array>
@@ -15,13 +16,14 @@ namespace ft {
 
 /// What a step knows besides positions. Lagged quantities (damping, wind) use the start of the substep.
 struct StepContext {
-  double h = 1.0 / 240;             ///< substep [s]
-  double beta_h = 1.0 / 240;        ///< effective h of the integrator: h for implicit Euler, 2/3 h for BDF2 at constant h [s]
-  std::span<const Vec3> x_t0;       ///< positions at the start of the substep [m]
-  std::span<const Vec3> v_t0;       ///< velocities at the start of the substep [m/s]
-  double time = 0;                  ///< at the end of the substep [s]
-  /// The integrator's rate of any q: (q - a q_t0 + b q_tm1) / beta_h, with a - b = 1. Without x_tm1 (empty): (q - q_t0) / h.
-  std::span<const Vec3> x_tm1;      ///< positions one substep earlier [m]; may be empty
+  double h = 1.0 / 240;       ///< substep [s]
+  double beta_h = 1.0 / 240;  ///< effective h of the integrator: h for implicit Euler, 2/3 h for BDF2 at constant h [s]
+  std::span<const Vec3> x_t0;  ///< positions at the start of the substep [m]
+  std::span<const Vec3> v_t0;  ///< velocities at the start of the substep [m/s]
+  double time = 0;             ///< at the end of the substep [s]
+  /// The integrator's rate of any q: (q - a q_t0 + b q_tm1) / beta_h, with a - b = 1. Without x_tm1 (empty): (q - q_t0)
+  /// / h.
+  std::span<const Vec3> x_tm1;  ///< positions one substep earlier [m]; may be empty
   double a = 1, b = 0;
 
   bool has_history() const { return !x_tm1.empty(); }
@@ -37,9 +39,9 @@ class Energy {
   virtual std::vector<std::array<int, 4>> stencils() const = 0;
   /// Forgets the last step, takes over this one's context.
   virtual void begin_step(const StepContext&) {}
-  virtual double value(std::span<const Vec3> x) const = 0;                              ///< J
+  virtual double value(std::span<const Vec3> x) const = 0;                                 ///< J
   virtual void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const = 0;  ///< N
-  virtual void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const = 0;    ///< N/m
+  virtual void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const = 0;       ///< N/m
 };
 
 }  // namespace ft

@@ -21,7 +21,8 @@ struct Fabric {
   double poisson = 0.3;
   /// Bending rigidity of the warp and of the weft yarns: fold across them [N m]. 1e-6 silk, 1e-4 denim. 0 folds freely.
   double bend_warp = 1e-5, bend_weft = 1e-5;
-  /// Strain along the warp and the weft from which on the crimp of the yarns is used up and they pull straight [1]; 0: never (knits).
+  /// Strain along the warp and the weft from which on the crimp of the yarns is used up and they pull straight [1]; 0:
+  /// never (knits).
   double limit_warp = 0, limit_weft = 0;
   /// Stiffness that straight yarns add beyond it [N/m].
   double limit_stretch = 1e4;

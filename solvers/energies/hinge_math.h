@@ -1,5 +1,6 @@
-// Dihedral angles and their gradients, k_lanes hinges at once: x0, x1 is the edge, x2 and x3 are the outer vertices, e = x1 - x0,
-// a = x2 - x0, b = x3 - x0. Own arctangent: it vectorises, and its bits do not depend on the mathematics library.
+// Dihedral angles and their gradients, k_lanes hinges at once: x0, x1 is the edge, x2 and x3 are the outer vertices, e
+// = x1 - x0, a = x2 - x0, b = x3 - x0. Own arctangent: it vectorises, and its bits do not depend on the mathematics
+// library.
 #pragma once
 
 #include <cmath>
@@ -10,7 +11,8 @@ namespace ft {
 
 using HingeLane = double[k_lanes];
 
-/// atan(t) for t >= 0: two half-angle steps bring tan down to below tan(pi / 16) for t <= 1, then the series; error below 1e-14.
+/// atan(t) for t >= 0: two half-angle steps bring tan down to below tan(pi / 16) for t <= 1, then the series; error
+/// below 1e-14.
 inline double arctangent(double t) {
   const double u = t / (1 + std::sqrt(1 + t * t));
   const double w = u / (1 + std::sqrt(1 + u * u));
@@ -48,8 +50,8 @@ struct HingeGradients {
   alignas(32) HingeLane s2, s3;        ///< where x2, x3 project on the edge, 0 at x0, 1 at x1
 };
 
-/// floor2, floor3: squared area normals below which the two triangles count as degenerate; their gradients are then held down
-/// instead of growing without bound [m4].
+/// floor2, floor3: squared area normals below which the two triangles count as degenerate; their gradients are then
+/// held down instead of growing without bound [m4].
 inline void hinge_gradient_lanes(const HingeLane* e, const HingeLane* a, const HingeLane* b, const HingeLane& floor2,
                                  const HingeLane& floor3, HingeGradients& out) {
   for (int l = 0; l < k_lanes; ++l) {

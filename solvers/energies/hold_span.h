@@ -1,5 +1,5 @@
-// When a pin or an attachment holds: from a time on, until a time, and how gently it comes and goes. A function of the time alone, so
-// that a resume, a rewind or other substeps find it as it was.
+// When a pin or an attachment holds: from a time on, until a time, and how gently it comes and goes. A function of the
+// time alone, so that a resume, a rewind or other substeps find it as it was.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,8 @@ struct HoldSpan {
 
   /// Share of the force at a time, 0..1.
   double share(double time) const {
-    if (fade > 0) return std::min(std::clamp((time - from) / fade, 0.0, 1.0), 1 - std::clamp((time - until) / fade, 0.0, 1.0));
+    if (fade > 0)
+      return std::min(std::clamp((time - from) / fade, 0.0, 1.0), 1 - std::clamp((time - until) / fade, 0.0, 1.0));
     return time > from + k_instant && time <= until + k_instant ? 1 : 0;
   }
   /// True when the force jumps between two times: an integrator with a history has to start anew there.

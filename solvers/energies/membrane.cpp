@@ -56,14 +56,17 @@ inline Taut taut(double past) {
 }
 
 /// Area times second Piola-Kirchhoff stress with damping: S11, S22, S12.
-void stress(const Membrane::Group& g, const Membrane::Reference& ref, double inverse_rate_time, const Lane* e, Lane* s) {
+void stress(const Membrane::Group& g, const Membrane::Reference& ref, double inverse_rate_time, const Lane* e,
+            Lane* s) {
   for (int l = 0; l < k_lanes; ++l) {
     const double d = g.damping_time[l] * inverse_rate_time;
     const double e0 = e[0][l] + d * (e[0][l] - ref.strain[0][l]);
     const double e1 = e[1][l] + d * (e[1][l] - ref.strain[1][l]);
     const double e2 = e[2][l] + d * (e[2][l] - ref.strain[2][l]);
-    s[0][l] = g.stiffness[0][l] * e0 + g.stiffness[2][l] * e1 + g.limit_stiffness[l] * taut(e[0][l] - g.limit[0][l]).slope;
-    s[1][l] = g.stiffness[2][l] * e0 + g.stiffness[1][l] * e1 + g.limit_stiffness[l] * taut(e[1][l] - g.limit[1][l]).slope;
+    s[0][l] =
+        g.stiffness[0][l] * e0 + g.stiffness[2][l] * e1 + g.limit_stiffness[l] * taut(e[0][l] - g.limit[0][l]).slope;
+    s[1][l] =
+        g.stiffness[2][l] * e0 + g.stiffness[1][l] * e1 + g.limit_stiffness[l] * taut(e[1][l] - g.limit[1][l]).slope;
     s[2][l] = g.stiffness[3][l] * e2;
   }
 }
@@ -86,7 +89,8 @@ struct ElementParts {
 
 /// Block (a, b) = F M_ab F^T + s_ab I, where M_ab holds the shape gradients (ax, ay), (bx, by) and the stiffness,
 /// s_ab = (ax, ay) . S+ (bx, by).
-void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by, Lanes* out) {
+void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by,
+                   Lanes* out) {
   const Lanes xx = ax * bx, yy = ay * by, xy = ax * by, yx = ay * bx;
   const Lanes m11 = e.c11 * xx + e.c33 * yy, m22 = e.c22 * yy + e.c33 * xx;
   const Lanes m12 = e.c12 * xy + e.c33 * yx, m21 = e.c12 * yx + e.c33 * xy;
@@ -98,8 +102,8 @@ void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, cons
   }
 }
 
-void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* strain, const Lane* s, double inverse_rate_time,
-                    ElementBlocks& out) {
+void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* strain, const Lane* s,
+                    double inverse_rate_time, ElementBlocks& out) {
   // Positive part of the 2x2 stress: alpha S + beta I, from the eigenvalues mean +- radius.
   alignas(32) Lane p[3], more, straight[2];
   for (int l = 0; l < k_lanes; ++l) {
@@ -128,8 +132,11 @@ void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* 
 }
 
 /// Adds the nine blocks of `used` elements.
-void scatter(const ElementBlocks& e, const BlockPositions<3>& positions, std::size_t first, std::size_t used, Mat3f* blocks) {
-  const auto at_block = [&](std::size_t k) { return [&positions, first, k](std::size_t l) { return positions[first + l][k]; }; };
+void scatter(const ElementBlocks& e, const BlockPositions<3>& positions, std::size_t first, std::size_t used,
+             Mat3f* blocks) {
+  const auto at_block = [&](std::size_t k) {
+    return [&positions, first, k](std::size_t l) { return positions[first + l][k]; };
+  };
   Lanes b00[9], b10[9], b20[9];
   for (std::size_t column = 0; column < 3; ++column)
     for (std::size_t row = 0; row < 3; ++row) {
@@ -150,15 +157,17 @@ void scatter(const ElementBlocks& e, const BlockPositions<3>& positions, std::si
 }
 
 /// Green strain of a line that is longer by this share; a limit of 0 is none.
-double green_limit(double strain) { return strain > 0 ? strain + 0.5 * strain * strain : 1e30; }
+double green_limit(double strain) {
+  return strain > 0 ? strain + 0.5 * strain * strain : 1e30;
+}
 
 }  // namespace
 
 std::array<double, 4> membrane_stiffness(const Fabric& f) {
   // E_weft nu_warp = E_warp nu_weft holds with nu_weft = nu sqrt(E_weft / E_warp), and nu_weft nu_warp = nu^2.
   const double scale = 1 / (1 - f.poisson * f.poisson);
-  return {f.stretch_weft * scale, f.stretch_warp * scale, f.poisson * std::sqrt(f.stretch_weft * f.stretch_warp) * scale,
-          f.shear};
+  return {f.stretch_weft * scale, f.stretch_warp * scale,
+          f.poisson * std::sqrt(f.stretch_weft * f.stretch_warp) * scale, f.shear};
 }
 
 Membrane::Membrane(const ClothTopology& topology) {
@@ -207,7 +216,8 @@ void Membrane::begin_step(const StepContext& context) {
       deformation(groups_[i], context.x_tm1, d);
       strain(d, e);
       for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < k_lanes; ++l) reference_[i].strain[k][l] = context.a * reference_[i].strain[k][l] - context.b * e[k][l];
+        for (int l = 0; l < k_lanes; ++l)
+          reference_[i].strain[k][l] = context.a * reference_[i].strain[k][l] - context.b * e[k][l];
     }
   });
 }
@@ -226,8 +236,8 @@ double Membrane::value(std::span<const Vec3> x) const {
         const double r0 = e[0][l] - ref.strain[0][l], r1 = e[1][l] - ref.strain[1][l], r2 = e[2][l] - ref.strain[2][l];
         const double elastic = g.stiffness[0][l] * e[0][l] * e[0][l] + g.stiffness[1][l] * e[1][l] * e[1][l] +
                                2 * g.stiffness[2][l] * e[0][l] * e[1][l] + g.stiffness[3][l] * e[2][l] * e[2][l];
-        const double viscous = g.stiffness[0][l] * r0 * r0 + g.stiffness[1][l] * r1 * r1 + 2 * g.stiffness[2][l] * r0 * r1 +
-                               g.stiffness[3][l] * r2 * r2;
+        const double viscous = g.stiffness[0][l] * r0 * r0 + g.stiffness[1][l] * r1 * r1 +
+                               2 * g.stiffness[2][l] * r0 * r1 + g.stiffness[3][l] * r2 * r2;
         sum[l] += 0.5 * (elastic + damping * viscous) +
                   g.limit_stiffness[l] * (taut(e[0][l] - g.limit[0][l]).value + taut(e[1][l] - g.limit[1][l]).value);
       }

@@ -25,7 +25,9 @@ constexpr ClothEnergyKind k_kinds[] = {
 
 }  // namespace
 
-std::span<const ClothEnergyKind> cloth_energy_kinds() { return k_kinds; }
+std::span<const ClothEnergyKind> cloth_energy_kinds() {
+  return k_kinds;
+}
 
 std::vector<std::unique_ptr<Energy>> make_cloth_energies(const ClothTopology& topology, const AirSettings& air) {
   std::vector<std::unique_ptr<Energy>> out;

@@ -1,4 +1,5 @@
-// The energies of cloth, in one list. Adding one: a file beside this, a line in registry.cpp; the contract tests then run over it.
+// The energies of cloth, in one list. Adding one: a file beside this, a line in registry.cpp; the contract tests then
+// run over it.
 #pragma once
 
 #include <memory>
@@ -15,7 +16,7 @@ namespace ft {
 struct ClothEnergyKind {
   std::string_view name;
   std::unique_ptr<Energy> (*make)(const ClothTopology& topology, const AirSettings& air);
-  bool elastic;  ///< knows no place and no direction in space: no force at rest, none from rigid motion
+  bool elastic;        ///< knows no place and no direction in space: no force at rest, none from rigid motion
   bool exact_hessian;  ///< equals the second derivative where that is positive definite; false: more than half of it
 };
 

@@ -24,7 +24,9 @@ Vec3 gap(const SeamPoint& p, std::span<const Vec3> x) {
   return x[at(p.vertex)] - (1 - p.place) * x[at(p.edge[0])] - p.place * x[at(p.edge[1])];
 }
 
-std::array<double, 3> weights(const SeamPoint& p) { return {1, p.place - 1, -p.place}; }
+std::array<double, 3> weights(const SeamPoint& p) {
+  return {1, p.place - 1, -p.place};
+}
 
 }  // namespace
 
@@ -44,7 +46,8 @@ void Seams::begin_step(const StepContext& context) {
     const double lasts = p.closed_at - p.opens_at;
     const double done = lasts > 0 ? (context.time - p.opens_at) / lasts : (context.time < p.closed_at ? 0.0 : 2.0);
     // After the seam has closed, its limit grows over as long a time as it took.
-    targets_[i] = {p.start_gap * std::clamp(1 - done, 0.0, 1.0), p.pull + (p.hold - p.pull) * std::clamp(done - 1, 0.0, 1.0)};
+    targets_[i] = {p.start_gap * std::clamp(1 - done, 0.0, 1.0),
+                   p.pull + (p.hold - p.pull) * std::clamp(done - 1, 0.0, 1.0)};
   }
 }
 

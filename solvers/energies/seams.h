@@ -1,9 +1,10 @@
 // Sewing: a vertex of one panel is drawn to a point on another's edge and kept there.
 //   U = integral of f(e), e = |x_v - (1 - t) x_a - t x_b| - L,   f = min(k e, limit), 0 where e < 0
-// L shrinks evenly from the distance at the start to nothing while the seam closes; from then on it is a spring of no length with a
-// far higher limit. The limit keeps a panel that is caught behind an arm from being torn. For panels that are cut from a pattern.
-// Hessian: with the secant f / e along the spring, which is the true one as long as the limit is not reached and above it beyond.
-// Caution: the two sides must not feel each other's contact, see collision/sewn_pairs.h.
+// L shrinks evenly from the distance at the start to nothing while the seam closes; from then on it is a spring of no
+// length with a far higher limit. The limit keeps a panel that is caught behind an arm from being torn. For panels that
+// are cut from a pattern. Hessian: with the secant f / e along the spring, which is the true one as long as the limit
+// is not reached and above it beyond. Caution: the two sides must not feel each other's contact, see
+// collision/sewn_pairs.h.
 #pragma once
 
 #include <vector>

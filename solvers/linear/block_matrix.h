@@ -1,6 +1,6 @@
-// Symmetric sparse matrix of 3x3 float blocks over the vertices of a system: the Hessian of one potential. The pattern (which
-// vertex pairs share an element) is built once from the rest shape; values are refilled for every Newton step. Contact between
-// vertices that share no element goes into PairTerms, outside the pattern.
+// Symmetric sparse matrix of 3x3 float blocks over the vertices of a system: the Hessian of one potential. The pattern
+// (which vertex pairs share an element) is built once from the rest shape; values are refilled for every Newton step.
+// Contact between vertices that share no element goes into PairTerms, outside the pattern.
 #pragma once
 
 #include <span>
@@ -15,13 +15,14 @@ namespace ft {
 struct BlockPattern {
   std::vector<int> row_start;  ///< vertex_count + 1
   std::vector<int> column;
-  std::vector<int> diagonal;   ///< position of the diagonal block of each row
+  std::vector<int> diagonal;  ///< position of the diagonal block of each row
   int vertex_count() const { return static_cast<int>(diagonal.size()); }
   /// Position of block (row, column), or -1.
   int find(int row, int column) const;
 };
 
-/// Pattern that couples all vertices of every stencil (triangles: 3 vertices; hinges: 4; springs: 2; -1 entries are skipped).
+/// Pattern that couples all vertices of every stencil (triangles: 3 vertices; hinges: 4; springs: 2; -1 entries are
+/// skipped).
 BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::array<int, 4>>> stencil_lists);
 
 struct BlockMatrix {
@@ -30,9 +31,9 @@ struct BlockMatrix {
   void reset(const BlockPattern& p) { pattern = &p, blocks.assign(p.column.size(), Mat3f::Zero()); }
 };
 
-/// K spread over up to four vertices: block (a, b) of the Hessian is weight[a] * weight[b] * stiffness. A contact with normal n
-/// and stiffness k has stiffness = k n n^T; friction k_t (I - n n^T); a pin I*k with one vertex. vertex = -1 marks an unused or
-/// kinematic slot.
+/// K spread over up to four vertices: block (a, b) of the Hessian is weight[a] * weight[b] * stiffness. A contact with
+/// normal n and stiffness k has stiffness = k n n^T; friction k_t (I - n n^T); a pin I*k with one vertex. vertex = -1
+/// marks an unused or kinematic slot.
 struct PairTerm {
   std::array<int, 4> vertex{-1, -1, -1, -1};
   std::array<float, 4> weight{0, 0, 0, 0};

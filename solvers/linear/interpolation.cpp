@@ -40,8 +40,8 @@ struct Choice {
   double cost = std::numeric_limits<double>::infinity();
 };
 
-void consider(Choice& best, std::span<const int> nodes, std::span<const double> weights, std::span<const Vec3> rest, const Vec3& x,
-              std::span<const int> coarse_of) {
+void consider(Choice& best, std::span<const int> nodes, std::span<const double> weights, std::span<const Vec3> rest,
+              const Vec3& x, std::span<const int> coarse_of) {
   Vec3 point = Vec3::Zero();
   double spread = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -59,7 +59,8 @@ void consider(Choice& best, std::span<const int> nodes, std::span<const double> 
   }
 }
 
-Choice best_supports(const Vec3& x, std::span<const int> nodes, std::span<const Vec3> rest, std::span<const int> coarse_of) {
+Choice best_supports(const Vec3& x, std::span<const int> nodes, std::span<const Vec3> rest,
+                     std::span<const int> coarse_of) {
   Choice best;
   const std::size_t n = nodes.size();
   for (std::size_t a = 0; a < n; ++a) {
@@ -70,7 +71,8 @@ Choice best_supports(const Vec3& x, std::span<const int> nodes, std::span<const 
       const double length2 = ab.squaredNorm();
       if (!(length2 > 0)) continue;
       const double t = std::clamp(ab.dot(x - pa) / length2, 0.0, 1.0);
-      if (t > 0.02 && t < 0.98) consider(best, std::array{nodes[a], nodes[b]}, std::array{1 - t, t}, rest, x, coarse_of);
+      if (t > 0.02 && t < 0.98)
+        consider(best, std::array{nodes[a], nodes[b]}, std::array{1 - t, t}, rest, x, coarse_of);
       for (std::size_t c = b + 1; c < n; ++c) {
         const Vec3 ac = rest[at(nodes[c])] - pa;
         const double d00 = length2, d01 = ab.dot(ac), d11 = ac.squaredNorm();

@@ -1,6 +1,7 @@
-// Coarse vertices for multigrid on any mesh: an independent set of the matrix pattern, and for every other vertex the triangle
-// (or pair) of nearby coarse vertices around it with its barycentric weights in the rest shape. Linear fields of the rest shape
-// are reproduced wherever a coarse triangle encloses the vertex, which stiff bending needs. Built once; weights are scalars.
+// Coarse vertices for multigrid on any mesh: an independent set of the matrix pattern, and for every other vertex the
+// triangle (or pair) of nearby coarse vertices around it with its barycentric weights in the rest shape. Linear fields
+// of the rest shape are reproduced wherever a coarse triangle encloses the vertex, which stiff bending needs. Built
+// once; weights are scalars.
 #pragma once
 
 #include <array>

@@ -37,7 +37,8 @@ bool link_levels(Level& fine, Level& coarse) {
   std::vector<std::vector<std::pair<int, float>>> children(nc);
   for (std::size_t v = 0; v < p.rows.size(); ++v)
     for (std::size_t k = 0; k < 3; ++k)
-      if (p.rows[v].coarse[k] >= 0) children[at(p.rows[v].coarse[k])].push_back({static_cast<int>(v), p.rows[v].weight[k]});
+      if (p.rows[v].coarse[k] >= 0)
+        children[at(p.rows[v].coarse[k])].push_back({static_cast<int>(v), p.rows[v].weight[k]});
   fine.children_start.assign(1, 0);
   for (const auto& list : children) {
     for (const auto& [v, w] : list) fine.children.push_back(v), fine.children_weight.push_back(w);

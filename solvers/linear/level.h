@@ -1,5 +1,5 @@
-// One level of the multigrid hierarchy: matrix in 3x3 float blocks, damped block-Jacobi smoother, and the plan that gathers the
-// next coarser (Galerkin) matrix block by block without a search, in a fixed order.
+// One level of the multigrid hierarchy: matrix in 3x3 float blocks, damped block-Jacobi smoother, and the plan that
+// gathers the next coarser (Galerkin) matrix block by block without a search, in a fixed order.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,10 @@ using Vec4f = Eigen::Vector4f;  ///< a 3-vector padded for aligned loads; the fo
 
 struct Level {
   const BlockPattern* pattern = nullptr;
-  BlockPattern own_pattern;        ///< of coarse levels
-  std::vector<float> blocks;       ///< 9 per block, column by column, one block of padding at the end
-  std::vector<Mat3f> inverse;      ///< of the diagonal blocks; zero for rows that are held
-  float damping = 0.45f;           ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
+  BlockPattern own_pattern;    ///< of coarse levels
+  std::vector<float> blocks;   ///< 9 per block, column by column, one block of padding at the end
+  std::vector<Mat3f> inverse;  ///< of the diagonal blocks; zero for rows that are held
+  float damping = 0.45f;       ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
   std::vector<Vec3> rest;
   std::vector<Vec4f> x, r, b;
 
@@ -29,9 +29,9 @@ struct Level {
     int block;
     float weight;
   };
-  std::vector<int> gather_start;            ///< per coarse block of the upper triangle
+  std::vector<int> gather_start;  ///< per coarse block of the upper triangle
   std::vector<Contribution> gather;
-  std::vector<int> upper, lower;            ///< positions in the coarse matrix that each gathered block goes to
+  std::vector<int> upper, lower;  ///< positions in the coarse matrix that each gathered block goes to
 
   int size() const { return pattern->vertex_count(); }
 };

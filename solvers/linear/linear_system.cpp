@@ -11,8 +11,8 @@
 namespace ft {
 namespace {
 
-constexpr int k_dense_size = 64;       ///< vertices of the level that is factored densely
-constexpr int k_dense_limit = 400;     ///< no dense factor above this size: the coarsest level is only smoothed then
+constexpr int k_dense_size = 64;    ///< vertices of the level that is factored densely
+constexpr int k_dense_limit = 400;  ///< no dense factor above this size: the coarsest level is only smoothed then
 constexpr std::size_t k_rows = 1024;
 
 /// Off-pattern blocks, rows ascending, columns ascending within a row.
@@ -53,7 +53,8 @@ struct LinearSystem::Impl {
   void precondition(std::span<const Vec4f> r, std::span<Vec4f> z);
 };
 
-LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> rest_positions, const LinearSettings& settings)
+LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> rest_positions,
+                           const LinearSettings& settings)
     : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;
   impl_->matrix.pattern = &pattern;
@@ -110,7 +111,8 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   s.extra.resize(used);
 }
 
-/// Copies the matrix into the finest level; rows and columns that are held become zero, so that nothing couples to them.
+/// Copies the matrix into the finest level; rows and columns that are held become zero, so that nothing couples to
+/// them.
 void LinearSystem::Impl::take_matrix(std::span<const char> fixed) {
   Level& level = fine();
   held.assign(fixed.begin(), fixed.end());
@@ -151,20 +153,21 @@ void LinearSystem::Impl::refresh_hierarchy() {
 }
 
 void LinearSystem::Impl::add_extra(std::span<const Vec4f> x, std::span<Vec4f> y, float sign) const {
-  for (const ExtraBlock& e : extra)
-    y[at(e.row)].head<3>() += sign * (e.value * x[at(e.column)].head<3>());
+  for (const ExtraBlock& e : extra) y[at(e.row)].head<3>() += sign * (e.value * x[at(e.column)].head<3>());
 }
 
 void LinearSystem::Impl::smooth_first(Level& level) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) level.x[i].head<3>() = level.damping * (level.inverse[i] * level.b[i].head<3>());
+    for (std::size_t i = begin; i < end; ++i)
+      level.x[i].head<3>() = level.damping * (level.inverse[i] * level.b[i].head<3>());
   });
 }
 
 void LinearSystem::Impl::smooth_again(Level& level, bool is_fine) {
   level_residual(level, is_fine);
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) level.x[i].head<3>() += level.damping * (level.inverse[i] * level.r[i].head<3>());
+    for (std::size_t i = begin; i < end; ++i)
+      level.x[i].head<3>() += level.damping * (level.inverse[i] * level.r[i].head<3>());
   });
 }
 

@@ -1,6 +1,6 @@
-// Solves H dx = -g for one Newton step: conjugate gradients with one multigrid V(1,1) cycle as preconditioner (hierarchy from
-// the rest shape), or block Jacobi. Matrix, hierarchy and vectors in float, dot products accumulated in double.
-// Deterministic for any thread count.
+// Solves H dx = -g for one Newton step: conjugate gradients with one multigrid V(1,1) cycle as preconditioner
+// (hierarchy from the rest shape), or block Jacobi. Matrix, hierarchy and vectors in float, dot products accumulated in
+// double. Deterministic for any thread count.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,8 @@ namespace ft {
 struct LinearSettings {
   enum class Preconditioner { k_block_jacobi, k_multigrid };
   Preconditioner preconditioner = Preconditioner::k_multigrid;
-  double tolerance = 3e-2;   ///< relative residual; 1e-1 is enough with multigrid, 1e-3 buys nothing (see tests/bench/RESULTS.md)
+  double tolerance =
+      3e-2;  ///< relative residual; 1e-1 is enough with multigrid, 1e-3 buys nothing (see tests/bench/RESULTS.md)
   int max_iterations = 200;
 };
 
@@ -34,8 +35,8 @@ class LinearSystem {
 
   /// The matrix to fill: zeroed by begin(). Energies and the mass add to it.
   BlockMatrix& begin();
-  /// Contact, friction and pins. Terms whose vertices share the pattern go into the matrix, the others are kept aside as an
-  /// extra sparse block matrix (sorted, so that the sum order is fixed). Call after the energies.
+  /// Contact, friction and pins. Terms whose vertices share the pattern go into the matrix, the others are kept aside
+  /// as an extra sparse block matrix (sorted, so that the sum order is fixed). Call after the energies.
   void add_pair_terms(std::span<const PairTerm> terms);
   /// Rows of fixed[i] != 0 are held at zero.
   LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> solution);

@@ -38,18 +38,21 @@ Momentum momentum(const ClothRun& run, const std::vector<double>& mass) {
 /// Largest change of linear and of angular momentum over a second of flight, relative to the sums of the parts.
 std::array<double, 2> momentum_change(bool folds) {
   const double side = 0.5;
-  const Mesh mesh = rectangle_mesh(16, 16, [&](double s, double t) { return Vec3(side * (s - 0.5), 0, side * (t - 0.5)); });
+  const Mesh mesh =
+      rectangle_mesh(16, 16, [&](double s, double t) { return Vec3(side * (s - 0.5), 0, side * (t - 0.5)); });
   const Fabric fabric = plain_fabric(0.15, 500, 1e-4, 0.3);
   const auto mass = masses(mesh, fabric);
   ClothSetup setup = accurate_setup(mesh, fabric, 24, 64);
   setup.gravity.setZero();
   setup.garments[0].self_collision = folds;
-  // Friction acts on two surfaces that are a gap apart: its couple (gap times force) is real, 8e-5 in this scene, and left out here.
+  // Friction acts on two surfaces that are a gap apart: its couple (gap times force) is real, 8e-5 in this scene, and
+  // left out here.
   setup.garments[0].self_friction = 0;
   ClothRun run(std::move(setup));
   run.set_velocity([folds](const Vec3& p) {
     const Vec3 spin = Vec3(0.4, 1.0, 0.2).cross(p);
-    return Vec3(Vec3(0.3, 0.5, -0.2) + spin + (folds ? Vec3(0, 6 * std::abs(p.x()), 0) : Vec3(0, 0.5 * std::sin(8 * p.x()), 0)));
+    return Vec3(Vec3(0.3, 0.5, -0.2) + spin +
+                (folds ? Vec3(0, 6 * std::abs(p.x()), 0) : Vec3(0, 0.5 * std::sin(8 * p.x()), 0)));
   });
   const Momentum start = momentum(run, mass);
   std::array<double, 2> worst{0, 0};
@@ -67,7 +70,8 @@ std::array<double, 2> momentum_change(bool folds) {
 std::vector<ValidationCase> validate_free_fall() {
   const double g = 9.81, seconds = 2, fps = 24;
   const auto fall = [&](bool bdf2, int substeps) {
-    const Mesh mesh = rectangle_mesh(8, 8, [](double s, double t) { return Vec3(0.5 * s, 0.3 * std::sin(3 * s), 0.5 * t); });
+    const Mesh mesh =
+        rectangle_mesh(8, 8, [](double s, double t) { return Vec3(0.5 * s, 0.3 * std::sin(3 * s), 0.5 * t); });
     ClothSetup setup = accurate_setup(mesh, plain_fabric(0.15, 500, 1e-5), fps, substeps);
     setup.garments[0].fabric.damping = 0.01;  // damping of the fabric does not brake
     setup.gravity = Vec3(0, -g, 0);
@@ -78,10 +82,12 @@ std::vector<ValidationCase> validate_free_fall() {
     return mean_height(run) - before;
   };
   const double exact = -0.5 * g * seconds * seconds, h = 1 / (fps * 4);
-  return {validation_case("free_fall", "way in 2 s, BDF2, 4 substeps", fall(true, 4), exact, 1e-9 * -exact, "m", "g t^2 / 2"),
-          validation_case("free_fall", "way in 2 s, BDF2, 1 substep", fall(true, 1), exact, 1e-9 * -exact, "m", "g t^2 / 2"),
-          validation_case("free_fall", "way in 2 s, implicit Euler, 4 substeps", fall(false, 4), exact - 0.5 * g * h * seconds,
-                          1e-9 * -exact, "m", "g t^2 / 2 + g h t / 2, its known error")};
+  return {validation_case("free_fall", "way in 2 s, BDF2, 4 substeps", fall(true, 4), exact, 1e-9 * -exact, "m",
+                          "g t^2 / 2"),
+          validation_case("free_fall", "way in 2 s, BDF2, 1 substep", fall(true, 1), exact, 1e-9 * -exact, "m",
+                          "g t^2 / 2"),
+          validation_case("free_fall", "way in 2 s, implicit Euler, 4 substeps", fall(false, 4),
+                          exact - 0.5 * g * h * seconds, 1e-9 * -exact, "m", "g t^2 / 2 + g h t / 2, its known error")};
 }
 
 namespace {
@@ -94,8 +100,12 @@ std::vector<ValidationCase> momentum_rows(const std::string& name, bool folds) {
 
 }  // namespace
 
-std::vector<ValidationCase> validate_free_flight() { return momentum_rows("free_flight", false); }
-std::vector<ValidationCase> validate_folding_flight() { return momentum_rows("folding_flight", true); }
+std::vector<ValidationCase> validate_free_flight() {
+  return momentum_rows("free_flight", false);
+}
+std::vector<ValidationCase> validate_folding_flight() {
+  return momentum_rows("folding_flight", true);
+}
 
 std::vector<ValidationCase> validate_substep_invariance() {
   // A damped sheet, held at one edge, swings down in air.
@@ -133,8 +143,10 @@ std::vector<ValidationCase> validate_terminal_velocity() {
   run.advance(47);
   const double before = mean_height(run);
   run.advance();
-  const double speed = (before - mean_height(run)) * 24, reference = std::sqrt(2 * mass_per_area * k_gravity / (density * drag));
-  return {validation_case("terminal_velocity", "speed after 2 s", speed, reference, 0.03 * reference, "m/s", "rho Cn A v^2 / 2 = m g")};
+  const double speed = (before - mean_height(run)) * 24,
+               reference = std::sqrt(2 * mass_per_area * k_gravity / (density * drag));
+  return {validation_case("terminal_velocity", "speed after 2 s", speed, reference, 0.03 * reference, "m/s",
+                          "rho Cn A v^2 / 2 = m g")};
 }
 
 }  // namespace ft

@@ -43,7 +43,8 @@ Mesh rectangle_mesh(int columns, int rows, const std::function<Vec3(double, doub
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
   for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) points.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
+    for (int i = 0; i <= columns; ++i)
+      points.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int a = i + (columns + 1) * j, b = a + 1, c = a + columns + 1, d = c + 1;

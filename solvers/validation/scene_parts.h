@@ -1,5 +1,5 @@
-// What the scenes of the conformance table are made of: rectangles of cloth, boxes to lie on, moving posts to pin to, and a solver
-// with its state.
+// What the scenes of the conformance table are made of: rectangles of cloth, boxes to lie on, moving posts to pin to,
+// and a solver with its state.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,8 @@
 
 namespace ft {
 
-/// columns x rows cells, alternating diagonals; vertex (i, j) is i + (columns + 1) j, placed by s = i / columns, t = j / rows.
+/// columns x rows cells, alternating diagonals; vertex (i, j) is i + (columns + 1) j, placed by s = i / columns, t = j
+/// / rows.
 Mesh rectangle_mesh(int columns, int rows, const std::function<Vec3(double s, double t)>& place);
 
 /// Isotropic fabric [N/m, N m, kg/m2] without damping.
@@ -28,8 +29,8 @@ void pin_stiffly(ClothSetup& setup, std::vector<int> vertices, double stiffness 
 struct BoxSpec {
   Vec3 lo, hi;
 };
-std::shared_ptr<const Trajectory> make_boxes(std::vector<BoxSpec> boxes,
-                                             std::function<Vec3(std::size_t box, double time, const Vec3& point)> place);
+std::shared_ptr<const Trajectory> make_boxes(
+    std::vector<BoxSpec> boxes, std::function<Vec3(std::size_t box, double time, const Vec3& point)> place);
 
 /// A solver and its state.
 class ClothRun {

@@ -1,5 +1,5 @@
-// Shapes at rest. They are settled with implicit Euler and large steps, whose numerical damping brings a swinging sheet to rest
-// within seconds; the shape at rest does not depend on the integrator.
+// Shapes at rest. They are settled with implicit Euler and large steps, whose numerical damping brings a swinging sheet
+// to rest within seconds; the shape at rest does not depend on the integrator.
 #include <cmath>
 #include <numbers>
 
@@ -29,9 +29,9 @@ struct Droop {
   double angle;  ///< of the chord below the horizontal [rad]
 };
 
-/// A horizontal strip of free length L, clamped at one end, under its own weight w = B gamma / L^3 per area. The two clamped rows
-/// hold the cell between them; a hinge at its edge stands for the halves of the cells beside it, so the free length begins in
-/// the middle of that cell.
+/// A horizontal strip of free length L, clamped at one end, under its own weight w = B gamma / L^3 per area. The two
+/// clamped rows hold the cell between them; a hinge at its edge stands for the halves of the cells beside it, so the
+/// free length begins in the middle of that cell.
 Droop cantilever(double gamma, int cells) {
   const double length = 0.05, mass_per_area = 0.187;
   const double cell = length / (cells + 0.5), width = 2 * cell;
@@ -70,10 +70,11 @@ std::vector<ValidationCase> validate_hanging_sheet() {
     double upper = 0, lower = 0;
     for (int i = 0; i <= n; ++i) upper += x[at(i)].y() / (n + 1), lower += x[at(i + n * (n + 1))].y() / (n + 1);
     const double elongation = upper - lower - height;
-    out.push_back(validation_case("hanging_sheet", "elongation, N = " + std::to_string(n), 1e3 * elongation, 1e3 * reference,
-                                  0.02e3 * reference, "mm", "rho g H^2 / 2E"));
+    out.push_back(validation_case("hanging_sheet", "elongation, N = " + std::to_string(n), 1e3 * elongation,
+                                  1e3 * reference, 0.02e3 * reference, "mm", "rho g H^2 / 2E"));
     if (before > 0)
-      out.push_back(validation_case("hanging_sheet", "change of elongation, N = " + std::to_string(n / 2) + " to " + std::to_string(n),
+      out.push_back(validation_case("hanging_sheet",
+                                    "change of elongation, N = " + std::to_string(n / 2) + " to " + std::to_string(n),
                                     100 * (elongation / before - 1), 0, 0.5, "%", "mesh independence"));
     before = elongation;
   }
@@ -88,7 +89,8 @@ std::vector<ValidationCase> validate_catenary() {
     const double length = row[0], sag = row[1];
     const int cells = 60;
     const double width = 2 * length / cells;
-    const Mesh mesh = rectangle_mesh(cells, 2, [&](double s, double t) { return Vec3(length * (s - 0.5), 0, width * (t - 0.5)); });
+    const Mesh mesh =
+        rectangle_mesh(cells, 2, [&](double s, double t) { return Vec3(length * (s - 0.5), 0, width * (t - 0.5)); });
     // A taut strip needs more stiffness to count as inextensible: its sag grows with the root of the strain.
     const double stretch = length < 1.1 ? 1e4 : 1e3;
     ClothSetup setup = settling(accurate_setup(mesh, plain_fabric(0.15, stretch, 1e-8), 24, 4));
@@ -120,14 +122,16 @@ std::vector<ValidationCase> validate_peirce() {
   // Peirce 1930: bending length c = (B / rho g)^(1/3) is half the overhang at 41.5 degrees; B / (rho g L^3) = 1 / 8.
   std::vector<ValidationCase> out;
   for (const int cells : {10, 20, 40})
-    out.push_back(validation_case("peirce_cantilever", "chord angle at twice the bending length, " + std::to_string(cells) + " cells",
+    out.push_back(validation_case("peirce_cantilever",
+                                  "chord angle at twice the bending length, " + std::to_string(cells) + " cells",
                                   cantilever(8, cells).angle * 180 / std::numbers::pi, 41.5, 1.5, "degrees",
                                   "Peirce (1930), cantilever test of cloth"));
   return out;
 }
 
 std::vector<ValidationCase> validate_heavy_elastica() {
-  const double table[][2] = {{1, 0.12347}, {2, 0.23851}, {5, 0.49591}, {10, 0.70020}, {20, 0.82988}, {50, 0.90792}, {100, 0.93752}};
+  const double table[][2] = {{1, 0.12347},  {2, 0.23851},  {5, 0.49591},  {10, 0.70020},
+                             {20, 0.82988}, {50, 0.90792}, {100, 0.93752}};
   std::vector<ValidationCase> out;
   for (const auto& [gamma, drop] : table) {
     char what[64];

@@ -11,7 +11,9 @@ namespace {
 constexpr double k_degree = std::numbers::pi / 180;
 constexpr double k_length = 1;
 
-double angle_of(const Vec3& bob) { return std::atan2(bob.z(), -bob.y()); }
+double angle_of(const Vec3& bob) {
+  return std::atan2(bob.z(), -bob.y());
+}
 
 ClothSetup pendulum(double angle, double fps, int substeps) {
   const std::vector<Vec3> points = {Vec3(-0.25, 0, 0), Vec3(0.25, 0, 0),
@@ -39,7 +41,9 @@ double measure_period(ClothRun& run) {
   return std::nan("");
 }
 
-double energy_per_mass(const ClothRun& run) { return k_gravity * run.positions()[2].y() + 0.5 * run.velocities()[2].squaredNorm(); }
+double energy_per_mass(const ClothRun& run) {
+  return k_gravity * run.positions()[2].y() + 0.5 * run.velocities()[2].squaredNorm();
+}
 
 }  // namespace
 
@@ -50,8 +54,9 @@ std::vector<ValidationCase> validate_pendulum_period() {
     ClothRun run(pendulum(angle * k_degree, 1000, 1));
     char what[64];
     std::snprintf(what, sizeof what, "period over 2 pi sqrt(L/g), %.0f degrees", angle);
-    out.push_back(validation_case("pendulum_period", what, measure_period(run) / (2 * std::numbers::pi * std::sqrt(k_length / k_gravity)),
-                                  ratio, 1e-3 * ratio, "1", "2 K(sin(angle/2)) / pi"));
+    out.push_back(validation_case("pendulum_period", what,
+                                  measure_period(run) / (2 * std::numbers::pi * std::sqrt(k_length / k_gravity)), ratio,
+                                  1e-3 * ratio, "1", "2 K(sin(angle/2)) / pi"));
   }
   return out;
 }
@@ -60,8 +65,8 @@ std::vector<ValidationCase> validate_pendulum_energy() {
   ClothRun run(pendulum(90 * k_degree, 1000, 1));
   const double start = energy_per_mass(run), lowest = -k_gravity * k_length;
   run.advance(60000);
-  return {validation_case("pendulum_energy", "loss in 60 s from 90 degrees, 1 ms", 100 * (start - energy_per_mass(run)) / (start - lowest),
-                          0, 0.05, "%", "conservation")};
+  return {validation_case("pendulum_energy", "loss in 60 s from 90 degrees, 1 ms",
+                          100 * (start - energy_per_mass(run)) / (start - lowest), 0, 0.05, "%", "conservation")};
 }
 
 std::vector<ValidationCase> validate_swing_at_default_settings() {
@@ -75,10 +80,10 @@ std::vector<ValidationCase> validate_swing_at_default_settings() {
   const double period = 1.017409 * 2 * std::numbers::pi * std::sqrt(k_length / k_gravity);
   const double start = energy_per_mass(run), lowest = -k_gravity * k_length;
   run.advance(static_cast<int>(std::lround(10 * period * standard.fps)));
-  return {validation_case("swing_at_default_settings", "period from 30 degrees", measure_period(timed), period, 0.005 * period, "s",
-                          "2 pi sqrt(L/g) times the amplitude's series"),
-          validation_case("swing_at_default_settings", "energy lost in ten periods", 100 * (start - energy_per_mass(run)) / (start - lowest),
-                          0, 1, "%", "conservation")};
+  return {validation_case("swing_at_default_settings", "period from 30 degrees", measure_period(timed), period,
+                          0.005 * period, "s", "2 pi sqrt(L/g) times the amplitude's series"),
+          validation_case("swing_at_default_settings", "energy lost in ten periods",
+                          100 * (start - energy_per_mass(run)) / (start - lowest), 0, 1, "%", "conservation")};
 }
 
 std::vector<ValidationCase> validate_hanging_chain() {
@@ -112,7 +117,8 @@ std::vector<ValidationCase> validate_hanging_chain() {
     }
     before = now, t_before = run.time();
   }
-  const double frequency = 4.5 / (last - first), reference = 1.20241 * std::sqrt(k_gravity / length) / (2 * std::numbers::pi);
+  const double frequency = 4.5 / (last - first),
+               reference = 1.20241 * std::sqrt(k_gravity / length) / (2 * std::numbers::pi);
   return {validation_case("hanging_chain", "frequency of the first mode", frequency, reference, 0.01 * reference, "Hz",
                           "Bernoulli: 1.20241 sqrt(g / L)")};
 }

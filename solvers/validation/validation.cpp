@@ -8,7 +8,8 @@ namespace ft {
 namespace {
 
 constexpr ValidationScene k_scenes[] = {
-    {"hanging_sheet", "A sheet hung by its upper edge stretches by rho g H^2 / 2E at any resolution", true, validate_hanging_sheet},
+    {"hanging_sheet", "A sheet hung by its upper edge stretches by rho g H^2 / 2E at any resolution", true,
+     validate_hanging_sheet},
     {"catenary", "An inextensible strip between two points hangs as a catenary", true, validate_catenary},
     {"peirce_cantilever", "A strip of Peirce's bending length droops to 41.5 degrees", true, validate_peirce},
     {"heavy_elastica", "A cantilever under its own weight follows the elastica", true, validate_heavy_elastica},
@@ -16,7 +17,8 @@ constexpr ValidationScene k_scenes[] = {
     {"free_flight", "A sheet in free flight keeps its momentum and angular momentum", true, validate_free_flight},
     {"folding_flight", "A sheet that folds onto itself in free flight keeps them too", true, validate_folding_flight},
     {"substep_invariance", "Halving the substep divides the error by four", false, validate_substep_invariance},
-    {"terminal_velocity", "A stiff square falls flat in air with rho Cn A v^2 / 2 = m g", false, validate_terminal_velocity},
+    {"terminal_velocity", "A stiff square falls flat in air with rho Cn A v^2 / 2 = m g", false,
+     validate_terminal_velocity},
     {"pendulum_period", "The period of a pendulum grows with its amplitude as the elliptic integral", true,
      validate_pendulum_period},
     {"pendulum_energy", "A pendulum keeps its energy for a minute", true, validate_pendulum_energy},
@@ -24,7 +26,8 @@ constexpr ValidationScene k_scenes[] = {
      validate_swing_at_default_settings},
     {"hanging_chain", "The first mode of a hanging strip is that of Bernoulli's chain", true, validate_hanging_chain},
     {"incline", "Cloth on an incline sticks and slides by Coulomb's law", true, validate_incline},
-    {"incline_inner_edge", "Sliding over an edge between two triangles of a flat slab is not slowed", false, validate_incline_inner_edge},
+    {"incline_inner_edge", "Sliding over an edge between two triangles of a flat slab is not slowed", false,
+     validate_incline_inner_edge},
 };
 
 }  // namespace
@@ -38,9 +41,12 @@ ValidationCase validation_case(std::string name, std::string what, double value,
   return out;
 }
 
-std::span<const ValidationScene> validation_scenes() { return k_scenes; }
+std::span<const ValidationScene> validation_scenes() {
+  return k_scenes;
+}
 
-std::vector<ValidationCase> run_validation(std::string_view filter, const std::function<void(const ValidationScene&)>& before) {
+std::vector<ValidationCase> run_validation(std::string_view filter,
+                                           const std::function<void(const ValidationScene&)>& before) {
   std::vector<ValidationCase> out;
   for (const ValidationScene& scene : k_scenes) {
     if (scene.name.find(filter) == std::string_view::npos) continue;

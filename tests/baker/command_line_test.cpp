@@ -16,8 +16,12 @@
 namespace ft::test {
 namespace {
 
-std::filesystem::path program() { return std::filesystem::path(FT_BINARY_DIR) / "bin" / "followthrough"; }
-std::filesystem::path jumper() { return assimp_models_root() / "BVH" / "01_01.bvh"; }
+std::filesystem::path program() {
+  return std::filesystem::path(FT_BINARY_DIR) / "bin" / "followthrough";
+}
+std::filesystem::path jumper() {
+  return assimp_models_root() / "BVH" / "01_01.bvh";
+}
 
 struct Answer {
   int exit_code = 0;
@@ -27,7 +31,8 @@ struct Answer {
 /// The running program; its output goes to files.
 class Process {
  public:
-  Process(const ScratchFolder& scratch, std::vector<std::string> arguments) : out_(scratch / "out.txt"), err_(scratch / "err.txt") {
+  Process(const ScratchFolder& scratch, std::vector<std::string> arguments)
+      : out_(scratch / "out.txt"), err_(scratch / "err.txt") {
     for (const auto& path : {out_, err_}) std::ofstream(path) << "";
     arguments.insert(arguments.begin(), program().string());
     child_ = ::fork();
@@ -76,18 +81,23 @@ class CommandLine : public ::testing::Test {
   Answer run(std::vector<std::string> arguments) { return Process(scratch_, std::move(arguments)).wait(); }
 
   /// A small sheet that falls past the jumper of 01_01.bvh.
-  std::string shot(const std::string& frames, const std::string& primary_lines = "", const std::string& cloth_lines = "") {
+  std::string shot(const std::string& frames, const std::string& primary_lines = "",
+                   const std::string& cloth_lines = "") {
     std::vector<Vec3> x;
     std::vector<Triangle> t;
     for (int j = 0; j < 6; ++j)
       for (int i = 0; i < 6; ++i) {
         x.emplace_back(0.02 * i - 0.05, 1.2, 0.02 * j - 0.05);
-        if (i < 5 && j < 5) t.push_back({6 * j + i, 6 * j + 6 + i, 6 * j + 7 + i}), t.push_back({6 * j + i, 6 * j + 7 + i, 6 * j + i + 1});
+        if (i < 5 && j < 5)
+          t.push_back({6 * j + i, 6 * j + 6 + i, 6 * j + 7 + i}),
+              t.push_back({6 * j + i, 6 * j + 7 + i, 6 * j + i + 1});
       }
     EXPECT_TRUE(write_obj(scratch_ / "sheet.obj", make_triangle_mesh("sheet", x, t)).ok());
-    std::ofstream(scratch_ / "shot.toml") << "[shot]\nframes = \"" << frames << "\"\nfps = 24\npreroll = 2\n[primary.jumper]\nfile = \"" << jumper().string()
-                                          << "\"\n" << primary_lines << "\n[cloth.sheet]\nmesh = \"sheet.obj\"\nfabric = \"cotton\"\non = \"jumper\"\n"
-                                          << cloth_lines << "\n[cache]\nformats = [\"pc2\"]\n";
+    std::ofstream(scratch_ / "shot.toml")
+        << "[shot]\nframes = \"" << frames << "\"\nfps = 24\npreroll = 2\n[primary.jumper]\nfile = \""
+        << jumper().string() << "\"\n"
+        << primary_lines << "\n[cloth.sheet]\nmesh = \"sheet.obj\"\nfabric = \"cotton\"\non = \"jumper\"\n"
+        << cloth_lines << "\n[cache]\nformats = [\"pc2\"]\n";
     return (scratch_ / "shot.toml").string();
   }
   std::string out() const { return (scratch_ / "bake").string(); }
@@ -96,8 +106,15 @@ class CommandLine : public ::testing::Test {
 };
 
 TEST_F(CommandLine, Wrong_usage_is_exit_code_2) {
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"bake"}, {"boil"}, {"bake", "a.toml", "--colour"}, {"bake", "a.toml", "--threads", "-3"},
-                                                    {"bake", "a.toml", "--resume", "--force"}, {"compare", "one"}, {"check"}, {"info"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"bake"},
+                                                    {"boil"},
+                                                    {"bake", "a.toml", "--colour"},
+                                                    {"bake", "a.toml", "--threads", "-3"},
+                                                    {"bake", "a.toml", "--resume", "--force"},
+                                                    {"compare", "one"},
+                                                    {"check"},
+                                                    {"info"}}) {
     const Answer a = run(arguments);
     EXPECT_EQ(a.exit_code, 2);
     EXPECT_EQ(a.err.rfind("followthrough: ", 0), 0u) << a.err;
@@ -110,7 +127,8 @@ TEST_F(CommandLine, Help_and_version_are_exit_code_0) {
   EXPECT_EQ(run({"--version"}).out.rfind("followthrough 0.", 0), 0u);
   const Answer help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"bake", "info", "compare", "check", "preview", "validate"}) EXPECT_NE(help.out.find(command), std::string::npos) << command;
+  for (const char* command : {"bake", "info", "compare", "check", "preview", "validate"})
+    EXPECT_NE(help.out.find(command), std::string::npos) << command;
   EXPECT_EQ(run({"bake", "--help"}).exit_code, 0);
 }
 
@@ -162,7 +180,8 @@ TEST_F(CommandLine, Bake_check_info_and_compare_work_together) {
 TEST_F(CommandLine, Terminate_and_interrupt_leave_a_bake_that_resumes_to_the_same_bytes_slow) {
   const std::string file = shot("1-12");
   ASSERT_EQ(run({"bake", file, "--out", (scratch_ / "whole").string()}).exit_code, 0);
-  const std::string whole = read_text(scratch_ / "whole/sheet.pc2").value(), manifest = read_text(scratch_ / "whole/manifest.json").value();
+  const std::string whole = read_text(scratch_ / "whole/sheet.pc2").value(),
+                    manifest = read_text(scratch_ / "whole/manifest.json").value();
   for (const auto& [number, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGKILL, 137}}) {
     std::filesystem::remove_all(out());
     Process first(scratch_, {"bake", file, "--out", out()});

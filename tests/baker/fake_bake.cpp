@@ -16,11 +16,13 @@ std::unique_ptr<Trajectory> bobbing_box(double preroll) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
   Surface surface;
-  surface.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  surface.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   surface.parts = {{"box", -1, 1.0}};
-  return std::make_unique<ScriptedBody>(std::move(surface), std::move(corners), preroll, [](double time, std::span<Vec3> x) {
-    for (Vec3& p : x) p += Vec3(0, 0.1 * std::sin(3 * time), 0);
-  });
+  return std::make_unique<ScriptedBody>(std::move(surface), std::move(corners), preroll,
+                                        [](double time, std::span<Vec3> x) {
+                                          for (Vec3& p : x) p += Vec3(0, 0.1 * std::sin(3 * time), 0);
+                                        });
 }
 
 class FakeSolver final : public Solver {
@@ -54,7 +56,8 @@ class FakeSolver final : public Solver {
     double scale = 1;
     for (const ClothGarment& g : setup_.garments) scale += g.fabric.mass_per_area;
     for (StateBlock& block : state.blocks)
-      for (double& v : block.values) v += 1e-3 * std::sin(10 * v + scale * state.frame);  // depends on all that went before
+      for (double& v : block.values)
+        v += 1e-3 * std::sin(10 * v + scale * state.frame);  // depends on all that went before
     FrameReport report;
     report.frame = state.frame;
     report.substeps = 4;
@@ -69,7 +72,9 @@ class FakeSolver final : public Solver {
   FakeBehaviour behaviour_;
 };
 
-void write_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 }  // namespace
 
@@ -83,16 +88,22 @@ Mesh FakeScene::sheet() {
   std::vector<Vec3> x;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) x.emplace_back(1.05, 0.5 * j, 0.5 * i);
-  const std::vector<Triangle> t = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
+  const std::vector<Triangle> t = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4},
+                                   {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
   return make_triangle_mesh("sheet", x, t);
 }
 
-void FakeScene::write_garment(const Mesh& mesh) { EXPECT_TRUE(write_obj(file("sheet.obj"), mesh).ok()); }
+void FakeScene::write_garment(const Mesh& mesh) {
+  EXPECT_TRUE(write_obj(file("sheet.obj"), mesh).ok());
+}
 
 void FakeScene::write_shot(int last_frame, const std::string& cloth_lines, const std::string& extra) {
-  write_file(file("shot.toml"), "[shot]\nframes = \"1-" + std::to_string(last_frame) +
-                                    "\"\nfps = 24\npreroll = 3\n\n[primary.box]\nfile = \"box.glb\"\n\n[cloth.sheet]\nmesh = \"sheet.obj\"\n"
-                                    "fabric = \"cotton\"\non = \"box\"\n" + cloth_lines + "\n" + extra);
+  write_file(
+      file("shot.toml"),
+      "[shot]\nframes = \"1-" + std::to_string(last_frame) +
+          "\"\nfps = 24\npreroll = 3\n\n[primary.box]\nfile = \"box.glb\"\n\n[cloth.sheet]\nmesh = \"sheet.obj\"\n"
+          "fabric = \"cotton\"\non = \"box\"\n" +
+          cloth_lines + "\n" + extra);
 }
 
 BakeOptions FakeScene::options() const {
@@ -124,11 +135,14 @@ std::map<std::string, std::string> FakeScene::products(const std::filesystem::pa
   std::map<std::string, std::string> out;
   if (!std::filesystem::exists(folder)) return out;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file() && entry.path().filename() != "report.json") out[entry.path().filename().string()] = hash_bytes(read_file(entry.path()).value()).hex();
+    if (entry.is_regular_file() && entry.path().filename() != "report.json")
+      out[entry.path().filename().string()] = hash_bytes(read_file(entry.path()).value()).hex();
   return out;
 }
 
-std::string FakeScene::manifest_text() const { return read_text(folder().manifest()).value(); }
+std::string FakeScene::manifest_text() const {
+  return read_text(folder().manifest()).value();
+}
 
 std::string text(const BakeResult& result) {
   std::string out;

@@ -1,5 +1,6 @@
-// A bake without import and without physics, for everything that the conductor does around them: a box as primary, a sheet whose
-// next position depends on its last one (so that a resume from the wrong state shows), and services that misbehave on demand.
+// A bake without import and without physics, for everything that the conductor does around them: a box as primary, a
+// sheet whose next position depends on its last one (so that a resume from the wrong state shows), and services that
+// misbehave on demand.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +15,7 @@
 namespace ft::test {
 
 struct FakeBehaviour {
-  std::function<void(int frame)> on_frame;   ///< called before each frame is solved
+  std::function<void(int frame)> on_frame;                           ///< called before each frame is solved
   std::function<void(int frame, FrameReport&, State&)> after_frame;  ///< may spoil the answer
 };
 

@@ -98,7 +98,8 @@ TEST(Faults, Positions_that_are_not_finite_never_reach_a_cache) {
 
 TEST(Faults, Frame_without_a_finite_step_is_exit_code_5_with_complete_caches) {
   FakeScene scene;
-  const BakeResult result = scene.run(scene.options(), {{}, [](int frame, FrameReport& r, State&) { r.finite = frame != 7; }});
+  const BakeResult result =
+      scene.run(scene.options(), {{}, [](int frame, FrameReport& r, State&) { r.finite = frame != 7; }});
   expect_fault(result, 5, "frame 7");
   EXPECT_EQ(open_cache(scene.folder().path / "sheet.abc").value()->info().frame_count, 10);
 }
@@ -129,7 +130,9 @@ TEST(Faults, Cloth_with_the_name_of_another_cache_is_refused) {
 TEST(Faults, Error_of_the_importer_keeps_its_exit_code) {
   FakeScene scene;
   auto services = scene.services();
-  services.importer = [](const ImportRequest&) -> Result<ImportedPrimary> { return usage_error("clip \"Walc\" does not exist", "box.glb", "there are: Walk"); };
+  services.importer = [](const ImportRequest&) -> Result<ImportedPrimary> {
+    return usage_error("clip \"Walc\" does not exist", "box.glb", "there are: Walk");
+  };
   Progress silent;
   expect_fault(bake(scene.options(), services, silent), 2, "there are: Walk");
 }

@@ -1,4 +1,5 @@
-// What the conductor writes besides caches comes back as it was, and nothing spoilt is believed: checkpoint, manifest, reports.
+// What the conductor writes besides caches comes back as it was, and nothing spoilt is believed: checkpoint, manifest,
+// reports.
 #include <limits>
 
 #include "baker/checkpoint.h"
@@ -99,14 +100,19 @@ TEST(ReportJson, Field_of_another_type_is_an_error_and_never_a_throw) {
       EXPECT_FALSE(frame_report_from_json(bad)) << item.key();
     }
   }
-  for (const Json& wrong : {Json(3), Json("x"), Json(nullptr), Json::array()}) EXPECT_FALSE(frame_report_from_json(wrong));
+  for (const Json& wrong : {Json(3), Json("x"), Json(nullptr), Json::array()})
+    EXPECT_FALSE(frame_report_from_json(wrong));
 }
 
 TEST(Manifest, Comes_back_byte_for_byte) {
   FakeScene scene;
-  ASSERT_EQ(scene.run(scene.options(), {{}, [](int frame, FrameReport& r, State&) {
-                                          if (frame % 3 == 0) r.incidents = example_report(frame).incidents;
-                                        }}).exit_code, 0);
+  ASSERT_EQ(scene
+                .run(scene.options(), {{},
+                                       [](int frame, FrameReport& r, State&) {
+                                         if (frame % 3 == 0) r.incidents = example_report(frame).incidents;
+                                       }})
+                .exit_code,
+            0);
   const std::string text = scene.manifest_text();
   auto manifest = manifest_from_text(text, "manifest.json");
   ASSERT_TRUE(manifest) << manifest.error().text();

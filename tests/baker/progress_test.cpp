@@ -45,8 +45,12 @@ void expect_percentages(const std::vector<std::string>& lines, const std::string
   EXPECT_EQ(last, 100);
 }
 
-TEST(Progress, Tractor_finds_its_percentages) { expect_percentages(printed("tractor"), "^TR_PROGRESS ([0-9]{3})%$"); }
-TEST(Progress, Deadline_finds_its_percentages) { expect_percentages(printed("deadline"), "^Progress: ([0-9]+)%$"); }
+TEST(Progress, Tractor_finds_its_percentages) {
+  expect_percentages(printed("tractor"), "^TR_PROGRESS ([0-9]{3})%$");
+}
+TEST(Progress, Deadline_finds_its_percentages) {
+  expect_percentages(printed("deadline"), "^Progress: ([0-9]+)%$");
+}
 TEST(Progress, Open_job_description_finds_its_percentages) {
   const auto lines = printed("openjd");
   expect_percentages(lines, "^openjd_progress: ([0-9]+\\.[0-9])$");
@@ -73,11 +77,14 @@ TEST(Progress, Json_lines_parse_and_tell_begin_frames_end) {
   EXPECT_EQ(nlohmann::json::parse(lines.back())["exit_code"], 0);
 }
 
-TEST(Progress, None_prints_nothing) { EXPECT_TRUE(printed("none").empty()); }
+TEST(Progress, None_prints_nothing) {
+  EXPECT_TRUE(printed("none").empty());
+}
 
 TEST(Progress, Plain_is_the_default_away_from_a_terminal) {
   const auto lines = printed("");
-  EXPECT_EQ(lines.front().rfind("baking shot.toml: frames 1-10 after 3 of pre-roll, 9 cloth vertices", 0), 0u) << lines.front();
+  EXPECT_EQ(lines.front().rfind("baking shot.toml: frames 1-10 after 3 of pre-roll, 9 cloth vertices", 0), 0u)
+      << lines.front();
   EXPECT_NE(lines[1].find("frame -1 (pre-roll)"), std::string::npos) << lines[1];
   EXPECT_EQ(lines.back().rfind("done: 10 frames in ", 0), 0u);
 }
@@ -135,7 +142,11 @@ TEST(WriterThread, Destructor_writes_what_was_handed_in) {
   int done = 0;
   {
     WriterThread writer(4);
-    for (int i = 0; i < 4; ++i) EXPECT_TRUE(writer.submit([&done] { ++done; return Status(); }));
+    for (int i = 0; i < 4; ++i)
+      EXPECT_TRUE(writer.submit([&done] {
+        ++done;
+        return Status();
+      }));
   }
   EXPECT_EQ(done, 4);
 }

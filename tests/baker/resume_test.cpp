@@ -38,7 +38,8 @@ TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes_slow) {
   for (int frame = -1; frame < 10; ++frame) {
     const BakeResult stopped = interrupted_after(scene, frame);
     ASSERT_EQ(stopped.exit_code, 130) << frame << text(stopped);
-    EXPECT_NE(text(stopped).find("interrupted after frame " + std::to_string(frame)), std::string::npos) << text(stopped);
+    EXPECT_NE(text(stopped).find("interrupted after frame " + std::to_string(frame)), std::string::npos)
+        << text(stopped);
     EXPECT_NE(text(stopped).find("--resume"), std::string::npos);
     BakeOptions options = scene.options();
     options.resume = true;
@@ -92,7 +93,9 @@ TEST(Resume, Changed_settings_are_refused_with_the_reason) {
   options.overrides = {"cloth.sheet.fabric=denim"};
   const BakeResult refused = scene.run(options);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(text(refused).find("cannot be resumed: cloth.sheet.fabric changed from \"cotton\" to \"denim\""), std::string::npos) << text(refused);
+  EXPECT_NE(text(refused).find("cannot be resumed: cloth.sheet.fabric changed from \"cotton\" to \"denim\""),
+            std::string::npos)
+      << text(refused);
   options.overrides.clear();
   EXPECT_EQ(scene.run(options).exit_code, 0);  // nothing was lost by the refusal
   EXPECT_EQ(scene.products(), undisturbed(scene));
@@ -142,14 +145,16 @@ TEST(Resume, Damaged_or_lost_cache_is_not_continued_and_the_way_out_is_named_slo
 }
 
 /// The bake as a child process, because kill -9 and resource limits are for whole processes.
-pid_t bake_in_child(const FakeScene& scene, bool resume, int frame_milliseconds, const std::function<void()>& prepare = {}) {
+pid_t bake_in_child(const FakeScene& scene, bool resume, int frame_milliseconds,
+                    const std::function<void()>& prepare = {}) {
   const pid_t child = ::fork();
   if (child != 0) return child;
   const ThreadLimit one(1);
   if (prepare) prepare();
   BakeOptions options = scene.options();
   options.resume = resume;
-  const auto result = scene.run(options, {[&](int) { std::this_thread::sleep_for(std::chrono::milliseconds(frame_milliseconds)); }, {}});
+  const auto result = scene.run(
+      options, {[&](int) { std::this_thread::sleep_for(std::chrono::milliseconds(frame_milliseconds)); }, {}});
   ::_exit(result.exit_code);
 }
 
@@ -215,7 +220,8 @@ TEST(Resume, Second_signal_ends_the_program_at_once) {
                                   std::raise(SIGINT);
                                   std::raise(SIGINT);
                                   std::this_thread::sleep_for(std::chrono::seconds(20));
-                                }, {}});
+                                },
+                                {}});
     ::_exit(0);
   }
   EXPECT_EQ(wait_for(child), 130);
@@ -233,7 +239,9 @@ TEST(Resume, Two_bakes_do_not_write_one_folder) {
     ASSERT_TRUE(lock);
     const BakeResult second = scene.run();
     EXPECT_EQ(second.exit_code, 6);
-    EXPECT_NE(text(second).find("another bake is writing this folder: process " + std::to_string(::getpid())), std::string::npos) << text(second);
+    EXPECT_NE(text(second).find("another bake is writing this folder: process " + std::to_string(::getpid())),
+              std::string::npos)
+        << text(second);
   }
   EXPECT_EQ(scene.run().exit_code, 0);  // the lock went with its holder; the file alone locks nothing
   EXPECT_TRUE(std::filesystem::exists(scene.folder().lock()));

@@ -1,9 +1,10 @@
 // The clip is looked at before the bake: which parts leave the cloth no room, in which frames, and who is told.
+#include "baker/room_report.h"
+
 #include <gtest/gtest.h>
 
-#include "baker/room_report.h"
-#include "tests/baker/fake_bake.h"
 #include "baker/core/file.h"
+#include "tests/baker/fake_bake.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {

@@ -1,5 +1,5 @@
-// The real thing: the knife dress of the Codimensional IPC authors, sewn from its 14 panels on their mannequin, beside their own
-// draped result. Frame 0 of the dance is held still.
+// The real thing: the knife dress of the Codimensional IPC authors, sewn from its 14 panels on their mannequin, beside
+// their own draped result. Frame 0 of the dance is held still.
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
@@ -13,8 +13,8 @@
 namespace ft {
 namespace {
 
-constexpr int k_frames = 75;             ///< 3 s: half to sew, half to come to rest
-constexpr double k_body_height = 0.75;   ///< the authors' result is centred: their body's feet are at -0.75 m
+constexpr int k_frames = 75;            ///< 3 s: half to sew, half to come to rest
+constexpr double k_body_height = 0.75;  ///< the authors' result is centred: their body's feet are at -0.75 m
 
 Mesh read(const std::filesystem::path& path) {
   auto mesh = read_obj(path);
@@ -66,7 +66,8 @@ TEST(SewnDress, DISABLED_Comes_out_as_the_authors_of_the_pattern_draped_it_slow)
   ClothSetup setup;
   setup.fps = 25;
   setup.preroll_frames = k_frames;
-  setup.primary = std::make_shared<ScriptedBody>(surface, body.positions, k_frames / setup.fps, [](double, std::span<Vec3>) {});
+  setup.primary =
+      std::make_shared<ScriptedBody>(surface, body.positions, k_frames / setup.fps, [](double, std::span<Vec3>) {});
   setup.garments.push_back(std::move(dress));
   auto solver = make_cloth_solver(std::move(setup));
   ASSERT_TRUE(solver) << solver.error().text();

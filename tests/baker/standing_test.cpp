@@ -56,7 +56,8 @@ TEST(Standing, Changed_fabric_is_named) {
   FakeScene scene;
   BakeOptions options = scene.options();
   options.overrides = {"cloth.sheet.fabric=denim"};
-  const std::string why = reason_after(scene, [] {}, options);
+  const std::string why = reason_after(
+      scene, [] {}, options);
   EXPECT_NE(why.find("stale: cloth.sheet.fabric changed from \"cotton\" to \"denim\""), std::string::npos) << why;
   EXPECT_EQ(scene.run(options).exit_code, 0);
   EXPECT_NE(text(scene.run()).find("up to date"), 0u);  // without the override: stale again, baked again
@@ -65,14 +66,22 @@ TEST(Standing, Changed_fabric_is_named) {
 TEST(Standing, Changed_mesh_is_named_and_touching_it_is_not_a_change) {
   FakeScene scene;
   Mesh moved = FakeScene::sheet();
-  EXPECT_NE(reason_after(scene, [&] { scene.write_garment(moved); }, scene.options()).find("up to date"), std::string::npos);
+  EXPECT_NE(reason_after(
+                scene, [&] { scene.write_garment(moved); }, scene.options())
+                .find("up to date"),
+            std::string::npos);
   moved.positions[0].x() += 1e-3;
-  EXPECT_NE(reason_after(scene, [&] { scene.write_garment(moved); }, scene.options()).find("stale: sheet.obj changed"), std::string::npos);
+  EXPECT_NE(reason_after(
+                scene, [&] { scene.write_garment(moved); }, scene.options())
+                .find("stale: sheet.obj changed"),
+            std::string::npos);
 }
 
 TEST(Standing, Damaged_or_lost_cache_is_noticed) {
   FakeScene scene;
-  EXPECT_NE(reason_after(scene, [&] { std::filesystem::remove(scene.folder().path / "sheet.pc2"); }, scene.options()).find("sheet.pc2 is gone"),
+  EXPECT_NE(reason_after(
+                scene, [&] { std::filesystem::remove(scene.folder().path / "sheet.pc2"); }, scene.options())
+                .find("sheet.pc2 is gone"),
             std::string::npos);
   const auto flip = [&] {
     std::fstream file(scene.folder().path / "sheet.pc2", std::ios::in | std::ios::out | std::ios::binary);
@@ -111,7 +120,8 @@ TEST(Standing, Gate_judges_a_finished_bake_without_baking_again) {
   const BakeResult judged = scene.run(scene.options(), {[&](int) { ++solved; }, {}});
   EXPECT_EQ(judged.exit_code, 4);
   EXPECT_EQ(solved, 0);
-  EXPECT_NE(text(judged).find("frame 1: quality gate: p99 strain 0.01 is above 0.005"), std::string::npos) << text(judged);
+  EXPECT_NE(text(judged).find("frame 1: quality gate: p99 strain 0.01 is above 0.005"), std::string::npos)
+      << text(judged);
 }
 
 TEST(Standing, Range_of_frames_has_its_own_preroll_and_place_in_the_clip) {

@@ -18,10 +18,11 @@ TEST(Teleports, are_told_by_the_dry_run_the_progress_and_the_manifest) {
     const auto& box = *primary->trajectory;
     std::vector<Vec3> bind(8);
     box.bind_pose(bind);
-    primary->trajectory = std::make_unique<ScriptedBody>(box.surface(), bind, box.preroll(), [fps = request.shot_fps](double time, std::span<Vec3> x) {
-      if (time * fps > 5.5)
-        for (Vec3& p : x) p.x() += 3;
-    });
+    primary->trajectory = std::make_unique<ScriptedBody>(box.surface(), bind, box.preroll(),
+                                                         [fps = request.shot_fps](double time, std::span<Vec3> x) {
+                                                           if (time * fps > 5.5)
+                                                             for (Vec3& p : x) p.x() += 3;
+                                                         });
     return primary;
   };
   BakeOptions options = scene.options();

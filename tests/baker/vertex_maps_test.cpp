@@ -1,4 +1,5 @@
-// Maps from the shot file to the solver: where values come from, what happens to them on the way, and what is said when they do not fit.
+// Maps from the shot file to the solver: where values come from, what happens to them on the way, and what is said when
+// they do not fit.
 #include "baker/vertex_maps.h"
 
 #include "baker/core/file.h"
@@ -36,7 +37,8 @@ TEST(VertexMaps, Colours_and_groups_run_linearly_from_low_to_high) {
     EXPECT_EQ(out->thickness[5], 5e-3);
     EXPECT_TRUE(out->stretch.empty() && out->bend.empty() && out->mass_per_area.empty());
   }
-  const MapSpec maps[] = {map_from("bend", "collar", 1, 20), map_from("stretch", "green", 1, 2), map_from("mass_per_area", "r", 0.3, 0.1)};
+  const MapSpec maps[] = {map_from("bend", "collar", 1, 20), map_from("stretch", "green", 1, 2),
+                          map_from("mass_per_area", "r", 0.3, 0.1)};
   const auto out = resolve_maps(maps, mesh);
   ASSERT_TRUE(out) << out.error().text();
   EXPECT_EQ(out->bend, (std::vector<double>{20, 20, 20, 1, 1, 1, 1, 1, 1}));
@@ -72,10 +74,13 @@ TEST(VertexMaps, What_does_not_fit_the_mesh_is_said_once_with_cloth_file_and_ver
     scene.write_shot(4, lines);
     return scene.run();
   };
-  const auto numbers = [&](const std::string& numbers_text) { ASSERT_TRUE(write_text_durably(scene.file("t.csv"), numbers_text).ok()); };
+  const auto numbers = [&](const std::string& numbers_text) {
+    ASSERT_TRUE(write_text_durably(scene.file("t.csv"), numbers_text).ok());
+  };
   const std::string map = "maps = [ { of = \"thickness\", file = \"t.csv\" } ]";
   numbers("1e-3\n2e-3\n");
-  expect_fault(with(map), 3, "cloth \"sheet\": map of thickness: t.csv: has 2 lines of numbers, the mesh has 9 vertices");
+  expect_fault(with(map), 3,
+               "cloth \"sheet\": map of thickness: t.csv: has 2 lines of numbers, the mesh has 9 vertices");
   numbers("1e-3\n2e-3\n1e-3\n1e-3\n1e-3\n0.2\n1e-3\n1e-3\n1e-3\n");
   expect_fault(with(map), 3, "t.csv:6: = 0.2 for vertex 5 is outside [0.0005, 0.01] m");
   numbers("0\n0\n0\n0\n0\n0\n0\n0\n0\n");

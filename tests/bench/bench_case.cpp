@@ -21,7 +21,8 @@ Result<std::vector<Triangle>> read_triangles(const std::filesystem::path& path) 
   auto values = read_values<std::int32_t>(path);
   if (!values) return values.error();
   std::vector<Triangle> triangles;
-  for (std::size_t k = 0; k + 2 < values->size(); k += 3) triangles.push_back({(*values)[k], (*values)[k + 1], (*values)[k + 2]});
+  for (std::size_t k = 0; k + 2 < values->size(); k += 3)
+    triangles.push_back({(*values)[k], (*values)[k + 1], (*values)[k + 2]});
   return triangles;
 }
 
@@ -29,14 +30,16 @@ Result<std::vector<Vec3f>> read_points(const std::filesystem::path& path) {
   auto values = read_values<float>(path);
   if (!values) return values.error();
   std::vector<Vec3f> points;
-  for (std::size_t k = 0; k + 2 < values->size(); k += 3) points.emplace_back((*values)[k], (*values)[k + 2], -(*values)[k + 1]);
+  for (std::size_t k = 0; k + 2 < values->size(); k += 3)
+    points.emplace_back((*values)[k], (*values)[k + 2], -(*values)[k + 1]);
   return points;
 }
 
 std::vector<std::vector<Vec3f>> split(const std::vector<Vec3f>& points, std::size_t vertex_count) {
   std::vector<std::vector<Vec3f>> frames;
   for (std::size_t k = 0; k + vertex_count <= points.size(); k += vertex_count)
-    frames.emplace_back(points.begin() + static_cast<std::ptrdiff_t>(k), points.begin() + static_cast<std::ptrdiff_t>(k + vertex_count));
+    frames.emplace_back(points.begin() + static_cast<std::ptrdiff_t>(k),
+                        points.begin() + static_cast<std::ptrdiff_t>(k + vertex_count));
   return frames;
 }
 
@@ -61,10 +64,13 @@ Status write_points(const std::filesystem::path& path, std::span<const std::vect
 }  // namespace
 
 Result<Case> read_case(const std::filesystem::path& folder) {
-  auto cloth_triangles = read_triangles(folder / "cloth_tris.i32"), body_triangles = read_triangles(folder / "body_tris.i32");
-  auto rest = read_points(folder / "rest.f32"), cloth = read_points(folder / "cloth.f32"), body = read_points(folder / "body.f32");
-  for (const Error* error : {cloth_triangles ? nullptr : &cloth_triangles.error(), body_triangles ? nullptr : &body_triangles.error(),
-                             rest ? nullptr : &rest.error(), cloth ? nullptr : &cloth.error(), body ? nullptr : &body.error()})
+  auto cloth_triangles = read_triangles(folder / "cloth_tris.i32"),
+       body_triangles = read_triangles(folder / "body_tris.i32");
+  auto rest = read_points(folder / "rest.f32"), cloth = read_points(folder / "cloth.f32"),
+       body = read_points(folder / "body.f32");
+  for (const Error* error :
+       {cloth_triangles ? nullptr : &cloth_triangles.error(), body_triangles ? nullptr : &body_triangles.error(),
+        rest ? nullptr : &rest.error(), cloth ? nullptr : &cloth.error(), body ? nullptr : &body.error()})
     if (error) return *error;
   Case data;
   data.cloth_triangles = std::move(*cloth_triangles);
@@ -72,7 +78,8 @@ Result<Case> read_case(const std::filesystem::path& folder) {
   data.rest = std::move(*rest);
   int body_vertices = 0;
   for (const Triangle& t : data.body_triangles) body_vertices = std::max({body_vertices, t[0] + 1, t[1] + 1, t[2] + 1});
-  if (data.rest.empty() || body_vertices == 0) return input_error("the case holds no cloth or no body", folder.string());
+  if (data.rest.empty() || body_vertices == 0)
+    return input_error("the case holds no cloth or no body", folder.string());
   data.cloth = split(*cloth, data.rest.size());
   data.body = split(*body, static_cast<std::size_t>(body_vertices));
   data.frame_count = static_cast<int>(std::min(data.cloth.size(), data.body.size()));
@@ -87,10 +94,11 @@ Status write_case(const std::filesystem::path& folder, const Case& data) {
   if (Status status = write_points(folder / "rest.f32", {&data.rest, 1}); !status) return status;
   if (Status status = write_points(folder / "cloth.f32", data.cloth); !status) return status;
   if (Status status = write_points(folder / "body.f32", data.body); !status) return status;
-  return write_text_durably(folder / "meta.txt",
-                            std::to_string(data.rest.size()) + " " + std::to_string(data.cloth_triangles.size()) + " " +
-                                std::to_string(data.body.front().size()) + " " + std::to_string(data.body_triangles.size()) + " " +
-                                std::to_string(data.frame_count) + "\n");
+  return write_text_durably(folder / "meta.txt", std::to_string(data.rest.size()) + " " +
+                                                     std::to_string(data.cloth_triangles.size()) + " " +
+                                                     std::to_string(data.body.front().size()) + " " +
+                                                     std::to_string(data.body_triangles.size()) + " " +
+                                                     std::to_string(data.frame_count) + "\n");
 }
 
 }  // namespace ft::bench

@@ -1,7 +1,7 @@
 // Carries benchmark cases to our program and back, and sums up. For tests/bench/run.sh:
 //   case_tool to-shot CASE FOLDER [--pins 0-199]     body.obj, body.pc2, cloth.obj and shot.toml from Blender's case
-//   case_tool from-bake CASE BAKE OUT drawn|feasible our cloth beside the drawn body or the feasible collider, as a case
-//   case_tool obj CACHE FRAME OUT.obj                one frame of any cache that knows its faces, to look at
+//   case_tool from-bake CASE BAKE OUT drawn|feasible our cloth beside the drawn body or the feasible collider, as a
+//   case case_tool obj CACHE FRAME OUT.obj                one frame of any cache that knows its faces, to look at
 //   case_tool result ...                             the table and the RESULT line, see result_line()
 #include <fmt/format.h>
 
@@ -42,11 +42,13 @@ Status to_shot(const fs::path& case_folder, const fs::path& folder, const std::s
   auto writer = find_cache_format("pc2")->open_writer(folder / "body.pc2", info, 0);
   if (!writer) return writer.error();
   for (int k = 0; k < data->frame_count; ++k)
-    if (Status status = (*writer)->write_frame(to_double(data->body[static_cast<std::size_t>(k)]), {}); !status) return status;
+    if (Status status = (*writer)->write_frame(to_double(data->body[static_cast<std::size_t>(k)]), {}); !status)
+      return status;
   if (Status status = (*writer)->close(); !status) return status;
   // Sources are stored as they are; the clip holds its own pre-roll, so ours is none.
   std::string shot = fmt::format(
-      "[shot]\nframes = \"1-{}\"\nfps = 24\npreroll = 0\n\n[primary.body]\nfile = \"body.pc2\"\ntopology = \"body.obj\"\n"
+      "[shot]\nframes = \"1-{}\"\nfps = 24\npreroll = 0\n\n[primary.body]\nfile = \"body.pc2\"\ntopology = "
+      "\"body.obj\"\n"
       "source_fps = 24\nunit_scale = 1\n\n[cloth.cloth]\nmesh = \"cloth.obj\"\nfabric = \"cotton\"\non = \"body\"\n",
       data->frame_count);
   if (!pins.empty()) shot += fmt::format("pins = [ {{ vertices = \"{}\" }} ]\n", pins);
@@ -71,12 +73,14 @@ Status from_bake(const fs::path& case_folder, const fs::path& bake, const fs::pa
   if (Status status = read_cache(bake / "cloth.abc", data->cloth, nullptr); !status) return status;
   if (against == "feasible") {
     data->body.clear();
-    if (Status status = read_cache(bake / "body.collider.abc", data->body, &data->body_triangles); !status) return status;
+    if (Status status = read_cache(bake / "body.collider.abc", data->body, &data->body_triangles); !status)
+      return status;
   }
   data->frame_count = static_cast<int>(std::min(data->cloth.size(), data->body.size()));
   data->cloth.resize(static_cast<std::size_t>(data->frame_count));
   data->body.resize(static_cast<std::size_t>(data->frame_count));
-  if (data->frame_count == 0 || data->cloth[0].size() != data->rest.size()) return input_error("the bake is not of this case", bake.string());
+  if (data->frame_count == 0 || data->cloth[0].size() != data->rest.size())
+    return input_error("the bake is not of this case", bake.string());
   return write_case(out, *data);
 }
 
@@ -104,14 +108,16 @@ double number_after(const std::string& text, const std::string& key, std::size_t
 }
 
 struct Judged {
-  double frames = 0, inside_frames = 0, depth_mm = 0, body_frames = 0, body_worst = 0, self_frames = 0, self_worst = 0, p99 = 0;
+  double frames = 0, inside_frames = 0, depth_mm = 0, body_frames = 0, body_worst = 0, self_frames = 0, self_worst = 0,
+         p99 = 0;
 };
 
 /// The judge's SUMMARY line.
 Judged read_judge(const std::string& file) {
   const auto text = read_text(file);
   const std::string all = text ? *text : "";
-  const std::size_t start = all.find("SUMMARY"), body = all.find("frames_with_bodyX", start), self = all.find("frames_with_selfX", start);
+  const std::size_t start = all.find("SUMMARY"), body = all.find("frames_with_bodyX", start),
+                    self = all.find("frames_with_selfX", start);
   Judged j;
   j.frames = number_after(all, " frames", start);
   j.inside_frames = number_after(all, "frames_with_inside_verts", start);
@@ -123,8 +129,11 @@ Judged read_judge(const std::string& file) {
 }
 
 void print_row(const std::string& who, double cpu, double wall, const Judged& j) {
-  fmt::print("| {:<34} | {:>7.3f} | {:>7.3f} | {:>4.0f} | {:>5.0f} ({:>5.0f}) | {:>5.0f} ({:>5.0f}) | {:>4.0f} | {:>7.2f} | {:>6.2f} % |\n", who, cpu, wall,
-             j.frames, j.body_frames, j.body_worst, j.self_frames, j.self_worst, j.inside_frames, j.depth_mm, 100 * j.p99);
+  fmt::print(
+      "| {:<34} | {:>7.3f} | {:>7.3f} | {:>4.0f} | {:>5.0f} ({:>5.0f}) | {:>5.0f} ({:>5.0f}) | {:>4.0f} | {:>7.2f} | "
+      "{:>6.2f} % |\n",
+      who, cpu, wall, j.frames, j.body_frames, j.body_worst, j.self_frames, j.self_worst, j.inside_frames, j.depth_mm,
+      100 * j.p99);
 }
 
 /// SCENE N REPORT_JSON OUR_CPU_SECONDS PEER_TIMING JUDGE_PEER JUDGE_DRAWN JUDGE_FEASIBLE
@@ -135,7 +144,8 @@ Status result_line(const std::vector<std::string>& a) {
   if (report.is_discarded() || !report.contains("frames")) return input_error("is not a report of a bake", a[2]);
   std::vector<double> ours, theirs;
   for (const auto& frame : report["frames"])
-    if (const double milliseconds = frame.value("milliseconds", 0.0); milliseconds > 0) ours.push_back(milliseconds / 1e3);  // the first is given
+    if (const double milliseconds = frame.value("milliseconds", 0.0); milliseconds > 0)
+      ours.push_back(milliseconds / 1e3);  // the first is given
   const double frame_count = static_cast<double>(ours.size());
   const double our_cpu = std::atof(a[3].c_str()) / frame_count, rss = report.value("peak_memory_bytes", 0.0) / 1e6;
   auto timing = read_text(a[4]);
@@ -144,19 +154,31 @@ Status result_line(const std::vector<std::string>& a) {
   std::istringstream list(timing->substr(std::min(timing->size(), timing->find('\n') + 1)));
   for (double seconds; list >> seconds;) theirs.push_back(seconds);
   const Judged peer = read_judge(a[5]), drawn = read_judge(a[6]), feasible = read_judge(a[7]);
-  fmt::print("\n| {:<34} | cpu s/f | wall s/f | frames | frames (worst) with body crossings | self crossings | frames inside | depth mm | p99 strain |\n|---|---|---|---|---|---|---|---|---|\n", a[0]);
+  fmt::print(
+      "\n| {:<34} | cpu s/f | wall s/f | frames | frames (worst) with body crossings | self crossings | frames inside "
+      "| depth mm | p99 strain |\n|---|---|---|---|---|---|---|---|---|\n",
+      a[0]);
   print_row("peer, drawn body", peer_cpu, median(theirs), peer);
   print_row("ours, drawn body", our_cpu, median(ours), drawn);
   print_row("ours, feasible collider", our_cpu, median(ours), feasible);
-  fmt::print("\ncpu is the mean of a whole run (ours with import and caches, the peer's stepping alone); wall is the median frame.\n");
-  fmt::print("crossings: the worst frame's, ours, with the feasible collider and among the cloth; depth: ours, in the feasible collider.\n");
-  fmt::print("RESULT scene={} n={} ours_cpu={:.4f} ours_wall={:.4f} peer_cpu={:.4f} peer_wall={:.4f} crossings={:.0f} depth_mm={:.2f} p99_strain={:.4f} rss_mb={:.0f}\n",
-             a[0], a[1], our_cpu, median(ours), peer_cpu, median(theirs), feasible.body_worst + feasible.self_worst, feasible.depth_mm, feasible.p99, rss);
+  fmt::print(
+      "\ncpu is the mean of a whole run (ours with import and caches, the peer's stepping alone); wall is the median "
+      "frame.\n");
+  fmt::print(
+      "crossings: the worst frame's, ours, with the feasible collider and among the cloth; depth: ours, in the "
+      "feasible collider.\n");
+  fmt::print(
+      "RESULT scene={} n={} ours_cpu={:.4f} ours_wall={:.4f} peer_cpu={:.4f} peer_wall={:.4f} crossings={:.0f} "
+      "depth_mm={:.2f} p99_strain={:.4f} rss_mb={:.0f}\n",
+      a[0], a[1], our_cpu, median(ours), peer_cpu, median(theirs), feasible.body_worst + feasible.self_worst,
+      feasible.depth_mm, feasible.p99, rss);
   return {};
 }
 
 int run(const std::vector<std::string>& a) {
-  Status status = usage_error("case_tool to-shot CASE FOLDER [--pins LIST] | from-bake CASE BAKE OUT drawn|feasible | obj CACHE FRAME OUT | result ...");
+  Status status = usage_error(
+      "case_tool to-shot CASE FOLDER [--pins LIST] | from-bake CASE BAKE OUT drawn|feasible | obj CACHE FRAME OUT | "
+      "result ...");
   if (a.size() >= 3 && a[0] == "to-shot") status = to_shot(a[1], a[2], a.size() >= 5 && a[3] == "--pins" ? a[4] : "");
   if (a.size() == 5 && a[0] == "from-bake") status = from_bake(a[1], a[2], a[3], a[4]);
   if (a.size() == 4 && a[0] == "obj") status = one_frame(a[1], std::atoi(a[2].c_str()), a[3]);
@@ -169,4 +191,6 @@ int run(const std::vector<std::string>& a) {
 }  // namespace
 }  // namespace ft::bench
 
-int main(int argc, char** argv) { return ft::bench::run({argv + 1, argv + argc}); }
+int main(int argc, char** argv) {
+  return ft::bench::run({argv + 1, argv + argc});
+}

@@ -1,5 +1,6 @@
-// Linear solvers on the systems of a cloth step: a square metre of cotton, two corners held, sagging and wrinkled, 8 substeps per
-// frame at 24 fps. Prints for each size and tolerance the iterations and the time of a solve, set-up of the preconditioner included.
+// Linear solvers on the systems of a cloth step: a square metre of cotton, two corners held, sagging and wrinkled, 8
+// substeps per frame at 24 fps. Prints for each size and tolerance the iterations and the time of a solve, set-up of
+// the preconditioner included.
 //   linear_bench [threads]
 #include <algorithm>
 #include <chrono>
@@ -52,12 +53,14 @@ struct System {
     for (const auto& energy : energies) energy->begin_step(context);
     right_side.assign(x.size(), Vec3::Zero());
     for (const auto& energy : energies) energy->add_gradient(x, right_side);
-    for (std::size_t i = 0; i < x.size(); ++i) right_side[i] = -right_side[i] + topology.mass[i] * Vec3(0, -k_gravity, 0);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      right_side[i] = -right_side[i] + topology.mass[i] * Vec3(0, -k_gravity, 0);
   }
 
   void fill(BlockMatrix& m) const {
     for (std::size_t i = 0; i < x.size(); ++i)
-      m.blocks[static_cast<std::size_t>(pattern.diagonal[i])].diagonal().array() += static_cast<float>(topology.mass[i] * inertia);
+      m.blocks[static_cast<std::size_t>(pattern.diagonal[i])].diagonal().array() +=
+          static_cast<float>(topology.mass[i] * inertia);
     for (const auto& energy : energies) energy->add_hessian(x, m);
   }
 };
@@ -69,7 +72,8 @@ int main(int argc, char** argv) {
   std::printf("| N | preconditioner | tolerance | iterations | ms |\n|---|---|---|---|---|\n");
   for (const int cells : {50, 100, 200}) {
     const System system(cells);
-    for (const auto kind : {LinearSettings::Preconditioner::k_block_jacobi, LinearSettings::Preconditioner::k_multigrid})
+    for (const auto kind :
+         {LinearSettings::Preconditioner::k_block_jacobi, LinearSettings::Preconditioner::k_multigrid})
       for (const double tolerance : {1e-1, 3e-2, 1e-2, 1e-3}) {
         LinearSystem solver(system.pattern, system.rest, {kind, tolerance, 2000});
         std::vector<Vec3> solution(system.x.size());
@@ -84,8 +88,8 @@ int main(int argc, char** argv) {
         }
         std::sort(times.begin(), times.end());
         std::printf("| %d | %s | %g | %d%s | %.2f |\n", cells,
-                    kind == LinearSettings::Preconditioner::k_multigrid ? "multigrid" : "block Jacobi", tolerance, report.iterations,
-                    report.converged ? "" : " (not reached)", 1e3 * times[2]);
+                    kind == LinearSettings::Preconditioner::k_multigrid ? "multigrid" : "block Jacobi", tolerance,
+                    report.iterations, report.converged ? "" : " (not reached)", 1e3 * times[2]);
       }
   }
 }

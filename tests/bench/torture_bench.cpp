@@ -1,9 +1,10 @@
 // Walks torture scenes and prints what was measured. For tests/bench/run.sh torture:
 //   torture_bench list                          the names of the scenes
-//   torture_bench NAME [--frames N] [--obj FOLDER]    table of the frames, RESULT line; cloth and feasible collider as OBJ files
+//   torture_bench NAME [--frames N] [--obj FOLDER]    table of the frames, RESULT line; cloth and feasible collider as
+//   OBJ files
 //                 [--substeps LEAST] [--newton N] [--linear TOLERANCE]    to find out what a failure depends on
-// The crossings are those that the independent checker finds; 1 is returned when there are any, or when it disagrees with the
-// certificate, or when the scene misses a bar of its own.
+// The crossings are those that the independent checker finds; 1 is returned when there are any, or when it disagrees
+// with the certificate, or when the scene misses a bar of its own.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -30,33 +31,40 @@ void write_objs(const std::filesystem::path& folder, const Scene& scene, const S
   std::vector<Vec3> body;
   solver.collider_positions(state, body);
   const std::string stem = fmt::format("{}_{:04}", scene.name, state.frame);
-  const Status a = write_obj(folder / (stem + "_cloth.obj"), make_triangle_mesh("cloth", cloth.positions, cloth.triangles));
-  const Status b = write_obj(folder / (stem + "_body.obj"), make_triangle_mesh("body", body, solver.collider_triangles()));
+  const Status a =
+      write_obj(folder / (stem + "_cloth.obj"), make_triangle_mesh("cloth", cloth.positions, cloth.triangles));
+  const Status b =
+      write_obj(folder / (stem + "_body.obj"), make_triangle_mesh("body", body, solver.collider_triangles()));
   for (const Status* s : {&a, &b})
     if (!*s) fmt::print(stderr, "{}\n", s->error().text());
 }
 
 void print_frame(const CheckedFrame& f) {
   const FrameReport& r = f.report;
-  fmt::print("{:5} {:7.3f} {:5} {:7} {:7} {:7} {:>3}+{:<3} {:8} {:9.1f} {:8.2f} {:8.1f} {:7.2f} {:8.2f} {:>9}\n", r.frame, f.seconds,
-             r.substeps, r.rewinds, f.crossings_body, f.crossings_self, r.crossings_body, r.crossings_self, r.released_vertices,
-             1e6 * r.smallest_gap, 100 * r.strain_p99, 100 * r.strain_max, f.speed, 1e3 * r.deepest_drawn, r.finite ? "yes" : "NO");
+  fmt::print("{:5} {:7.3f} {:5} {:7} {:7} {:7} {:>3}+{:<3} {:8} {:9.1f} {:8.2f} {:8.1f} {:7.2f} {:8.2f} {:>9}\n",
+             r.frame, f.seconds, r.substeps, r.rewinds, f.crossings_body, f.crossings_self, r.crossings_body,
+             r.crossings_self, r.released_vertices, 1e6 * r.smallest_gap, 100 * r.strain_p99, 100 * r.strain_max,
+             f.speed, 1e3 * r.deepest_drawn, r.finite ? "yes" : "NO");
   for (const Incident& i : r.incidents)
     if (i.kind == Incident::Kind::k_crossing || i.kind == Incident::Kind::k_released) {
-      fmt::print("      {} {}: vertex {} at ({:.3f} {:.3f} {:.3f}), {:.2f} mm: {}\n", name(i.kind), i.system, i.vertex, i.place.x(),
-                 i.place.y(), i.place.z(), 1e3 * i.depth, i.text);
+      fmt::print("      {} {}: vertex {} at ({:.3f} {:.3f} {:.3f}), {:.2f} mm: {}\n", name(i.kind), i.system, i.vertex,
+                 i.place.x(), i.place.y(), i.place.z(), 1e3 * i.depth, i.text);
       break;
     }
   std::fflush(stdout);
 }
 
 int run(const Scene& scene, const std::string& folder, const std::function<void(ClothSetup&)>& change) {
-  fmt::print("{}: {}\n{:>5} {:>7} {:>5} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>7} {:>8} {:>9}\n", scene.name, scene.what,
-             "frame", "s", "sub", "rewinds", "body", "self", "(cert.)", "released", "gap um", "p99 %", "max %", "m/s", "drawn mm", "finite");
-  const Walked walked = walk(scene, [&](const Solver& solver, const State& state, const CheckedFrame& frame) {
-    if (!folder.empty()) write_objs(folder, scene, solver, state);
-    print_frame(frame);
-  }, change);
+  fmt::print("{}: {}\n{:>5} {:>7} {:>5} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>7} {:>8} {:>9}\n",
+             scene.name, scene.what, "frame", "s", "sub", "rewinds", "body", "self", "(cert.)", "released", "gap um",
+             "p99 %", "max %", "m/s", "drawn mm", "finite");
+  const Walked walked = walk(
+      scene,
+      [&](const Solver& solver, const State& state, const CheckedFrame& frame) {
+        if (!folder.empty()) write_objs(folder, scene, solver, state);
+        print_frame(frame);
+      },
+      change);
   std::vector<double> wall, cpu;
   std::size_t crossings = 0, frames_crossing = 0;
   double strain = 0, depth = 0, speed = 0;
@@ -77,15 +85,18 @@ int run(const Scene& scene, const std::string& folder, const std::function<void(
     bad = bad || !r.finite || static_cast<int>(f.crossings_body) != r.crossings_body ||
           static_cast<int>(f.crossings_self) != r.crossings_self;
   }
-  bad = bad || ((crossings > 0 || released > 0) && scene.has_room) || strain > scene.strain_bar || speed > scene.speed_bar;
+  bad = bad || ((crossings > 0 || released > 0) && scene.has_room) || strain > scene.strain_bar ||
+        speed > scene.speed_bar;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   for (const ProfilePhase& phase : profile_phases()) fmt::print("{} {:.1f} s, ", phase.title, profile.*phase.time);
   fmt::print("total {:.1f} s; worst frame {:.2f} s\n", profile.total, *std::max_element(wall.begin(), wall.end()));
-  fmt::print("RESULT scene={} n={} ours_cpu={:.4f} ours_wall={:.4f} peer_cpu=nan peer_wall=nan crossings={} depth_mm={:.2f} p99_strain={:.4f} rss_mb={} "
-             "frames={} crossing_frames={} released={} speed={:.2f} verdict={}\n",
-             scene.name, walked.vertex_count, median(cpu), median(wall), crossings, 1e3 * depth, strain, usage.ru_maxrss / 1024,
-             walked.frames.size(), frames_crossing, released, speed, bad ? "fails" : "passes");
+  fmt::print(
+      "RESULT scene={} n={} ours_cpu={:.4f} ours_wall={:.4f} peer_cpu=nan peer_wall=nan crossings={} depth_mm={:.2f} "
+      "p99_strain={:.4f} rss_mb={} "
+      "frames={} crossing_frames={} released={} speed={:.2f} verdict={}\n",
+      scene.name, walked.vertex_count, median(cpu), median(wall), crossings, 1e3 * depth, strain,
+      usage.ru_maxrss / 1024, walked.frames.size(), frames_crossing, released, speed, bad ? "fails" : "passes");
   return bad ? 1 : 0;
 }
 
@@ -115,7 +126,9 @@ int main_of(int argc, char** argv) {
       understood = false;
   }
   if (!understood) {
-    fmt::print(stderr, "torture_bench list | NAME [--frames N] [--obj FOLDER] [--substeps N] [--newton N] [--linear TOLERANCE]\n");
+    fmt::print(
+        stderr,
+        "torture_bench list | NAME [--frames N] [--obj FOLDER] [--substeps N] [--newton N] [--linear TOLERANCE]\n");
     return 2;
   }
   return run(scene, folder, [=](ClothSetup& setup) {
@@ -128,4 +141,6 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace ft::torture
 
-int main(int argc, char** argv) { return ft::torture::main_of(argc, argv); }
+int main(int argc, char** argv) {
+  return ft::torture::main_of(argc, argv);
+}

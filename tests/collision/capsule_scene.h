@@ -25,7 +25,8 @@ inline Shape capsule(const Vec3& p, const Vec3& q, double radius, int segments =
   const auto ring = [&](const Vec3& centre, double angle) {
     for (int k = 0; k < segments; ++k) {
       const double a = 2 * std::numbers::pi * k / segments;
-      s.positions.push_back(centre + radius * (std::sin(angle) * z + std::cos(angle) * (std::cos(a) * x + std::sin(a) * y)));
+      s.positions.push_back(centre +
+                            radius * (std::sin(angle) * z + std::cos(angle) * (std::cos(a) * x + std::sin(a) * y)));
     }
   };
   for (int k = 1; k <= cap_rings; ++k) ring(p, 0.5 * std::numbers::pi * (k - cap_rings) / cap_rings);
@@ -39,7 +40,8 @@ inline Shape capsule(const Vec3& p, const Vec3& q, double radius, int segments =
       s.triangles.push_back({v(r, k), v(r, k + 1), v(r + 1, k + 1)});
       s.triangles.push_back({v(r, k), v(r + 1, k + 1), v(r + 1, k)});
     }
-  for (int k = 0; k < segments; ++k) s.triangles.push_back({last, v(2 * cap_rings - 1, k), v(2 * cap_rings - 1, k + 1)});
+  for (int k = 0; k < segments; ++k)
+    s.triangles.push_back({last, v(2 * cap_rings - 1, k), v(2 * cap_rings - 1, k + 1)});
   return s;
 }
 
@@ -72,7 +74,9 @@ struct CapsuleBody {
       for (const Vec3& x : capsule(bones[b].p, bones[b].q, bones[b].radius).positions) out.push_back(moves[b] * x);
     return out;
   }
-  std::vector<Vec3> bind() const { return pose(std::vector<Eigen::Isometry3d>(bones.size(), Eigen::Isometry3d::Identity())); }
+  std::vector<Vec3> bind() const {
+    return pose(std::vector<Eigen::Isometry3d>(bones.size(), Eigen::Isometry3d::Identity()));
+  }
 };
 
 }  // namespace ft::test

@@ -1,5 +1,6 @@
-// The certificate against slow and exact ones: orientation against rationals, edge-triangle against a vertex enumeration of the
-// exact linear programme, the trees against all pairs. Lattice inputs make every degenerate case common.
+// The certificate against slow and exact ones: orientation against rationals, edge-triangle against a vertex
+// enumeration of the exact linear programme, the trees against all pairs. Lattice inputs make every degenerate case
+// common.
 #include "collision/crossings.h"
 
 #include <gtest/gtest.h>
@@ -32,13 +33,15 @@ int sign_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3* rows[3] = {&a, &b, &c};
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) m[i][k] = Exact((*rows[i])[k]) - Exact(d[k]);
-  const Exact det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+  const Exact det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   return det.sign();
 }
 
-/// Is there t, u, v with p + t (q - p) = a + u (b - a) + v (c - a), 0 <= t <= 1, u, v >= 0, u + v <= 1? A compact polytope is empty
-/// or has a corner: every choice of active bounds that leaves one point is tried, in exact arithmetic.
+/// Is there t, u, v with p + t (q - p) = a + u (b - a) + v (c - a), 0 <= t <= 1, u, v >= 0, u + v <= 1? A compact
+/// polytope is empty or has a corner: every choice of active bounds that leaves one point is tried, in exact
+/// arithmetic.
 bool meets_exactly(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   using Row = std::array<Small, 4>;
   // boost::rational's comparisons with integers call themselves for ever in C++20: numerators are compared instead.
@@ -128,7 +131,8 @@ TEST(Crossings, Edge_and_triangle_agree_with_the_exact_programme_on_a_lattice) {
     // A shift and a power of two are exact: the answer must not move either.
     const Vec3 shift(3, -5, 7);
     ASSERT_EQ(edge_crosses_triangle(p, q, a, b, c), expected)
-        << p.transpose() << " | " << q.transpose() << " | " << a.transpose() << " | " << b.transpose() << " | " << c.transpose();
+        << p.transpose() << " | " << q.transpose() << " | " << a.transpose() << " | " << b.transpose() << " | "
+        << c.transpose();
     ASSERT_EQ(edge_crosses_triangle(q, p, b, c, a), expected);
     ASSERT_EQ(edge_crosses_triangle(q, p, c, b, a), expected);
     ASSERT_EQ(edge_crosses_triangle((p + shift) / 1024, (q + shift) / 1024, (a + shift) / 1024, (b + shift) / 1024,
@@ -147,12 +151,12 @@ TEST(Crossings, Touching_counts_and_the_last_place_decides) {
   EXPECT_FALSE(edge_crosses_triangle({0.2, 0.2, 5e-324}, {0.2, 0.2, 1}, a, b, c));  // the least distance there is
   EXPECT_TRUE(edge_crosses_triangle({0.5, 0, -1}, {0.5, 0, 1}, a, b, c));           // through an edge
   EXPECT_FALSE(edge_crosses_triangle({0.5, -5e-324, -1}, {0.5, -5e-324, 1}, a, b, c));
-  EXPECT_TRUE(edge_crosses_triangle({0, 0, -1}, {0, 0, 1}, a, b, c));               // through a corner
-  EXPECT_TRUE(edge_crosses_triangle({-1, 0.5, 0}, {2, 0.5, 0}, a, b, c));           // in the plane, across
-  EXPECT_TRUE(edge_crosses_triangle({0.1, 0.1, 0}, {0.2, 0.2, 0}, a, b, c));        // in the plane, within
-  EXPECT_FALSE(edge_crosses_triangle({1, 1, 0}, {2, 0.5, 0}, a, b, c));             // in the plane, beside
-  EXPECT_TRUE(edge_crosses_triangle({0.1, 0.1, 0}, {0.1, 0.1, 0}, a, b, c));        // a point in the face
-  EXPECT_TRUE(edge_crosses_triangle({0.5, -1, 0}, {0.5, 1, 0}, a, b, b));           // a triangle that is a segment
+  EXPECT_TRUE(edge_crosses_triangle({0, 0, -1}, {0, 0, 1}, a, b, c));         // through a corner
+  EXPECT_TRUE(edge_crosses_triangle({-1, 0.5, 0}, {2, 0.5, 0}, a, b, c));     // in the plane, across
+  EXPECT_TRUE(edge_crosses_triangle({0.1, 0.1, 0}, {0.2, 0.2, 0}, a, b, c));  // in the plane, within
+  EXPECT_FALSE(edge_crosses_triangle({1, 1, 0}, {2, 0.5, 0}, a, b, c));       // in the plane, beside
+  EXPECT_TRUE(edge_crosses_triangle({0.1, 0.1, 0}, {0.1, 0.1, 0}, a, b, c));  // a point in the face
+  EXPECT_TRUE(edge_crosses_triangle({0.5, -1, 0}, {0.5, 1, 0}, a, b, b));     // a triangle that is a segment
 }
 
 struct Soup {
@@ -207,7 +211,8 @@ TEST(Crossings, Trees_find_what_all_pairs_find) {
   std::size_t found = 0;
   for (int trial = 0; trial < 60; ++trial) {
     const int n = trial % 3 == 0 ? 0 : 4 + trial % 5;
-    const Soup a = soup(dice, n > 0 ? 30 : 0, 5 + dice.below(60), n), b = soup(dice, n > 0 ? 20 : 0, 5 + dice.below(60), n);
+    const Soup a = soup(dice, n > 0 ? 30 : 0, 5 + dice.below(60), n),
+               b = soup(dice, n > 0 ? 20 : 0, 5 + dice.below(60), n);
     const auto fast = crossings_between(a.x, a.t, b.x, b.t), slow = slowly_between(a, b);
     ASSERT_EQ(fast, slow) << trial;
     ASSERT_TRUE(std::is_sorted(fast.begin(), fast.end()));

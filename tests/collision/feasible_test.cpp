@@ -1,7 +1,6 @@
-// The feasible collider against what it promises: no crossing between parts that are kept apart, half the gap at least between
-// them, the larger part untouched, nothing moved where nothing overlaps, the same bits for any number of threads.
-#include "collision/feasible_collider.h"
-
+// The feasible collider against what it promises: no crossing between parts that are kept apart, half the gap at least
+// between them, the larger part untouched, nothing moved where nothing overlaps, the same bits for any number of
+// threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "baker/core/random.h"
 #include "capsule_scene.h"
 #include "collision/crossings.h"
+#include "collision/feasible_collider.h"
 #include "collision/triangle_tree.h"
 
 namespace ft {
@@ -22,14 +22,17 @@ using Isometry = Eigen::Isometry3d;
 
 constexpr double k_gap = 6e-3;
 
-Isometry shift(const Vec3& by) { return Isometry(Eigen::Translation3d(by)); }
+Isometry shift(const Vec3& by) {
+  return Isometry(Eigen::Translation3d(by));
+}
 
 struct Judged {
   std::size_t crossings = 0;
   double distance = 1;  ///< m, between parts that are kept apart; 1 when farther than 5 cm
 };
 
-/// Exact crossings and smallest distance (vertices and edges' middles against triangles) of the parts that are kept apart.
+/// Exact crossings and smallest distance (vertices and edges' middles against triangles) of the parts that are kept
+/// apart.
 Judged judge(const FeasibleCollider& collider, std::span<const Vec3> x, int part_count) {
   std::vector<std::vector<Triangle>> parts(at(part_count));
   for (const Triangle& t : collider.triangles()) parts[at(collider.part_of_vertex()[at(t[0])])].push_back(t);
@@ -70,7 +73,8 @@ std::vector<Vec3> refined(const FeasibleCollider& collider, std::span<const Vec3
 
 /// Hip (large) and forearm (small), far apart in the bind pose.
 CapsuleBody hip_and_forearm() {
-  return CapsuleBody({{"hip", {-0.05, 1, 0}, {0.05, 1, 0}, 0.13, -1}, {"forearm", {0.6, 1.2, -0.1}, {0.6, 1.2, 0.13}, 0.04, -1}});
+  return CapsuleBody(
+      {{"hip", {-0.05, 1, 0}, {0.05, 1, 0}, 0.13, -1}, {"forearm", {0.6, 1.2, -0.1}, {0.6, 1.2, 0.13}, 0.04, -1}});
 }
 
 TEST(Feasible, Forearm_that_sinks_61_mm_into_the_hip_gives_way_without_a_crossing) {
@@ -108,7 +112,8 @@ TEST(Feasible, Random_poses_of_an_arm_on_hip_and_thighs_never_cross_slow) {
   for (std::uint64_t trial = 0; trial < 24; ++trial) {
     const auto random = [&](std::uint64_t draw) { return 2 * random_uniform({7, 0, 0, trial}, draw) - 1; };
     Isometry arm = shift({random(0) * 0.12, 0.8 + 0.2 * random(1), 0.13 + 0.04 * random(2)});
-    arm.rotate(Eigen::AngleAxisd(0.5 * std::numbers::pi + 0.4 * random(3), Vec3(0.3 * random(4), 1, 0.3 * random(5)).normalized()));
+    arm.rotate(Eigen::AngleAxisd(0.5 * std::numbers::pi + 0.4 * random(3),
+                                 Vec3(0.3 * random(4), 1, 0.3 * random(5)).normalized()));
     arm.translate(Vec3(-0.8, -1.2, -0.1));
     const Isometry still = Isometry::Identity();
     const auto drawn = body.pose({{still, still, still, arm, arm}});
@@ -129,7 +134,8 @@ TEST(Feasible, Three_parts_that_overlap_each_other_are_all_kept_apart) {
   EXPECT_GT(judge(collider, refined(collider, drawn), 3).crossings, 50u);
   const Judged judged = judge(collider, carved(collider, drawn), 3);
   EXPECT_EQ(judged.crossings, 0u);
-  // The middle part lies one gap from the large one; the small one ends at the lip of that slot, where there is less room.
+  // The middle part lies one gap from the large one; the small one ends at the lip of that slot, where there is less
+  // room.
   EXPECT_GE(judged.distance, k_gap / 6);
 }
 
@@ -154,7 +160,8 @@ TEST(Feasible, Bind_pose_is_not_moved_even_where_parts_overlap_in_it) {
 
 TEST(Feasible, Thighs_that_touch_above_are_still_kept_apart_below) {
   // Both reach into the crotch in the bind pose; crossing the legs makes the shins' ends overlap, not the tops.
-  const CapsuleBody body({{"left", {-0.05, 0.9, 0}, {-0.2, 0.4, 0}, 0.085, -1}, {"right", {0.05, 0.9, 0}, {0.2, 0.4, 0}, 0.084, -1}});
+  const CapsuleBody body(
+      {{"left", {-0.05, 0.9, 0}, {-0.2, 0.4, 0}, 0.085, -1}, {"right", {0.05, 0.9, 0}, {0.2, 0.4, 0}, 0.084, -1}});
   const FeasibleCollider collider(body.surface, body.bind(), {});
   EXPECT_FALSE(collider.kept_apart(0, 1));
   Isometry swing = shift({0.05, 0.9, 0});
@@ -194,8 +201,9 @@ TEST(Feasible, Result_has_the_same_bits_for_any_number_of_threads) {
 }
 
 TEST(Feasible, Small_motions_of_the_body_give_small_motions_of_the_collider) {
-  // The solver moves the collider linearly from pose to pose: a jump would sweep through the cloth. The forearm sinks in by 0.5 mm
-  // steps; no vertex may move more than ten times that (the slope of a projection on a 41 mm facet's neighbour).
+  // The solver moves the collider linearly from pose to pose: a jump would sweep through the cloth. The forearm sinks
+  // in by 0.5 mm steps; no vertex may move more than ten times that (the slope of a projection on a 41 mm facet's
+  // neighbour).
   const CapsuleBody body = hip_and_forearm();
   const FeasibleCollider collider(body.surface, body.bind(), {});
   std::vector<Vec3> last;

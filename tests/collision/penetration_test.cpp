@@ -81,7 +81,8 @@ TEST(Penetration, Depth_in_a_fine_sphere_is_radius_minus_distance) {
     const std::vector<Vec3> points{r * Vec3(0.3, -0.5, 0.81).normalized()};
     const auto found = penetrations(points, s.positions, s.triangles);
     ASSERT_EQ(found.size(), 1u) << r;
-    EXPECT_NEAR(found[0].depth, 1 - r, 1e-3) << r;  // facets of 49 mm lie 0.3 mm inside the sphere, twice that at corners
+    EXPECT_NEAR(found[0].depth, 1 - r, 1e-3)
+        << r;  // facets of 49 mm lie 0.3 mm inside the sphere, twice that at corners
   }
   const std::vector<Vec3> outside{{0, 0, 1.001}, {2, 0, 0}, {0.8, 0.8, 0}};
   EXPECT_TRUE(penetrations(outside, s.positions, s.triangles).empty());
@@ -139,7 +140,8 @@ TEST(TriangleTree, Closest_on_a_triangle_agrees_with_sampling_even_when_it_has_n
     const ClosestOnTriangle found = closest_on_triangle(p, a, b, c);
     double sampled = 1e300;
     for (int u = 0; u <= 60; ++u)
-      for (int v = 0; u + v <= 60; ++v) sampled = std::min(sampled, (p - (a + u / 60.0 * (b - a) + v / 60.0 * (c - a))).norm());
+      for (int v = 0; u + v <= 60; ++v)
+        sampled = std::min(sampled, (p - (a + u / 60.0 * (b - a) + v / 60.0 * (c - a))).norm());
     const double distance = std::sqrt(found.squared_distance);
     EXPECT_LE(distance, sampled + 1e-12);
     EXPECT_GE(distance, sampled - 0.06);  // samples are at most 3.5 / 60 apart

@@ -1,4 +1,5 @@
-// Where a pose has no room, against closed forms: two parallel capsules at a known distance, one that bends back on its own body.
+// Where a pose has no room, against closed forms: two parallel capsules at a known distance, one that bends back on its
+// own body.
 #include "collision/room_scan.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ constexpr double k_gap = 6e-3;
 
 /// A trunk of 12 cm radius and an arm of 4 cm beside it; the bind pose has 20 cm between their surfaces.
 CapsuleBody trunk_and_arm() {
-  return CapsuleBody({{"trunk", Vec3(0, 0, 0), Vec3(0, 0.5, 0), 0.12, -1}, {"arm", Vec3(0.36, 0.1, 0), Vec3(0.36, 0.4, 0), 0.04, -1}});
+  return CapsuleBody(
+      {{"trunk", Vec3(0, 0, 0), Vec3(0, 0.5, 0), 0.12, -1}, {"arm", Vec3(0.36, 0.1, 0), Vec3(0.36, 0.4, 0), 0.04, -1}});
 }
 
 std::vector<TightPlace> look(const CapsuleBody& body, double arm_to) {
@@ -46,7 +48,8 @@ TEST(RoomScan, is_silent_where_there_is_room) {
 }
 
 TEST(RoomScan, does_not_count_parts_that_are_jointed) {
-  CapsuleBody body({{"upper", Vec3(0, 0, 0), Vec3(0, 0.3, 0), 0.05, -1}, {"lower", Vec3(0, -0.3, 0), Vec3(0, 0, 0), 0.045, 0}});
+  CapsuleBody body(
+      {{"upper", Vec3(0, 0, 0), Vec3(0, 0.3, 0), 0.05, -1}, {"lower", Vec3(0, -0.3, 0), Vec3(0, 0, 0), 0.045, 0}});
   const RoomScanner scanner(body.surface, body.bind(), {});
   const Isometry moves[2] = {Isometry::Identity(), Isometry(Eigen::AngleAxisd(2.6, Vec3::UnitX()))};
   EXPECT_TRUE(scanner.look(body.pose(moves)).empty());

@@ -1,9 +1,10 @@
+#include "collision/sewn_pairs.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "baker/core/random.h"
-#include "collision/sewn_pairs.h"
 
 namespace ft {
 namespace {
@@ -17,7 +18,9 @@ void add_strip(int cells, int first, std::vector<Triangle>& out) {
   }
 }
 
-bool near(const SewnPairs& sewn, int a, int b) { return sewn.together(std::array{a}, std::array{b}); }
+bool near(const SewnPairs& sewn, int a, int b) {
+  return sewn.together(std::array{a}, std::array{b});
+}
 
 TEST(SewnPairs, Without_stitches_nothing_is_together) {
   std::vector<Triangle> triangles;
@@ -39,10 +42,10 @@ TEST(SewnPairs, Both_sides_of_a_seam_are_together_and_one_step_along_it) {
   EXPECT_TRUE(near(sewn, 8, 1));
   EXPECT_TRUE(near(sewn, 1, 10));
   EXPECT_TRUE(near(sewn, 10, 1));
-  EXPECT_FALSE(near(sewn, 1, 12));   // two steps along
-  EXPECT_FALSE(near(sewn, 1, 9));    // the far border
-  EXPECT_FALSE(near(sewn, 1, 3));    // one panel's own
-  EXPECT_FALSE(near(sewn, 1, 99));   // a body vertex, numbered after the cloth
+  EXPECT_FALSE(near(sewn, 1, 12));  // two steps along
+  EXPECT_FALSE(near(sewn, 1, 9));   // the far border
+  EXPECT_FALSE(near(sewn, 1, 3));   // one panel's own
+  EXPECT_FALSE(near(sewn, 1, 99));  // a body vertex, numbered after the cloth
   EXPECT_FALSE(near(sewn, 99, 1));
   EXPECT_TRUE(sewn.together(std::array{0, 3}, std::array{9, 10, 13}));
   EXPECT_TRUE(sewn.together(Crossing{{0, 1}, {8, 10, 11}, true}));

@@ -18,7 +18,8 @@ using test::random_stencil;
 constexpr double k_floor = 1e-5;
 
 /// True when the pair stayed apart all the way from x to x + dx. Straight moves on their own sides of one plane do;
-/// planes are tried across the closest points along the way and along the features' own normal. A rest that no plane decides is followed in small pieces.
+/// planes are tried across the closest points along the way and along the features' own normal. A rest that no plane
+/// decides is followed in small pieces.
 bool stays_apart(PairKind kind, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx, int depth = 0) {
   std::array<Vec3, 4> middle, end;
   for (std::size_t i = 0; i < 4; ++i) middle[i] = x[i] + 0.5 * dx[i], end[i] = x[i] + dx[i];

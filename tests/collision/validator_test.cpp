@@ -1,6 +1,4 @@
 // Two opinions that share no code: FCL's intersecting triangle pairs and our exact crossings.
-#include "collision/fcl_validator.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
@@ -8,11 +6,13 @@
 #include "baker/core/random.h"
 #include "capsule_scene.h"
 #include "collision/crossings.h"
+#include "collision/fcl_validator.h"
 
 namespace ft {
 namespace {
 
-/// Triangle pairs that intersect, from the crossings: in general position every such pair has an edge of one through the other.
+/// Triangle pairs that intersect, from the crossings: in general position every such pair has an edge of one through
+/// the other.
 std::size_t pairs_of_crossings(const test::Shape& a, const test::Shape& b) {
   std::set<std::pair<Triangle, Triangle>> pairs;
   for (const Crossing& c : crossings_between(a.positions, a.triangles, b.positions, b.triangles))
@@ -30,7 +30,8 @@ TEST(Validator, Counts_the_same_pairs_as_the_exact_crossings_for_capsules_in_ran
   for (std::uint64_t trial = 0; trial < 40; ++trial) {
     const auto r = [&](std::uint64_t k) { return 2 * random_uniform({21, 0, 0, trial}, k) - 1; };
     const test::Shape a = test::capsule({-0.2, 0.01 * r(0), 0}, {0.2, 0.01 * r(1), 0.01 * r(2)}, 0.1);
-    const test::Shape b = test::capsule({0.2 * r(3), 0.3 * r(4), 0.3 * r(5)}, {0.2 * r(6), 0.3 * r(7), 0.3 * r(8)}, 0.04);
+    const test::Shape b =
+        test::capsule({0.2 * r(3), 0.3 * r(4), 0.3 * r(5)}, {0.2 * r(6), 0.3 * r(7), 0.3 * r(8)}, 0.04);
     const std::size_t ours = pairs_of_crossings(a, b);
     EXPECT_EQ(fcl_intersecting_pairs(a.positions, a.triangles, b.positions, b.triangles), ours) << trial;
     total += ours;

@@ -10,7 +10,8 @@ namespace {
 double awkward_sum() {
   return parallel_sum(100'003, 97, 0.0, [](std::size_t begin, std::size_t end) {
     double s = 0;
-    for (std::size_t i = begin; i < end; ++i) s += std::sin(static_cast<double>(i)) * std::pow(10.0, static_cast<double>(i % 17));
+    for (std::size_t i = begin; i < end; ++i)
+      s += std::sin(static_cast<double>(i)) * std::pow(10.0, static_cast<double>(i % 17));
     return s;
   });
 }

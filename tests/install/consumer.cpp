@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   if (!mesh) return std::fprintf(stderr, "%s\n", mesh.error().text().c_str()), 1;
   const auto triangles = ft::triangulate(*mesh);
   const auto crossings = ft::crossings_within(mesh->positions, triangles);
-  std::printf("%d vertices, %zu crossings, %zu fabrics, %zu formats\n", mesh->vertex_count(), crossings.size(), ft::fabrics().size(),
-              ft::cache_formats().size());
+  std::printf("%d vertices, %zu crossings, %zu fabrics, %zu formats\n", mesh->vertex_count(), crossings.size(),
+              ft::fabrics().size(), ft::cache_formats().size());
   return ft::fabrics().empty() || ft::cache_formats().empty() ? 1 : 0;
 }

@@ -1,16 +1,17 @@
 // Bodies built on motion capture: closed, evenly meshed, human-sized, and skinned without leaks between limbs.
+#include "io/import/body.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "io/import/body.h"
+#include "baker/core/mesh.h"
+#include "baker/core/random.h"
 #include "io/import/import.h"
 #include "io/import/import_cache.h"
 #include "io/import/surface_nets.h"
-#include "baker/core/mesh.h"
-#include "baker/core/random.h"
 #include "tests/support/assets.h"
 
 namespace ft {
@@ -30,17 +31,22 @@ bool is_closed(const std::vector<Triangle>& triangles) {
 double volume(const std::vector<Vec3>& p, const std::vector<Triangle>& triangles) {
   double v = 0;
   for (const Triangle& t : triangles)
-    v += p[static_cast<std::size_t>(t[0])].dot(p[static_cast<std::size_t>(t[1])].cross(p[static_cast<std::size_t>(t[2])])) / 6;
+    v += p[static_cast<std::size_t>(t[0])].dot(
+             p[static_cast<std::size_t>(t[1])].cross(p[static_cast<std::size_t>(t[2])])) /
+         6;
   return v;
 }
 
 /// Smallest angle of a triangle [deg].
 double least_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto angle = [](const Vec3& u, const Vec3& v) { return std::acos(std::clamp(u.dot(v) / (u.norm() * v.norm()), -1.0, 1.0)); };
+  const auto angle = [](const Vec3& u, const Vec3& v) {
+    return std::acos(std::clamp(u.dot(v) / (u.norm() * v.norm()), -1.0, 1.0));
+  };
   return std::min({angle(b - a, c - a), angle(a - b, c - b), angle(a - c, b - c)}) * 180 / M_PI;
 }
 
-const char* const k_bvh[] = {"cmu_01_playground/01_01.bvh", "animateddrawings_fair1_child/dab.bvh", "animateddrawings_cmu_jacks/jumping_jacks.bvh"};
+const char* const k_bvh[] = {"cmu_01_playground/01_01.bvh", "animateddrawings_fair1_child/dab.bvh",
+                             "animateddrawings_cmu_jacks/jumping_jacks.bvh"};
 
 TEST(Body, Is_closed_even_and_human_sized_and_stays_so_while_it_moves_slow) {
   for (const char* name : k_bvh) {
@@ -62,7 +68,8 @@ TEST(Body, Is_closed_even_and_human_sized_and_stays_so_while_it_moves_slow) {
     EXPECT_LT(litres, 80) << name;
     int slivers = 0;
     for (const Triangle& t : surface.triangles)
-      slivers += least_angle(p[static_cast<std::size_t>(t[0])], p[static_cast<std::size_t>(t[1])], p[static_cast<std::size_t>(t[2])]) < 15;
+      slivers += least_angle(p[static_cast<std::size_t>(t[0])], p[static_cast<std::size_t>(t[1])],
+                             p[static_cast<std::size_t>(t[2])]) < 15;
     EXPECT_LT(slivers, static_cast<int>(surface.triangles.size()) / 200) << name;
     for (const double time : {0.0, 1.0, 2.5}) {
       primary->trajectory->sample(time, p);
@@ -88,16 +95,19 @@ TEST(Body, Weights_do_not_leak_between_limbs_slow) {
     const auto limb = [&](int bone) {  // 1 left leg, 2 right leg, 3 left arm, 4 right arm below the shoulder, 0 others
       const std::string& n = c.nodes[static_cast<std::size_t>(mesh.bones[static_cast<std::size_t>(bone)].node)].name;
       const bool left = n.starts_with("L") || n.starts_with("l"), right = n.starts_with("R") || n.starts_with("r");
-      if (n.find("Leg") != std::string::npos || n.find("Foot") != std::string::npos || n.find("Knee") != std::string::npos || n.find("Ankle") != std::string::npos)
+      if (n.find("Leg") != std::string::npos || n.find("Foot") != std::string::npos ||
+          n.find("Knee") != std::string::npos || n.find("Ankle") != std::string::npos)
         return n.find("UpLeg") != std::string::npos ? 0 : left ? 1 : 2;
-      if (n.find("ForeArm") != std::string::npos || n.find("Hand") != std::string::npos || n.find("Elbow") != std::string::npos || n.find("Wrist") != std::string::npos)
+      if (n.find("ForeArm") != std::string::npos || n.find("Hand") != std::string::npos ||
+          n.find("Elbow") != std::string::npos || n.find("Wrist") != std::string::npos)
         return left ? 3 : right ? 4 : 0;
       return 0;
     };
     int of_limb[5] = {};
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       bool seen[5] = {};
-      for (int k = mesh.influence_start[v]; k < mesh.influence_start[v + 1]; ++k) seen[limb(mesh.influence_bone[static_cast<std::size_t>(k)])] = true;
+      for (int k = mesh.influence_start[v]; k < mesh.influence_start[v + 1]; ++k)
+        seen[limb(mesh.influence_bone[static_cast<std::size_t>(k)])] = true;
       EXPECT_LE(seen[1] + seen[2] + seen[3] + seen[4], 1) << name << " vertex " << v;
       EXPECT_FALSE((seen[3] || seen[4]) && (seen[1] || seen[2]));
       for (int l = 1; l < 5; ++l) of_limb[l] += seen[l];
@@ -116,8 +126,10 @@ TEST(Body, Capsules_are_closed_shells_one_for_each_bone) {
   const Surface& surface = primary->trajectory->surface();
   EXPECT_TRUE(is_closed(surface.triangles));
   for (const Triangle& t : surface.triangles) {
-    EXPECT_EQ(surface.part_of_vertex[static_cast<std::size_t>(t[0])], surface.part_of_vertex[static_cast<std::size_t>(t[1])]);
-    EXPECT_EQ(surface.part_of_vertex[static_cast<std::size_t>(t[0])], surface.part_of_vertex[static_cast<std::size_t>(t[2])]);
+    EXPECT_EQ(surface.part_of_vertex[static_cast<std::size_t>(t[0])],
+              surface.part_of_vertex[static_cast<std::size_t>(t[1])]);
+    EXPECT_EQ(surface.part_of_vertex[static_cast<std::size_t>(t[0])],
+              surface.part_of_vertex[static_cast<std::size_t>(t[2])]);
   }
 }
 
@@ -136,7 +148,8 @@ TEST(Surface_nets, Are_closed_for_any_field_once_sheets_are_apart) {
     for (int i = 0; i < 12 * 12 * 12; ++i) {
       const int x = i % 12, y = i / 12 % 12, z = i / 144;
       const bool border = x == 0 || y == 0 || z == 0 || x == 11 || y == 11 || z == 11;
-      grid.values.push_back(border ? 1 : random_uniform({seed}, static_cast<std::uint64_t>(i)) - 0.1 * static_cast<double>(seed % 9));
+      grid.values.push_back(
+          border ? 1 : random_uniform({seed}, static_cast<std::uint64_t>(i)) - 0.1 * static_cast<double>(seed % 9));
     }
     separate_sheets(grid);
     const NetSurface net = surface_nets(grid);

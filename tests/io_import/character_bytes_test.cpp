@@ -1,4 +1,5 @@
-// The bytes that the child process hands over and the import cache keeps: exact round trip, and every damage is refused.
+// The bytes that the child process hands over and the import cache keeps: exact round trip, and every damage is
+// refused.
 #include <gtest/gtest.h>
 
 #include "baker/core/random.h"
@@ -50,7 +51,8 @@ TEST(Character_bytes, Cut_at_any_byte_are_refused) {
 
 TEST(Character_bytes, With_any_bit_flipped_are_refused) {
   const Bytes bytes = save_character(small_character());
-  test::for_each_flipped_bit(bytes, [](const Bytes& damaged, std::size_t bit) { EXPECT_FALSE(load_character_bytes(damaged)) << bit; });
+  test::for_each_flipped_bit(
+      bytes, [](const Bytes& damaged, std::size_t bit) { EXPECT_FALSE(load_character_bytes(damaged)) << bit; });
 }
 
 /// What a hostile child could write: right hash, wrong content.

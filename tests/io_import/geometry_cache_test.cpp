@@ -1,4 +1,6 @@
 // Geometry caches as primaries: PC2, MDD, OBJ sequences; exact at the samples, smooth between, and refused when cut.
+#include "io/import/geometry_cache.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -6,7 +8,6 @@
 #include <cstdio>
 
 #include "baker/core/file.h"
-#include "io/import/geometry_cache.h"
 #include "io/import/import.h"
 #include "io/import/sampled_trajectory.h"
 #include "tests/support/assets.h"
@@ -17,11 +18,18 @@ namespace {
 constexpr const char* k_tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
 /// Vertex v of sample s: a cubic in time would not be reproduced by Catmull-Rom, a parabola is (inside).
-Vec3f place(int s, int v) { return {static_cast<float>(v + 0.25 * s * s), static_cast<float>(2 * v + s), static_cast<float>(v == 3)}; }
+Vec3f place(int s, int v) {
+  return {static_cast<float>(v + 0.25 * s * s), static_cast<float>(2 * v + s), static_cast<float>(v == 3)};
+}
 
 Bytes make_pc2(int points, int samples) {
   ByteWriter out;
-  out.write_raw("POINTCACHE2", 12).write(std::int32_t{1}).write(std::int32_t{points}).write(1001.0f).write(1.0f).write(std::int32_t{samples});
+  out.write_raw("POINTCACHE2", 12)
+      .write(std::int32_t{1})
+      .write(std::int32_t{points})
+      .write(1001.0f)
+      .write(1.0f)
+      .write(std::int32_t{samples});
   for (int s = 0; s < samples; ++s)
     for (int v = 0; v < points; ++v) {
       const Vec3f p = place(s, v);
@@ -32,7 +40,9 @@ Bytes make_pc2(int points, int samples) {
 
 Bytes make_mdd(int points, int samples, float step) {
   ByteWriter out;
-  const auto big = [&](std::uint32_t v) { out.write(static_cast<std::uint32_t>(v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24)); };
+  const auto big = [&](std::uint32_t v) {
+    out.write(static_cast<std::uint32_t>(v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24));
+  };
   big(static_cast<std::uint32_t>(samples)), big(static_cast<std::uint32_t>(points));
   for (int s = 0; s < samples; ++s) big(std::bit_cast<std::uint32_t>(step * static_cast<float>(s)));
   for (int s = 0; s < samples; ++s)
@@ -51,7 +61,8 @@ void expect_motion(const ImportRequest& request) {
   std::vector<Vec3> p(4);
   for (int s = 0; s < 5; ++s) {
     t.sample(s / 10.0, p);
-    for (int v = 0; v < 4; ++v) EXPECT_LT((p[static_cast<std::size_t>(v)] - place(s, v).cast<double>()).norm(), 1e-6) << s;
+    for (int v = 0; v < 4; ++v)
+      EXPECT_LT((p[static_cast<std::size_t>(v)] - place(s, v).cast<double>()).norm(), 1e-6) << s;
   }
   t.sample(0.25, p);  // between samples 2 and 3 the parabola is exact
   EXPECT_NEAR(p[1].x(), 1 + 0.25 * 2.5 * 2.5, 1e-6);
@@ -59,7 +70,8 @@ void expect_motion(const ImportRequest& request) {
   const Vec3 back = p[0] - place(0, 0).cast<double>();
   EXPECT_NEAR(back.y(), -0.5 * 0.4 * request.preroll * 10, 1e-5);
   EXPECT_LT((back - t.bind_to_start().translation()).norm(), 1e-12);
-  for (int v = 1; v < 4; ++v) EXPECT_LT((p[static_cast<std::size_t>(v)] - place(0, v).cast<double>() - back).norm(), 1e-12) << v;
+  for (int v = 1; v < 4; ++v)
+    EXPECT_LT((p[static_cast<std::size_t>(v)] - place(0, v).cast<double>() - back).norm(), 1e-12) << v;
   t.sample(99, p);
   EXPECT_LT((p[2] - place(4, 2).cast<double>()).norm(), 1e-6) << "held after the end";
 }
@@ -74,10 +86,12 @@ TEST(Geometry_cache, Pc2_mdd_and_obj_sequences_move_alike) {
     for (int v = 0; v < 4; ++v) {
       char line[120];
       const Vec3f p = place(s, v);
-      std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z()));
+      std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", static_cast<double>(p.x()), static_cast<double>(p.y()),
+                    static_cast<double>(p.z()));
       text += line;
     }
-    ASSERT_TRUE(write_text_durably(scratch / ("step_" + std::to_string(98 + s) + ".obj"), text + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"));
+    ASSERT_TRUE(write_text_durably(scratch / ("step_" + std::to_string(98 + s) + ".obj"),
+                                   text + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"));
   }
   ImportRequest request;
   request.unit_scale = 1, request.source_fps = 10;
@@ -103,7 +117,8 @@ TEST(Geometry_cache, Pc2_mdd_and_obj_sequences_move_alike) {
 
 TEST(Geometry_cache, Cut_at_any_byte_is_refused) {
   const test::ScratchFolder scratch;
-  for (const auto& [name, bytes] : {std::pair<const char*, Bytes>{"a.pc2", make_pc2(4, 3)}, {"a.mdd", make_mdd(4, 3, 0.1f)}}) {
+  for (const auto& [name, bytes] :
+       {std::pair<const char*, Bytes>{"a.pc2", make_pc2(4, 3)}, {"a.mdd", make_mdd(4, 3, 0.1f)}}) {
     ASSERT_TRUE(write_file_durably(scratch / name, bytes));
     ASSERT_TRUE(read_geometry_cache(scratch / name, {}, 24, false));
     for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -126,9 +141,12 @@ TEST(Geometry_cache, Lies_and_numbers_that_are_not_finite_are_refused) {
   const auto put = [](Bytes& b, std::size_t at, auto value) { std::memcpy(b.data() + at, &value, sizeof value); };
   EXPECT_FALSE(refused([](Bytes&) {}));
   EXPECT_TRUE(refused([&](Bytes& b) { put(b, 12, std::int32_t{2}); }));
-  for (const int points : {0, -1, 5, 2147483647, -2147483647}) EXPECT_TRUE(refused([&](Bytes& b) { put(b, 16, std::int32_t{points}); })) << points;
-  for (const int samples : {0, -1, 4, 2147483647}) EXPECT_TRUE(refused([&](Bytes& b) { put(b, 28, std::int32_t{samples}); })) << samples;
-  for (const float bad : {std::nanf(""), 1 / 0.0f, 2e9f}) EXPECT_TRUE(refused([&](Bytes& b) { put(b, 32 + 12 * 5 + 4, bad); }));
+  for (const int points : {0, -1, 5, 2147483647, -2147483647})
+    EXPECT_TRUE(refused([&](Bytes& b) { put(b, 16, std::int32_t{points}); })) << points;
+  for (const int samples : {0, -1, 4, 2147483647})
+    EXPECT_TRUE(refused([&](Bytes& b) { put(b, 28, std::int32_t{samples}); })) << samples;
+  for (const float bad : {std::nanf(""), 1 / 0.0f, 2e9f})
+    EXPECT_TRUE(refused([&](Bytes& b) { put(b, 32 + 12 * 5 + 4, bad); }));
   EXPECT_TRUE(refused([&](Bytes& b) { put(b, 24, std::nanf("")); }));
 }
 

@@ -1,12 +1,13 @@
-// However the importing process ends, the parent gets one clear Error that names the file. The misbehaving importers are in
-// main.cpp.
+// However the importing process ends, the parent gets one clear Error that names the file. The misbehaving importers
+// are in main.cpp.
+#include "io/import/import_child.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
 
 #include "baker/core/file.h"
 #include "io/import/import_cache.h"
-#include "io/import/import_child.h"
 #include "tests/support/assets.h"
 
 namespace ft {

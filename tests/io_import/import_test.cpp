@@ -1,4 +1,6 @@
 // import_primary() on real files: units, axes, heights, clips, mesh-less animation, parts; and what bad requests get.
+#include "io/import/import.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,17 +8,21 @@
 #include <map>
 
 #include "baker/core/file.h"
-#include "io/import/import.h"
 #include "tests/support/assets.h"
 
 namespace ft {
 namespace {
 
-std::filesystem::path character(const std::string& name) { return test::assets_root() / "characters" / name; }
-std::filesystem::path mocap(const std::string& name) { return test::assets_root() / "mocap" / name; }
+std::filesystem::path character(const std::string& name) {
+  return test::assets_root() / "characters" / name;
+}
+std::filesystem::path mocap(const std::string& name) {
+  return test::assets_root() / "mocap" / name;
+}
 
 bool has_note(const CharacterInfo& info, const std::string& words) {
-  return std::any_of(info.notes.begin(), info.notes.end(), [&](const std::string& n) { return n.find(words) != std::string::npos; });
+  return std::any_of(info.notes.begin(), info.notes.end(),
+                     [&](const std::string& n) { return n.find(words) != std::string::npos; });
 }
 
 std::vector<Vec3> bind_positions(const Trajectory& t) {
@@ -40,16 +46,19 @@ int open_edges(const Surface& surface) {
 
 struct Good {
   const char* file;
-  double unit_scale;   // 0: as the file says
-  double height;       // m
-  int vertices;        // after welding
+  double unit_scale;  // 0: as the file says
+  double height;      // m
+  int vertices;       // after welding
   bool closed;
 };
 
 TEST(Import, Real_characters_arrive_in_metres_and_upright) {
-  const Good all[] = {{"cesium_man/cesium_man.gltf", 0, 1.507, 2338, true}, {"robot_expressive/RobotExpressive.glb", 1, 4.461, 1820, false},
-                      {"quaternius_base_human/human-base-animations.glb", 0, 1.830, 7474, false}, {"m2m_horse/horse-animations.glb", 0, 2.035, 1709, true},
-                      {"kaykit_mannequin/manny_med_mod.gltf", 0, 2.207, 3417, false}, {"ozz_pab_fbx/skeleton.fbx", 0, 1.828, 1415, false},
+  const Good all[] = {{"cesium_man/cesium_man.gltf", 0, 1.507, 2338, true},
+                      {"robot_expressive/RobotExpressive.glb", 1, 4.461, 1820, false},
+                      {"quaternius_base_human/human-base-animations.glb", 0, 1.830, 7474, false},
+                      {"m2m_horse/horse-animations.glb", 0, 2.035, 1709, true},
+                      {"kaykit_mannequin/manny_med_mod.gltf", 0, 2.207, 3417, false},
+                      {"ozz_pab_fbx/skeleton.fbx", 0, 1.828, 1415, false},
                       {"mh_adult_cmu_dressed/adult_cmu01.glb", 0, 1.605, 13380, true}};
   for (const Good& good : all) {
     ImportRequest request;
@@ -73,10 +82,14 @@ TEST(Import, Real_characters_arrive_in_metres_and_upright) {
       EXPECT_GT(members[p], 0) << good.file << " " << surface.parts[p].name;
       EXPECT_GT(surface.parts[p].size, 0);
       int steps = 0;
-      for (int up = static_cast<int>(p); up >= 0 && steps < 100; up = surface.parts[static_cast<std::size_t>(up)].parent) ++steps;
+      for (int up = static_cast<int>(p); up >= 0 && steps < 100;
+           up = surface.parts[static_cast<std::size_t>(up)].parent)
+        ++steps;
       EXPECT_LT(steps, 100) << "parents form a circle";
     }
-    EXPECT_EQ(std::count_if(surface.parts.begin(), surface.parts.end(), [](const SurfacePart& p) { return p.parent < 0; }), 1) << good.file;
+    EXPECT_EQ(
+        std::count_if(surface.parts.begin(), surface.parts.end(), [](const SurfacePart& p) { return p.parent < 0; }), 1)
+        << good.file;
   }
 }
 
@@ -88,7 +101,8 @@ TEST(Import, A_hand_is_one_part_and_fingers_belong_to_it) {
   ASSERT_TRUE(primary) << primary.error().text();
   std::map<std::string, std::string> parent;
   const auto& parts = primary->trajectory->surface().parts;
-  for (const SurfacePart& p : parts) parent[p.name] = p.parent < 0 ? "" : parts[static_cast<std::size_t>(p.parent)].name;
+  for (const SurfacePart& p : parts)
+    parent[p.name] = p.parent < 0 ? "" : parts[static_cast<std::size_t>(p.parent)].name;
   EXPECT_EQ(parent["DEF-hand.L"], "DEF-forearm.L");
   EXPECT_EQ(parent["DEF-thigh.R"], "DEF-hips");
   for (const auto& [name, above] : parent) EXPECT_EQ(name.find("finger"), std::string::npos) << name;
@@ -127,7 +141,8 @@ TEST(Import, A_character_of_175_m_is_told_its_unit) {
   auto refused = import_primary(request);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().text().find("150.7 m tall"), std::string::npos) << refused.error().text();
-  EXPECT_NE(refused.error().text().find("unit_scale = 0.01 makes it 1.51 m"), std::string::npos) << refused.error().text();
+  EXPECT_NE(refused.error().text().find("unit_scale = 0.01 makes it 1.51 m"), std::string::npos)
+      << refused.error().text();
   request.unit_scale = 0.01;
   auto accepted = import_primary(request);
   ASSERT_TRUE(accepted) << accepted.error().text();
@@ -141,7 +156,8 @@ TEST(Import, A_bvh_is_sized_and_turned_by_guess_and_says_so) {
     const char* up;
     double least, most;
   };
-  for (const Case& c : {Case{"cmu_01_playground/01_01.bvh", 0.05644, "y", 1.5, 1.7}, Case{"animateddrawings_cmu_jacks/jumping_jacks.bvh", 0.05644, "y", 1.5, 1.7},
+  for (const Case& c : {Case{"cmu_01_playground/01_01.bvh", 0.05644, "y", 1.5, 1.7},
+                        Case{"animateddrawings_cmu_jacks/jumping_jacks.bvh", 0.05644, "y", 1.5, 1.7},
                         Case{"animateddrawings_fair1_child/dab.bvh", 0.0254, "z", 1.1, 1.3}}) {
     ImportRequest request;
     request.file = mocap(c.file);
@@ -192,7 +208,8 @@ TEST(Import, A_clip_that_does_not_exist_is_answered_with_those_that_do) {
   EXPECT_EQ(exit_code(primary.error().kind), 2);
   const std::string text = primary.error().text();
   EXPECT_NE(text.find("did you mean \"Walking\""), std::string::npos) << text;
-  for (const char* name : {"Dance", "ThumbsUp", "WalkJump", "Yes"}) EXPECT_NE(text.find(name), std::string::npos) << text;
+  for (const char* name : {"Dance", "ThumbsUp", "WalkJump", "Yes"})
+    EXPECT_NE(text.find(name), std::string::npos) << text;
   request.clip.clear();
   primary = import_primary(request);
   ASSERT_TRUE(primary);
@@ -210,7 +227,8 @@ TEST(Import, A_shot_that_leaves_the_clip_is_refused_with_the_clips_length) {
   auto refused = import_primary(request);
   ASSERT_FALSE(refused);
   EXPECT_EQ(exit_code(refused.error().kind), 2);
-  EXPECT_NE(refused.error().text().find("2.000 s long (49 frames of this shot)"), std::string::npos) << refused.error().text();
+  EXPECT_NE(refused.error().text().find("2.000 s long (49 frames of this shot)"), std::string::npos)
+      << refused.error().text();
   request.duration = 1, request.speed = 2.1;
   EXPECT_FALSE(import_primary(request));
   request.speed = 0.5, request.clip_start = 1.4;
@@ -226,7 +244,8 @@ TEST(Import, A_first_key_that_is_not_at_0_is_where_the_clip_starts) {
   request.clip = "Run";
   auto primary = import_primary(request);
   ASSERT_TRUE(primary);
-  const auto run = std::find_if(primary->info.clips.begin(), primary->info.clips.end(), [](const ClipInfo& c) { return c.name == "Run"; });
+  const auto run = std::find_if(primary->info.clips.begin(), primary->info.clips.end(),
+                                [](const ClipInfo& c) { return c.name == "Run"; });
   ASSERT_NE(run, primary->info.clips.end());
   EXPECT_NEAR(run->start, 1.0 / 30, 1e-6);
   const auto a = positions(*primary->trajectory, 0), b = positions(*primary->trajectory, 0.02);

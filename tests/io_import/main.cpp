@@ -1,5 +1,5 @@
-// The importing child process of these tests is this very executable. Files with the endings below stand for importers that go
-// wrong in each way a process can.
+// The importing child process of these tests is this very executable. Files with the endings below stand for importers
+// that go wrong in each way a process can.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>

@@ -1,4 +1,6 @@
 // Keys, interpolation, decomposition: closed forms.
+#include "io/import/pose.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 #include "baker/core/random.h"
 #include "io/import/character.h"
 #include "io/import/character_trajectory.h"
-#include "io/import/pose.h"
 
 namespace ft {
 namespace {
@@ -43,7 +44,8 @@ TEST(Track, Steps_stay_steps) {
 TEST(Track, Cubic_keys_reproduce_a_cubic) {
   // f = t^3 - 2t, f' = 3t^2 - 2, with in-tangent, value, out-tangent at uneven keys.
   Track track{Interpolation::k_cubic, 1, {0, 0.4, 1.7}, {}};
-  for (const double t : track.times) track.values.insert(track.values.end(), {3 * t * t - 2, t * t * t - 2 * t, 3 * t * t - 2});
+  for (const double t : track.times)
+    track.values.insert(track.values.end(), {3 * t * t - 2, t * t * t - 2 * t, 3 * t * t - 2});
   for (double t = 0; t <= 1.7; t += 0.01) EXPECT_NEAR(sample1(track, t), t * t * t - 2 * t, 1e-13);
 }
 
@@ -90,7 +92,8 @@ TEST(Decompose, Finds_rotation_and_scale_apart) {
 
 TEST(Heading, Is_the_turn_about_the_vertical) {
   for (const double yaw : {-3.0, -1.0, 0.0, 0.7, 3.1}) {
-    const Mat3 turned = (Eigen::AngleAxisd(yaw, Vec3::UnitY()) * Eigen::AngleAxisd(0.4, Vec3::UnitX())).toRotationMatrix();
+    const Mat3 turned =
+        (Eigen::AngleAxisd(yaw, Vec3::UnitY()) * Eigen::AngleAxisd(0.4, Vec3::UnitX())).toRotationMatrix();
     EXPECT_NEAR(std::remainder(heading(turned) - yaw, 2 * M_PI), 0, 1e-12);
   }
   EXPECT_EQ(heading(Eigen::AngleAxisd(M_PI, Vec3::UnitX()).toRotationMatrix()), 0);

@@ -1,5 +1,5 @@
-// Any file in ends in a character or a named error, within the limits, and nothing that is not finite gets through: Debian's
-// assimp-testmodels (malformed ones among them), and seeded mutations and cuts of good files.
+// Any file in ends in a character or a named error, within the limits, and nothing that is not finite gets through:
+// Debian's assimp-testmodels (malformed ones among them), and seeded mutations and cuts of good files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,8 @@ void try_file(const std::filesystem::path& file, double seconds, Tally& tally) {
       ++tally.stopped;
       std::printf("  stopped: %s\n", error.text().c_str());
     }
-    // Neither a refusal nor a crash: something that escaped in the child, or a sanitizer's report (then it stands above).
+    // Neither a refusal nor a crash: something that escaped in the child, or a sanitizer's report (then it stands
+    // above).
     if (error.what.find("ended with code") != std::string::npos) tally.faults.push_back(error.text());
     if (error.where.empty() || error.what.empty()) tally.faults.push_back("no name in: " + error.text());
     return;
@@ -64,7 +65,8 @@ void try_file(const std::filesystem::path& file, double seconds, Tally& tally) {
 }
 
 void report(const char* what, const Tally& tally) {
-  std::printf("  %s: %d loaded, %d refused (%d of them crashed or timed out in the child)\n", what, tally.loaded, tally.refused, tally.stopped);
+  std::printf("  %s: %d loaded, %d refused (%d of them crashed or timed out in the child)\n", what, tally.loaded,
+              tally.refused, tally.stopped);
   for (const std::string& fault : tally.faults) ADD_FAILURE() << fault;
 }
 
@@ -107,11 +109,16 @@ Bytes mutate(Bytes bytes, std::uint64_t seed) {
 TEST(Robustness, Mutated_good_files_load_or_are_refused_slow) {
   const auto characters = test::assets_root() / "characters";
   const auto models = test::assimp_models_root();
-  const std::filesystem::path good[] = {
-      characters / "cesium_man/cesium_man.gltf",   characters / "robot_expressive/RobotExpressive.glb", characters / "m2m_horse/horse-animations.glb",
-      characters / "ozz_pab_fbx/skeleton.fbx",     characters / "ozz_pab_fbx/skeleton.dae",             models / "FBX/huesitos.fbx",
-      models / "glTF2/RiggedSimple-glTF-Binary/RiggedSimple.glb", test::assets_root() / "mocap/animateddrawings_cmu_jacks/jumping_jacks.bvh",
-      models / "X/anim_test.x", models / "MD5/SimpleCube.md5mesh"};
+  const std::filesystem::path good[] = {characters / "cesium_man/cesium_man.gltf",
+                                        characters / "robot_expressive/RobotExpressive.glb",
+                                        characters / "m2m_horse/horse-animations.glb",
+                                        characters / "ozz_pab_fbx/skeleton.fbx",
+                                        characters / "ozz_pab_fbx/skeleton.dae",
+                                        models / "FBX/huesitos.fbx",
+                                        models / "glTF2/RiggedSimple-glTF-Binary/RiggedSimple.glb",
+                                        test::assets_root() / "mocap/animateddrawings_cmu_jacks/jumping_jacks.bvh",
+                                        models / "X/anim_test.x",
+                                        models / "MD5/SimpleCube.md5mesh"};
   const test::ScratchFolder scratch;
   Tally tally;
   int tried = 0;

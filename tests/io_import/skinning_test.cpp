@@ -1,5 +1,5 @@
-// Positions against an independent evaluator (three.js r166, reference/skinning): every stride-th vertex of every mesh at five
-// times of a clip.
+// Positions against an independent evaluator (three.js r166, reference/skinning): every stride-th vertex of every mesh
+// at five times of a clip.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,8 @@ struct Case {
 class Skinning : public ::testing::TestWithParam<Case> {};
 
 /// World positions of one mesh in the file's own vertex order, straight from the definition.
-std::vector<Vec3> evaluate(const Character& c, const CharacterMesh& mesh, const std::vector<Mat4>& globals, const double* morphs) {
+std::vector<Vec3> evaluate(const Character& c, const CharacterMesh& mesh, const std::vector<Mat4>& globals,
+                           const double* morphs) {
   std::vector<Vec3> out;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     Vec3 base = mesh.positions[v];
@@ -37,7 +38,8 @@ std::vector<Vec3> evaluate(const Character& c, const CharacterMesh& mesh, const 
     else
       for (int k = mesh.influence_start[v]; k < mesh.influence_start[v + 1]; ++k) {
         const SkinBone& bone = mesh.bones[static_cast<std::size_t>(mesh.influence_bone[static_cast<std::size_t>(k)])];
-        move(globals[static_cast<std::size_t>(bone.node)] * bone.inverse_bind, mesh.influence_weight[static_cast<std::size_t>(k)]);
+        move(globals[static_cast<std::size_t>(bone.node)] * bone.inverse_bind,
+             mesh.influence_weight[static_cast<std::size_t>(k)]);
       }
     out.push_back(sum);
   }
@@ -81,7 +83,9 @@ TEST_P(Skinning, Agrees_with_three_js_to_1e_minus_5_of_the_height) {
     pose.sample(time, locals, morphs);
     globals_from_locals(c.nodes, locals, globals);
     std::vector<std::vector<Vec3>> mine;
-    for (const CharacterMesh& mesh : c.meshes) mine.push_back(evaluate(c, mesh, globals, morphs.data() + pose.morph_start()[static_cast<std::size_t>(mesh.node)]));
+    for (const CharacterMesh& mesh : c.meshes)
+      mine.push_back(
+          evaluate(c, mesh, globals, morphs.data() + pose.morph_start()[static_cast<std::size_t>(mesh.node)]));
 
     // Three's meshes come in another order: pair by vertex count and least distance.
     std::vector<char> taken(mine.size(), 0);
@@ -95,7 +99,9 @@ TEST_P(Skinning, Agrees_with_three_js_to_1e_minus_5_of_the_height) {
         if (taken[m] || mine[m].size() != theirs["mesh_vertex_count"].get<std::size_t>()) continue;
         double far = 0;
         for (std::size_t k = 0; 3 * k + 2 < p.size(); ++k)
-          far = std::max(far, (mine[m].at(k * static_cast<std::size_t>(stride)) - Vec3(p[3 * k], p[3 * k + 1], p[3 * k + 2])).norm());
+          far = std::max(
+              far,
+              (mine[m].at(k * static_cast<std::size_t>(stride)) - Vec3(p[3 * k], p[3 * k + 1], p[3 * k + 2])).norm());
         if (far < best) best = far, who = m;
       }
       ASSERT_LT(best, 1e300) << "no mesh of this size";
@@ -106,7 +112,11 @@ TEST_P(Skinning, Agrees_with_three_js_to_1e_minus_5_of_the_height) {
     // And what the trajectory walks, welded, is the same surface.
     deform(skin, Mat4::Identity(), globals, morphs, welded);
     for (std::size_t i = 0; i < welded.size(); ++i)
-      worst_welded = std::max(worst_welded, (welded[i] - mine[static_cast<std::size_t>(skin.origins[i].mesh)][static_cast<std::size_t>(skin.origins[i].vertex)]).norm());
+      worst_welded = std::max(
+          worst_welded,
+          (welded[i] -
+           mine[static_cast<std::size_t>(skin.origins[i].mesh)][static_cast<std::size_t>(skin.origins[i].vertex)])
+              .norm());
   }
   RecordProperty("worst_over_height", std::to_string(worst / height));
   std::printf("  %-40s %.2e of the height (%.3f)\n", GetParam().reference, worst / height, height);
@@ -115,11 +125,14 @@ TEST_P(Skinning, Agrees_with_three_js_to_1e_minus_5_of_the_height) {
 }
 
 INSTANTIATE_TEST_SUITE_P(References, Skinning,
-                         ::testing::Values(Case{"cesium_man", "cesium_man"}, Case{"horse_Rear", "m2m_horse"}, Case{"horse_Run", "m2m_horse"},
+                         ::testing::Values(Case{"cesium_man", "cesium_man"}, Case{"horse_Rear", "m2m_horse"},
+                                           Case{"horse_Run", "m2m_horse"},
                                            Case{"mh_adult_01_01_forward_jumps_turn", "mh_adult_cmu_dressed"},
                                            Case{"mh_adult_01_03_climb_hang_swing", "mh_adult_cmu_dressed"},
-                                           Case{"quaternius_Dance_Loop", "quaternius_base_human"}, Case{"quaternius_Jog_Fwd_Loop", "quaternius_base_human"},
-                                           Case{"quaternius_Roll", "quaternius_base_human"}, Case{"robot_Dance", "robot_expressive"},
+                                           Case{"quaternius_Dance_Loop", "quaternius_base_human"},
+                                           Case{"quaternius_Jog_Fwd_Loop", "quaternius_base_human"},
+                                           Case{"quaternius_Roll", "quaternius_base_human"},
+                                           Case{"robot_Dance", "robot_expressive"},
                                            Case{"robot_WalkJump", "robot_expressive"}),
                          [](const auto& one) { return one.param.reference; });
 

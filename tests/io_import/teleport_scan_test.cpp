@@ -1,11 +1,13 @@
-// What counts as a teleport: jumps without a motion that leads there; and what never does: everything quick that bodies really do.
+// What counts as a teleport: jumps without a motion that leads there; and what never does: everything quick that bodies
+// really do.
+#include "io/import/teleport_scan.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 #include <numbers>
 
-#include "io/import/teleport_scan.h"
 #include "io/import/import.h"
 #include "tests/support/assets.h"
 #include "tests/support/scripted_body.h"
@@ -15,7 +17,9 @@ namespace {
 
 using Path = std::function<Eigen::Isometry3d(double)>;
 
-Eigen::Isometry3d placed(const Vec3& to, double turn = 0) { return Eigen::Translation3d(to) * Eigen::AngleAxisd(turn, Vec3::UnitY()); }
+Eigen::Isometry3d placed(const Vec3& to, double turn = 0) {
+  return Eigen::Translation3d(to) * Eigen::AngleAxisd(turn, Vec3::UnitY());
+}
 
 /// A body of 1.8 m: trunk, head, and one leg that goes its own way beside it. Times are s from the first frame.
 ScriptedBody person(const Path& trunk, const Path& leg) {
@@ -55,10 +59,12 @@ void expect_nothing(const TeleportScan& found, const std::string& what) {
 TEST(TeleportScan, finds_a_jump_of_3_m_and_measures_it_exactly) {
   const auto jump = placed(Vec3(3, 0, 0));
   for (const double speed : {0.0, 4.0}) {
-    const auto found = scan([&](double t) { return (t > 0.79 ? jump : Eigen::Isometry3d::Identity()) * placed(Vec3(0, 0, speed * t)); });
+    const auto found = scan(
+        [&](double t) { return (t > 0.79 ? jump : Eigen::Isometry3d::Identity()) * placed(Vec3(0, 0, speed * t)); });
     ASSERT_EQ(found.teleports.size(), 1u);
     EXPECT_EQ(found.teleports[0].frame, 1021);
-    EXPECT_LT((found.teleports[0].motion.matrix() - jump.matrix()).norm(), 1e-12) << "the walk goes on, the jump is only the jump";
+    EXPECT_LT((found.teleports[0].motion.matrix() - jump.matrix()).norm(), 1e-12)
+        << "the walk goes on, the jump is only the jump";
     EXPECT_NEAR(found.distances[0], 3, 1e-12);
     EXPECT_TRUE(found.part_jumps.empty());
     EXPECT_EQ(found.teleports[0].velocity_change, Vec3::Zero());
@@ -91,7 +97,8 @@ TEST(TeleportScan, finds_a_flicker_in_both_directions) {
 }
 
 TEST(TeleportScan, gives_the_velocity_of_a_cut_into_another_motion) {
-  const auto found = scan([](double t) { return t > 0.79 ? placed(Vec3(5 + 6 * (t - 0.8), 0, 0)) : Eigen::Isometry3d::Identity(); });
+  const auto found =
+      scan([](double t) { return t > 0.79 ? placed(Vec3(5 + 6 * (t - 0.8), 0, 0)) : Eigen::Isometry3d::Identity(); });
   ASSERT_EQ(found.teleports.size(), 1u);
   EXPECT_LT((found.teleports[0].velocity_change - Vec3(6, 0, 0)).norm(), 1e-9);
 }
@@ -110,11 +117,17 @@ TEST(TeleportScan, says_which_part_jumps_when_the_body_does_not) {
 TEST(TeleportScan, does_not_take_quick_motion_for_a_teleport) {
   for (const double fps : {12.0, 24.0, 25.0, 30.0, 60.0, 120.0}) {
     // A foot that swings through 1.2 m and is 16 m/s fast in the middle, forth and back.
-    const auto kick = [](double t) { return placed(Vec3(0, 0, 0.6 * std::sin(16 / 0.6 * std::clamp(t - 0.5, 0.0, 0.4712)))); };
+    const auto kick = [](double t) {
+      return placed(Vec3(0, 0, 0.6 * std::sin(16 / 0.6 * std::clamp(t - 0.5, 0.0, 0.4712))));
+    };
     expect_nothing(scan(still(), kick, fps), "kick");
     // 12 m/s from a standing start of one frame, and dead stop against a wall.
-    expect_nothing(scan([](double t) { return placed(Vec3(12 * std::clamp(t - 0.3, 0.0, 0.5), 0, 0)); }, still(), fps), "run into a wall");
-    expect_nothing(scan([](double t) { return placed(Vec3(0, -0.5 * 9.81 * std::pow(std::clamp(t - 0.2, 0.0, 1.0), 2), 0)); }, still(), fps), "fall of 5 m");
+    expect_nothing(scan([](double t) { return placed(Vec3(12 * std::clamp(t - 0.3, 0.0, 0.5), 0, 0)); }, still(), fps),
+                   "run into a wall");
+    expect_nothing(
+        scan([](double t) { return placed(Vec3(0, -0.5 * 9.81 * std::pow(std::clamp(t - 0.2, 0.0, 1.0), 2), 0)); },
+             still(), fps),
+        "fall of 5 m");
     expect_nothing(scan([](double t) { return placed(Vec3(50 * t, 0, 0)); }, still(), fps), "in a car");
     expect_nothing(scan([](double t) { return placed(Vec3::Zero(), 36 * t); }, still(), fps), "pirouette");
     expect_nothing(scan([](double t) { return placed(Vec3(t > 0.79 ? 0.05 : 0, 0, 0)); }, still(), fps), "cut of 5 cm");
@@ -137,15 +150,17 @@ TEST(TeleportScan, obeys_who_knows_better) {
 TEST(TeleportScan, finds_none_in_recorded_and_drawn_motion_slow) {
   const auto root = test::assets_root();
   int looked_at = 0;
-  const auto look = [&](const std::filesystem::path& file, const std::filesystem::path& animation, const std::string& name, double start,
-                        double duration, double height) {
+  const auto look = [&](const std::filesystem::path& file, const std::filesystem::path& animation,
+                        const std::string& name, double start, double duration, double height) {
     ImportRequest request;
-    request.file = file, request.animation = animation, request.clip = name, request.height = height, request.clip_start = start, request.duration = duration;
+    request.file = file, request.animation = animation, request.clip = name, request.height = height,
+    request.clip_start = start, request.duration = duration;
     request.body = "capsules", request.preroll = 1, request.shot_fps = 25;
     auto primary = import_primary(request);
     ASSERT_TRUE(primary) << file << " " << name << ": " << primary.error().text();
     TeleportScanSettings settings;
-    settings.first_frame = 1, settings.last_frame = 1 + static_cast<int>(duration * 25), settings.fps = 25, settings.preroll_frames = 25;
+    settings.first_frame = 1, settings.last_frame = 1 + static_cast<int>(duration * 25), settings.fps = 25,
+    settings.preroll_frames = 25;
     expect_nothing(scan_teleports(*primary->trajectory, settings), file.filename().string() + " " + name);
     ++looked_at;
   };
@@ -154,17 +169,21 @@ TEST(TeleportScan, finds_none_in_recorded_and_drawn_motion_slow) {
     if (std::filesystem::exists(root / folder))
       for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
         const auto extension = entry.path().extension();
-        if (extension == ".glb" || extension == ".gltf" || extension == ".bvh" || extension == ".fbx") files.push_back(entry.path());
+        if (extension == ".glb" || extension == ".gltf" || extension == ".bvh" || extension == ".fbx")
+          files.push_back(entry.path());
       }
   std::sort(files.begin(), files.end());
-  std::map<std::filesystem::path, std::filesystem::path> wearer;  // folder -> its character, for files that hold motion only
+  std::map<std::filesystem::path, std::filesystem::path>
+      wearer;  // folder -> its character, for files that hold motion only
   for (const auto& file : files)
-    if (const auto info = inspect_character(file); info && info->triangle_count > 0) wearer.try_emplace(file.parent_path(), file);
+    if (const auto info = inspect_character(file); info && info->triangle_count > 0)
+      wearer.try_emplace(file.parent_path(), file);
   for (const auto& file : files) {
     const auto info = inspect_character(file);
     if (!info) continue;
     // Recordings begin with a calibration pose that nobody walks out of.
-    const bool recorded = file.string().find("cmu") != std::string::npos || file.string().find("fair1") != std::string::npos;
+    const bool recorded =
+        file.string().find("cmu") != std::string::npos || file.string().find("fair1") != std::string::npos;
     const double start = recorded ? 0.2 : 0, height = info->bind_bounds.size().y() > 4 ? 1.7 : 0;
     const bool bvh = file.extension() == ".bvh", alone = bvh || info->triangle_count > 0;
     if (!alone && !wearer.contains(file.parent_path())) continue;
@@ -184,7 +203,9 @@ TEST(TeleportScan, finds_none_in_recorded_and_drawn_motion_slow) {
     request.file = calibrated, request.clip = "01_03_climb_hang_swing", request.duration = 1;
     auto primary = import_primary(request);
     ASSERT_TRUE(primary);
-    const auto found = scan_teleports(*primary->trajectory, {.first_frame = 1, .last_frame = 25, .preroll_frames = 25, .fps = 25, .detect = true, .frames = {}});
+    const auto found = scan_teleports(
+        *primary->trajectory,
+        {.first_frame = 1, .last_frame = 25, .preroll_frames = 25, .fps = 25, .detect = true, .frames = {}});
     ASSERT_EQ(found.teleports.size(), 1u) << "out of its calibration pose it turns by 108 degrees in a frame";
     EXPECT_EQ(found.teleports[0].frame, 2);
   }

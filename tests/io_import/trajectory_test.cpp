@@ -1,5 +1,5 @@
-// The Trajectory's promises: pre-roll from the placed bind pose to the first frame, continuity, thread safety; FBX against the
-// same clip as Collada; BVH against forward kinematics written here.
+// The Trajectory's promises: pre-roll from the placed bind pose to the first frame, continuity, thread safety; FBX
+// against the same clip as Collada; BVH against forward kinematics written here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,9 +38,11 @@ Vec3 middle(const std::vector<Vec3>& p) {
 std::vector<ImportRequest> requests() {
   std::vector<ImportRequest> out(4);
   const auto root = test::assets_root();
-  out[0].file = root / "characters/mh_adult_cmu_dressed/adult_cmu01.glb", out[0].clip = "01_03_climb_hang_swing", out[0].clip_start = 20;
+  out[0].file = root / "characters/mh_adult_cmu_dressed/adult_cmu01.glb", out[0].clip = "01_03_climb_hang_swing",
+  out[0].clip_start = 20;
   out[1].file = root / "mocap/cmu_01_playground/01_01.bvh", out[1].clip_start = 9, out[1].body = "capsules";
-  out[2].file = root / "characters/ozz_pab_fbx/skeleton.fbx", out[2].animation = root / "characters/ozz_pab_fbx/run.fbx", out[2].clip_start = 0.3;
+  out[2].file = root / "characters/ozz_pab_fbx/skeleton.fbx",
+  out[2].animation = root / "characters/ozz_pab_fbx/run.fbx", out[2].clip_start = 0.3;
   out[3].file = root / "mocap/animateddrawings_fair1_child/dab.bvh", out[3].clip_start = 1, out[3].body = "capsules";
   for (ImportRequest& r : out) r.preroll = 1.5;
   return out;
@@ -73,7 +75,8 @@ TEST(Preroll, Starts_at_the_placed_bind_pose_and_ends_in_the_first_frame) {
     EXPECT_LT((t.bind_to_start().linear() * Vec3::UnitY() - Vec3::UnitY()).norm(), 1e-12);
     // The body stays where it is while it takes the pose.
     const auto taken = positions(t, -0.6);
-    for (double time = -1.5; time <= -0.6; time += 0.05) EXPECT_LT((middle(positions(t, time)) - middle(taken)).norm(), 0.35) << request.file << time;
+    for (double time = -1.5; time <= -0.6; time += 0.05)
+      EXPECT_LT((middle(positions(t, time)) - middle(taken)).norm(), 0.35) << request.file << time;
     // No jumps: the fastest moment of a smooth step over 0.9 s is 1.5 / 0.9 of the mean.
     auto before = positions(t, -1.5);
     for (double time = -1.49; time < 0; time += 0.01) {
@@ -91,7 +94,9 @@ TEST(Preroll, Ends_with_the_speed_that_the_shot_begins_with) {
   ASSERT_TRUE(primary) << primary.error().text();
   const Trajectory& t = *primary->trajectory;
   const double h = 1.0 / 120;
-  const auto speed = [&](double time) -> Vec3 { return (middle(positions(t, time + h)) - middle(positions(t, time))) / h; };
+  const auto speed = [&](double time) -> Vec3 {
+    return (middle(positions(t, time + h)) - middle(positions(t, time))) / h;
+  };
   EXPECT_GT(speed(0).norm(), 2.0);
   EXPECT_LT((speed(-h) - speed(0)).norm(), 0.15 * speed(0).norm());
   EXPECT_LT(speed(-0.6).norm(), 0.05 * speed(0).norm());
@@ -223,7 +228,8 @@ std::map<std::string, Vec3> bvh_places(const std::filesystem::path& file, int fr
 }
 
 TEST(Formats, Bvh_joints_are_where_forward_kinematics_puts_them) {
-  for (const char* name : {"cmu_01_playground/01_01.bvh", "animateddrawings_fair1_child/dab.bvh", "animateddrawings_cmu_jacks/jumping_jacks.bvh"}) {
+  for (const char* name : {"cmu_01_playground/01_01.bvh", "animateddrawings_fair1_child/dab.bvh",
+                           "animateddrawings_cmu_jacks/jumping_jacks.bvh"}) {
     const auto file = test::assets_root() / "mocap" / name;
     FT_REQUIRE_FILE(file);
     auto loaded = load_character(file, {}, {});

@@ -22,7 +22,8 @@ std::string fault_of(const std::string& lines) {
 }
 
 TEST(SewingMesh, Stitches_count_from_0_and_seams_number_them) {
-  const auto mesh = parse_obj(k_panels + "seam 2\nstitch 1 4 7 0.25\nstitch 2 7 4 1.0e+000\nseam 1\nstitch 0 5 # a pair\n", "x.obj");
+  const auto mesh =
+      parse_obj(k_panels + "seam 2\nstitch 1 4 7 0.25\nstitch 2 7 4 1.0e+000\nseam 1\nstitch 0 5 # a pair\n", "x.obj");
   ASSERT_TRUE(mesh.ok()) << mesh.error().text();
   const std::vector<Stitch> expected{{1, {4, 7}, 0.25, 0}, {2, {7, 4}, 1, 0}, {0, {5, 5}, 0, 1}};
   EXPECT_EQ(mesh->stitches, expected);
@@ -59,7 +60,8 @@ TEST(SewingMesh, Broken_stitches_are_named_with_their_line) {
 }
 
 TEST(SewingMesh, Stitches_that_sew_nothing_are_refused_in_one_message) {
-  EXPECT_NE(fault_of("stitch 1 1\nstitch 1 4 1 0.5\n").find("2 stitches sew (1, 2) a vertex to itself"), std::string::npos);
+  EXPECT_NE(fault_of("stitch 1 1\nstitch 1 4 1 0.5\n").find("2 stitches sew (1, 2) a vertex to itself"),
+            std::string::npos);
   EXPECT_NE(fault_of("v 9 9 9\nstitch 1 8\n").find("1 stitch sews (1) a vertex that no face uses"), std::string::npos);
   std::string many;
   for (int i = 0; i < 5000; ++i) many += "stitch 1 4 7 " + std::to_string(i / 5000.0) + "\n";

@@ -16,7 +16,8 @@ TEST_F(ShotFile, Maps_are_read_in_a_list_or_as_sections) {
   ASSERT_TRUE(write_text_durably(folder_ / "cape.csv", "x").ok());
   std::string text = k_good;
   text.replace(text.find(k_pin_line), std::string(k_pin_line).size(),
-               "maps = [ { of = \"thickness\", from = \"red\", low = 1e-3, high = 4e-3 }, { of = \"mass_per_area\", file = \"cape.csv\" } ]\n"
+               "maps = [ { of = \"thickness\", from = \"red\", low = 1e-3, high = 4e-3 }, { of = \"mass_per_area\", "
+               "file = \"cape.csv\" } ]\n"
                "pins = [ { file = \"cape.csv\", column = \"neck\" } ]\n"
                "[[cloth.dress.maps]]\nof = \"bend\"\nfile = \"cape.csv\"\ncolumn = \"b\"\nlow = 1\nhigh = 20");
   const auto shot = parse(text);
@@ -39,17 +40,24 @@ TEST_F(ShotFile, Maps_are_read_in_a_list_or_as_sections) {
                      "\"mass_per_area\", file = \"cape.csv\" }]\n"),
             std::string::npos)
       << all;
-  EXPECT_NE(all.find("{ file = \"cape.csv\", column = \"neck\", stiffness = 1000000, max_pull = 5000 }"), std::string::npos) << all;
+  EXPECT_NE(all.find("{ file = \"cape.csv\", column = \"neck\", stiffness = 1000000, max_pull = 5000 }"),
+            std::string::npos)
+      << all;
   EXPECT_EQ(canonical(*parse(k_good)).find("maps"), std::string::npos) << "a shot without maps is what it was";
 }
 
 TEST_F(ShotFile, Faults_of_maps_name_place_range_and_what_was_meant) {
-  const auto fault = [&](const std::string& map) { return fault_with(k_pin_line, std::string("maps = [ ").append(map).append(" ]")); };
+  const auto fault = [&](const std::string& map) {
+    return fault_with(k_pin_line, std::string("maps = [ ").append(map).append(" ]"));
+  };
   const std::string map = "shot.toml:19:10: cloth \"cape\", map 1: ";
   EXPECT_EQ(fault("{ of = \"thicknes\", from = \"red\", low = 1, high = 2 }"),
-            "shot.toml:19:17: cloth \"cape\", map 1: of = \"thicknes\" is nothing that can vary (did you mean \"thickness\"?)");
-  EXPECT_NE(fault("{ of = \"density\", from = \"red\", low = 1, high = 2 }").find("did you mean \"mass_per_area\"?"), std::string::npos);
-  EXPECT_NE(fault("{ of = \"pin\", from = \"red\", low = 0, high = 1 }").find("pins take weights themselves"), std::string::npos);
+            "shot.toml:19:17: cloth \"cape\", map 1: of = \"thicknes\" is nothing that can vary (did you mean "
+            "\"thickness\"?)");
+  EXPECT_NE(fault("{ of = \"density\", from = \"red\", low = 1, high = 2 }").find("did you mean \"mass_per_area\"?"),
+            std::string::npos);
+  EXPECT_NE(fault("{ of = \"pin\", from = \"red\", low = 0, high = 1 }").find("pins take weights themselves"),
+            std::string::npos);
   EXPECT_EQ(fault("{ of = \"thickness\", from = \"red\", low = 1, high = 4e-3 }"),
             "shot.toml:19:50: cloth \"cape\", map 1: low = 1 is outside [0.0005, 0.01] m (1 mm is written 0.001)");
   EXPECT_EQ(fault("{ of = \"bend\", low = 1, high = 2 }"),
@@ -57,14 +65,18 @@ TEST_F(ShotFile, Faults_of_maps_name_place_range_and_what_was_meant) {
   EXPECT_EQ(fault("{ of = \"bend\", from = \"red\" }"),
             map + "from needs low and high, the values where the weight is 0 and where it is 1");
   EXPECT_NE(fault("{ of = \"bend\", from = \"red\", low = 1 }").find("low needs high beside it"), std::string::npos);
-  EXPECT_NE(fault("{ of = \"bend\", from = \"red\", column = \"a\", low = 1, high = 2 }").find("there is no file"), std::string::npos);
+  EXPECT_NE(fault("{ of = \"bend\", from = \"red\", column = \"a\", low = 1, high = 2 }").find("there is no file"),
+            std::string::npos);
   EXPECT_NE(fault("{ from = \"red\", low = 1, high = 2 }").find("of is missing"), std::string::npos);
-  EXPECT_NE(fault("{ of = \"bend\", from = \"red\", low = 1, high = 2, maximum = 3 }").find("did you mean \"high\"?"), std::string::npos);
+  EXPECT_NE(fault("{ of = \"bend\", from = \"red\", low = 1, high = 2, maximum = 3 }").find("did you mean \"high\"?"),
+            std::string::npos);
   EXPECT_NE(fault("{ of = \"bend\", file = \"dres.obj\" }").find("did you mean \"dress.obj\"?"), std::string::npos);
   EXPECT_NE(fault("7").find("needs a table like"), std::string::npos);
-  EXPECT_NE(fault("{ of = \"bend\", from = \"red\", low = 1, high = 2 }, { of = \"bend\", from = \"blue\", low = 1, high = 3 }")
-                .find("bend has two maps; it takes one"),
-            std::string::npos);
+  EXPECT_NE(
+      fault(
+          "{ of = \"bend\", from = \"red\", low = 1, high = 2 }, { of = \"bend\", from = \"blue\", low = 1, high = 3 }")
+          .find("bend has two maps; it takes one"),
+      std::string::npos);
   EXPECT_NE(fault_with("[cache]", "[[maps]]\n[cache]").find("maps belong under [cloth.NAME]"), std::string::npos);
 }
 
@@ -75,7 +87,8 @@ TEST_F(ShotFile, Pins_say_from_when_until_when_and_how_gently_they_hold) {
   EXPECT_EQ(pin.from, 1010);
   EXPECT_EQ(pin.until, 1050.5);
   EXPECT_EQ(pin.fade, 12);
-  EXPECT_NE(canonical(*shot).find("max_pull = 5000, from = 1010, until = 1050.5, fade = 12 }"), std::string::npos) << canonical(*shot);
+  EXPECT_NE(canonical(*shot).find("max_pull = 5000, from = 1010, until = 1050.5, fade = 12 }"), std::string::npos)
+      << canonical(*shot);
   EXPECT_EQ(canonical(*parse(k_good)).find("until"), std::string::npos) << "a shot without them is what it was";
   const auto fault = [&](const std::string& keys) {
     return fault_with(k_pin_line, std::string("pins = [ { group = \"neck\", ").append(keys).append(" } ]"));
@@ -94,11 +107,13 @@ TEST_F(ShotFile, Every_kind_of_map_has_a_range_that_the_reference_prints) {
     EXPECT_NE(reference.find(std::string("`").append(kind.name).append("`")), std::string::npos);
     EXPECT_EQ(find_map_kind(kind.name), &kind);
   }
-  for (const auto& key : map_keys()) EXPECT_NE(reference.find(std::string("| `").append(key.name).append("` |")), std::string::npos) << key.name;
+  for (const auto& key : map_keys())
+    EXPECT_NE(reference.find(std::string("| `").append(key.name).append("` |")), std::string::npos) << key.name;
 }
 
 TEST(VertexValues, Text_and_tables_of_all_usual_forms_hold_the_same_numbers) {
-  for (const char* text : {"0.5\n1\n-2e-3\n", "\xef\xbb\xbf# thickness\r\n0.5\r\n\r\n+1\r\n-0.002", "t\n0.5\n1\n-2e-3\n", "\"t\"\n0.5 # first\n1\n-.002\n"}) {
+  for (const char* text : {"0.5\n1\n-2e-3\n", "\xef\xbb\xbf# thickness\r\n0.5\r\n\r\n+1\r\n-0.002",
+                           "t\n0.5\n1\n-2e-3\n", "\"t\"\n0.5 # first\n1\n-.002\n"}) {
     const auto values = parse_vertex_values(text, "v.txt");
     ASSERT_TRUE(values) << values.error().text();
     ASSERT_EQ(values->values.size(), 1u);
@@ -140,7 +155,8 @@ TEST_F(ShotFile, Columns_are_chosen_by_name_and_judged_by_count_and_range) {
     return values ? std::string("read") : values.error().text();
   };
   const std::string outside = message("thick", 3);
-  for (const char* part : {"v.csv:3", "column \"thick\" = 3 for vertex 1 is outside [0.0005, 0.01] m", "3 mm is written 0.003"})
+  for (const char* part :
+       {"v.csv:3", "column \"thick\" = 3 for vertex 1 is outside [0.0005, 0.01] m", "3 mm is written 0.003"})
     EXPECT_NE(outside.find(part), std::string::npos) << outside;
   EXPECT_NE(message("thick", 4).find("has 3 lines of numbers, the mesh has 4 vertices"), std::string::npos);
   EXPECT_NE(message("thik", 3).find("did you mean \"thick\"?"), std::string::npos);

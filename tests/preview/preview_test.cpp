@@ -1,4 +1,6 @@
 // The preview page in a headless Chromium: what it shows is what the caches say.
+#include "baker/commands/preview.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,7 +9,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "baker/commands/preview.h"
 #include "baker/manifest.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
@@ -40,7 +41,8 @@ void make_bake(const std::filesystem::path& folder) {
   std::vector<Triangle> triangles;
   make_sphere(0.3, 12, 16, points, triangles);
   const Mesh ball = make_triangle_mesh("ball", points, triangles);
-  const auto write = [&](const Mesh& mesh, const std::string& name, const std::string& role, const std::string& format) {
+  const auto write = [&](const Mesh& mesh, const std::string& name, const std::string& role,
+                         const std::string& format) {
     ASSERT_TRUE(write_obj(folder / (name + ".obj"), mesh));
     CacheInfo info;
     info.system = name;
@@ -50,9 +52,11 @@ void make_bake(const std::filesystem::path& folder) {
     const std::string file = name + "." + format;
     auto writer = find_cache_format(format)->open_writer(folder / file, info, 0);
     ASSERT_TRUE(writer);
-    for (int f = 0; f < k_frames; ++f) ASSERT_TRUE((*writer)->write_frame(role == "cloth" ? wave(mesh, f) : mesh.positions, {}));
+    for (int f = 0; f < k_frames; ++f)
+      ASSERT_TRUE((*writer)->write_frame(role == "cloth" ? wave(mesh, f) : mesh.positions, {}));
     ASSERT_TRUE((*writer)->close());
-    manifest.systems.push_back({name, role, "ball", mesh.vertex_count(), mesh.face_count(), name + ".obj", {{format, file, 0, ""}}});
+    manifest.systems.push_back(
+        {name, role, "ball", mesh.vertex_count(), mesh.face_count(), name + ".obj", {{format, file, 0, ""}}});
   };
   write(sheet, "sheet", "cloth", "abc");
   write(ball, "ball", "body", "pc2");
@@ -68,10 +72,12 @@ void make_bake(const std::filesystem::path& folder) {
 
 nlohmann::json ask(const std::filesystem::path& page, const std::string& hash) {
   const ScratchFolder profile;
-  const std::string command = "timeout 120 chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader "
-                              "--enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update "
-                              "--disable-sync --user-data-dir=" + profile.path().string() +
-                              " --virtual-time-budget=20000 --dump-dom 'file://" + page.string() + "#" + hash + "' 2>/dev/null";
+  const std::string command =
+      "timeout 120 chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader "
+      "--enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update "
+      "--disable-sync --user-data-dir=" +
+      profile.path().string() + " --virtual-time-budget=20000 --dump-dom 'file://" + page.string() + "#" + hash +
+      "' 2>/dev/null";
   std::string dom;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 65536> buffer;
@@ -101,9 +107,11 @@ TEST(Preview, shows_every_vertex_where_the_cache_has_it_and_plays_slow) {
   const std::array<std::size_t, 3> asked{0, 57, 168};
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t axis = 0; axis < 3; ++axis)  // half a step of 16 bits over at most a metre
-      EXPECT_NEAR(answer["vertices"]["sheet"][k][axis].get<double>(), x[asked[k]][static_cast<int>(axis)], 0.5 / 65535 + 1e-9);
+      EXPECT_NEAR(answer["vertices"]["sheet"][k][axis].get<double>(), x[asked[k]][static_cast<int>(axis)],
+                  0.5 / 65535 + 1e-9);
   EXPECT_TRUE(answer["drawn"].get<bool>());
-  EXPECT_EQ(answer["plots"], nlohmann::json({"strain", "smallest gap", "crossings"}));  // no times: there is no report.json
+  EXPECT_EQ(answer["plots"],
+            nlohmann::json({"strain", "smallest gap", "crossings"}));  // no times: there is no report.json
   EXPECT_EQ(answer["scrubbed"], k_first);
   EXPECT_GT(answer["played"], k_first);
   EXPECT_GT(answer["colours"], 20);  // something is lit, not one flat colour

@@ -21,7 +21,8 @@ void add_tube(Body& body, const Vec3& from, const Vec3& to, const std::vector<do
   for (int r = 0; r < rings; ++r)
     for (int k = 0; k < around; ++k) {
       const double angle = 2 * std::numbers::pi * k / around;
-      body.positions.push_back(from + (to - from) * r / (rings - 1) + radii[static_cast<std::size_t>(r)] * (std::cos(angle) * u + std::sin(angle) * v));
+      body.positions.push_back(from + (to - from) * r / (rings - 1) +
+                               radii[static_cast<std::size_t>(r)] * (std::cos(angle) * u + std::sin(angle) * v));
     }
   body.positions.push_back(from);
   body.positions.push_back(to);
@@ -37,7 +38,8 @@ void add_tube(Body& body, const Vec3& from, const Vec3& to, const std::vector<do
   }
 }
 
-/// 1.7 m tall, of overlapping tubes: legs to 0.85, torso to 1.4 (narrowest at 1.10), neck and head above, arms to the sides.
+/// 1.7 m tall, of overlapping tubes: legs to 0.85, torso to 1.4 (narrowest at 1.10), neck and head above, arms to the
+/// sides.
 Body doll() {
   Body body;
   add_tube(body, Vec3(0.1, 0, 0), Vec3(0.1, 0.9, 0), {0.07, 0.07, 0.07, 0.07});
@@ -111,7 +113,8 @@ TEST(Garments, Top_clears_the_body_has_four_openings_and_faces_outwards) {
   EXPECT_EQ(count_crossings(top->positions, triangles, body.positions, body.triangles), 0);
   EXPECT_GT(shape_quality(top->positions, triangles).smallest_angle_deg, 3);
   // A sphere with four holes: V - E + F = 2 - 4.
-  const int euler = top->vertex_count() - static_cast<int>(unique_edges(triangles).size()) + static_cast<int>(triangles.size());
+  const int euler =
+      top->vertex_count() - static_cast<int>(unique_edges(triangles).size()) + static_cast<int>(triangles.size());
   EXPECT_EQ(euler, -2);
   const auto normals = vertex_normals(top->positions, triangles);
   for (std::size_t v = 0; v < normals.size(); ++v) {

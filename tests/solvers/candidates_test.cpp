@@ -1,4 +1,5 @@
-// The pairs of one piece of a substep: complete for all that the solve may do, also after it got more room; what was let pass stays out.
+// The pairs of one piece of a substep: complete for all that the solve may do, also after it got more room; what was
+// let pass stays out.
 #include "solvers/cloth/candidates.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +59,9 @@ std::vector<Vec3> somewhere_in_reach(const TwoSheets& s, std::uint64_t draw) {
   return out;
 }
 
-bool contains(const std::vector<Stencil>& sorted, const Stencil& s) { return std::binary_search(sorted.begin(), sorted.end(), s); }
+bool contains(const std::vector<Stencil>& sorted, const Stencil& s) {
+  return std::binary_search(sorted.begin(), sorted.end(), s);
+}
 
 /// Pairs of vertices with faces, and of edges, that touch at some of the places where the solve may put them.
 ContactPairs touching(const TwoSheets& s) {
@@ -69,7 +72,8 @@ ContactPairs touching(const TwoSheets& s) {
     const auto x = somewhere_in_reach(s, draw);
     for (int v = 0; v < s.model->vertex_count(); ++v)
       for (const Triangle& t : s.model->triangles)
-        if (v != t[0] && v != t[1] && v != t[2] && vertex_face_geometry(x[at(v)], x[at(t[0])], x[at(t[1])], x[at(t[2])]).distance < radius)
+        if (v != t[0] && v != t[1] && v != t[2] &&
+            vertex_face_geometry(x[at(v)], x[at(t[0])], x[at(t[1])], x[at(t[2])]).distance < radius)
           out.vertex_face.push_back({{v, t[0], t[1], t[2]}});
     for (std::size_t a = 0; a < edges.size(); ++a)
       for (std::size_t b = a + 1; b < edges.size(); ++b) {
@@ -125,8 +129,10 @@ TEST(Candidates, that_were_let_pass_stay_out_when_the_room_grows) {
   ASSERT_LT(left.vertex_face.size(), all.vertex_face.size());
   ASSERT_LT(left.edge_edge.size(), all.edge_edge.size());
   candidates.grow(s.cloth, std::vector<double>(s.cloth.x.size(), 1e-3), s.piece);
-  const auto back = [](const std::vector<Stencil>& before, const std::vector<Stencil>& without, const std::vector<Stencil>& now) {
-    return std::count_if(before.begin(), before.end(), [&](const Stencil& p) { return !contains(without, p) && contains(now, p); });
+  const auto back = [](const std::vector<Stencil>& before, const std::vector<Stencil>& without,
+                       const std::vector<Stencil>& now) {
+    return std::count_if(before.begin(), before.end(),
+                         [&](const Stencil& p) { return !contains(without, p) && contains(now, p); });
   };
   EXPECT_EQ(back(all.vertex_face, left.vertex_face, candidates.pairs().vertex_face), 0);
   EXPECT_EQ(back(all.edge_edge, left.edge_edge, candidates.pairs().edge_edge), 0);

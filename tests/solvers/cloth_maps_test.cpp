@@ -1,4 +1,5 @@
-// Cloth that varies over its surface: maps of one value are no maps, two values are two cloths, and thickness reaches the contact.
+// Cloth that varies over its surface: maps of one value are no maps, two values are two cloths, and thickness reaches
+// the contact.
 #include <gtest/gtest.h>
 
 #include "solvers/cloth/cloth_solver.h"
@@ -67,7 +68,8 @@ TEST(ClothMaps, A_map_of_one_value_is_the_scalar_key_bit_for_bit) {
   EXPECT_NE(hash(after(one_garment(without, still_ball()), 8)), expected);
 }
 
-/// Elongation of a strip under its own weight from row to row: E (s^2 - 1) s / 2 = tension per width, where s is the stretch.
+/// Elongation of a strip under its own weight from row to row: E (s^2 - 1) s / 2 = tension per width, where s is the
+/// stretch.
 double stretch_under(double tension_per_width, double stiffness) {
   double s = 1;
   for (int i = 0; i < 50; ++i)
@@ -131,7 +133,8 @@ TEST(ClothMaps, A_strip_of_two_stiffnesses_and_weights_hangs_by_the_closed_form_
     const double measured = mean_y(from) - mean_y(to), expected = closed_form(from, to), rest = cell * (to - from);
     EXPECT_NEAR(measured - rest, expected - rest, 5e-3 * (expected - rest)) << from;
   }
-  EXPECT_GT((mean_y(5) - mean_y(16)) / (11 * cell), 1 + 3 * ((mean_y(25) - mean_y(38)) / (13 * cell) - 1)) << "the halves differ";
+  EXPECT_GT((mean_y(5) - mean_y(16)) / (11 * cell), 1 + 3 * ((mean_y(25) - mean_y(38)) / (13 * cell) - 1))
+      << "the halves differ";
 }
 
 TEST(ClothMaps, Cloth_rests_at_its_own_thickness_everywhere) {
@@ -201,7 +204,8 @@ TEST(ClothMaps, A_pin_of_weight_0_holds_nothing_and_half_the_weight_sags_twice_a
 TEST(ClothMaps, A_map_that_cannot_be_is_refused_by_name) {
   ClothGarment sheet;
   sheet.mesh = make_sheet(0.2, 2, 0);
-  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     ClothGarment spoilt = sheet;
     spoilt.maps.stretch.assign(9, 1);
     spoilt.maps.stretch[4] = bad;

@@ -1,4 +1,5 @@
-// Small cloth meshes for the tests of the energies: grids, jittered grids, a patch with a curved rest shape of two fabrics.
+// Small cloth meshes for the tests of the energies: grids, jittered grids, a patch with a curved rest shape of two
+// fabrics.
 #pragma once
 
 #include <functional>
@@ -29,7 +30,8 @@ inline std::vector<Triangle> grid_triangles(int columns, int rows) {
 inline std::vector<Vec3> grid_points(int columns, int rows, const std::function<Vec3(double, double)>& place) {
   std::vector<Vec3> out;
   for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) out.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
+    for (int i = 0; i <= columns; ++i)
+      out.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
   return out;
 }
 
@@ -40,8 +42,8 @@ inline std::vector<Vec3> jitter(std::vector<Vec3> x, double amplitude, std::uint
   return x;
 }
 
-/// 10 cm x 12 cm of an irregular mesh, rolled to a radius of 8 cm, as two pieces of different, orthotropic, damped fabric
-/// that are sewn to each other at one border.
+/// 10 cm x 12 cm of an irregular mesh, rolled to a radius of 8 cm, as two pieces of different, orthotropic, damped
+/// fabric that are sewn to each other at one border.
 inline ClothTopology curved_patch(int columns, int rows) {
   const auto place = [](double s, double t) {
     const double angle = 1.25 * s;
@@ -53,7 +55,8 @@ inline ClothTopology curved_patch(int columns, int rows) {
   const auto more = grid_points(columns, rows, [&](double s, double t) { return Vec3(place(s, t) + Vec3(0, 0, 0.1)); });
   rest.insert(rest.end(), more.begin(), more.end());
   const std::size_t first = triangles.size();
-  for (std::size_t t = 0; t < first; ++t) triangles.push_back({triangles[t][0] + count, triangles[t][1] + count, triangles[t][2] + count});
+  for (std::size_t t = 0; t < first; ++t)
+    triangles.push_back({triangles[t][0] + count, triangles[t][1] + count, triangles[t][2] + count});
   rest = jitter(std::move(rest), 0.02 / columns, 77);
   Fabric jersey, denim;
   jersey.stretch_warp = 120, jersey.stretch_weft = 60, jersey.shear = 30, jersey.poisson = 0.4, jersey.damping = 5e-3;

@@ -8,7 +8,8 @@
 namespace ft {
 namespace {
 
-std::shared_ptr<ScriptedBody> spheres(const std::vector<std::function<Vec3(double)>>& paths, double radius, double preroll = 0) {
+std::shared_ptr<ScriptedBody> spheres(const std::vector<std::function<Vec3(double)>>& paths, double radius,
+                                      double preroll = 0) {
   Surface surface;
   std::vector<Vec3> points, bind;
   for (std::size_t k = 0; k < paths.size(); ++k) {
@@ -62,14 +63,16 @@ TEST(ClothSolver, drapes_over_a_ball_at_rest_without_crossing_it) {
   solver->system_positions(state, 0, x);
   double lowest = 1, highest = -1;
   for (const Vec3& p : x) lowest = std::min(lowest, p.y()), highest = std::max(highest, p.y());
-  EXPECT_LT(lowest, 0.0);                 // the corners hang down
-  EXPECT_NEAR(highest, 0.253, 0.003);     // the top lies at the contact distance
+  EXPECT_LT(lowest, 0.0);              // the corners hang down
+  EXPECT_NEAR(highest, 0.253, 0.003);  // the top lies at the contact distance
   EXPECT_LT(last.smallest_gap, 3.1e-3);
   EXPECT_GT(last.smallest_gap, 1e-3);
 }
 
 TEST(ClothSolver, is_carried_by_a_ball_that_swings_and_jumps_slow) {
-  const auto path = [](double t) { return Vec3(0.3 * std::sin(2 * std::numbers::pi * t), t > 1 ? 0.2 * std::abs(std::sin(9 * (t - 1))) : 0, 0); };
+  const auto path = [](double t) {
+    return Vec3(0.3 * std::sin(2 * std::numbers::pi * t), t > 1 ? 0.2 * std::abs(std::sin(9 * (t - 1))) : 0, 0);
+  };
   auto solver = solver_of(sheet_on(spheres({path}, 0.25), 24, 0.26));
   State state = solver->initial_state();
   for (int f = 0; f < 48; ++f) expect_clean(solver->advance_frame(state));

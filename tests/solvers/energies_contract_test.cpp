@@ -1,6 +1,6 @@
-// The contract of an energy, run over the registry: gradient against differences of the value, Hessian symmetric and positive
-// semidefinite, Hessian against differences of the gradient where it is exact, rigid motion, rest state, degenerate elements,
-// the same bits for any number of threads.
+// The contract of an energy, run over the registry: gradient against differences of the value, Hessian symmetric and
+// positive semidefinite, Hessian against differences of the gradient where it is exact, rigid motion, rest state,
+// degenerate elements, the same bits for any number of threads.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -65,7 +65,9 @@ class EnergyContract : public testing::TestWithParam<ClothEnergyKind> {
   std::unique_ptr<Energy> energy_ = GetParam().make(topology_, k_windy);
 };
 
-TEST_P(EnergyContract, Its_name_is_that_of_the_list) { EXPECT_EQ(energy_->name(), GetParam().name); }
+TEST_P(EnergyContract, Its_name_is_that_of_the_list) {
+  EXPECT_EQ(energy_->name(), GetParam().name);
+}
 
 TEST_P(EnergyContract, Gradient_agrees_with_differences_of_the_value) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -99,7 +101,8 @@ TEST_P(EnergyContract, Hessian_is_symmetric_and_positive_semidefinite) {
       const Eigen::MatrixXd h = dense(m);
       ASSERT_TRUE(h.allFinite());
       EXPECT_LT((h - h.transpose()).norm(), 1e-6 * h.norm());  // float sums in another order
-      const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (h + h.transpose())).eigenvalues();
+      const Eigen::VectorXd eigenvalues =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (h + h.transpose())).eigenvalues();
       EXPECT_GT(eigenvalues[0], -2e-6 * eigenvalues[eigenvalues.size() - 1]);  // float round-off of the entries
     }
 }
@@ -272,8 +275,8 @@ Eigen::MatrixXd true_hessian(const Energy& energy, std::vector<Vec3> x) {
 }
 
 TEST_P(EnergyContract, Hessian_is_the_true_one_or_more_than_half_of_it) {
-  // Where nothing is clamped or dropped for definiteness. Membrane: stretched, all stress positive. Bending: at the rest shape, where
-  // the moment is zero. Drag: quadratic.
+  // Where nothing is clamped or dropped for definiteness. Membrane: stretched, all stress positive. Bending: at the
+  // rest shape, where the moment is zero. Drag: quadratic.
   Scene s = make_scene(*energy_, topology_, 3, 1e-3);
   if (GetParam().elastic) {
     const bool membrane = GetParam().name == "membrane";
@@ -299,7 +302,8 @@ TEST_P(EnergyContract, Hessian_is_the_true_one_or_more_than_half_of_it) {
   EXPECT_GT(largest, 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, EnergyContract, testing::ValuesIn(cloth_energy_kinds().begin(), cloth_energy_kinds().end()),
+INSTANTIATE_TEST_SUITE_P(Registry, EnergyContract,
+                         testing::ValuesIn(cloth_energy_kinds().begin(), cloth_energy_kinds().end()),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace

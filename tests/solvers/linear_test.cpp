@@ -12,7 +12,9 @@
 namespace ft {
 namespace {
 
-double noise(std::size_t element, std::uint64_t draw) { return 2 * random_uniform({.element = element}, draw) - 1; }
+double noise(std::size_t element, std::uint64_t draw) {
+  return 2 * random_uniform({.element = element}, draw) - 1;
+}
 
 /// A crumpled sheet of springs: stiff along the springs, a thousand times softer across them, as cloth is.
 struct Sheet {
@@ -40,13 +42,13 @@ struct Sheet {
   }
 
   void fill(BlockMatrix& m) const {
-    for (std::size_t i = 0; i < x.size(); ++i) m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity() * 0.02f * float(1e4 / (n * n));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity() * 0.02f * float(1e4 / (n * n));
     for (const auto& s : springs) {
       const Vec3 d = (x[at(s[1])] - x[at(s[0])]).normalized();
       const Mat3f k = (1000 * d * d.transpose() + Mat3::Identity()).cast<float>();
       for (const int a : {0, 1})
-        for (const int b : {0, 1})
-          m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += a == b ? k : Mat3f(-k);
+        for (const int b : {0, 1}) m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += a == b ? k : Mat3f(-k);
     }
   }
 
@@ -111,7 +113,8 @@ TEST_P(Solves, the_same_as_a_dense_factorisation_with_held_rows_and_contacts) {
   std::vector<char> fixed(sheet.x.size(), 0);
   fixed[0] = fixed[3] = fixed[40] = 1;
   const auto terms = contacts(sheet);
-  LinearSystem system(sheet.pattern, sheet.rest, {.preconditioner = GetParam(), .tolerance = 1e-5, .max_iterations = 2000});
+  LinearSystem system(sheet.pattern, sheet.rest,
+                      {.preconditioner = GetParam(), .tolerance = 1e-5, .max_iterations = 2000});
   sheet.fill(system.begin());
   system.add_pair_terms(terms);
   std::vector<Vec3> x(sheet.x.size());
@@ -128,7 +131,8 @@ TEST_P(Solves, reports_failure_and_stays_finite_on_an_indefinite_or_broken_matri
     LinearSystem system(sheet.pattern, sheet.rest, {.preconditioner = GetParam(), .tolerance = 1e-6});
     BlockMatrix& m = system.begin();
     sheet.fill(m);
-    for (std::size_t i = 0; i < sheet.x.size(); i += 3) m.blocks[at(sheet.pattern.diagonal[i])].diagonal().array() += poison;
+    for (std::size_t i = 0; i < sheet.x.size(); i += 3)
+      m.blocks[at(sheet.pattern.diagonal[i])].diagonal().array() += poison;
     system.add_pair_terms({});
     std::vector<Vec3> x(sheet.x.size());
     const LinearReport report = system.solve(sheet.load(), fixed, x);
@@ -138,7 +142,8 @@ TEST_P(Solves, reports_failure_and_stays_finite_on_an_indefinite_or_broken_matri
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, Solves,
-                         testing::Values(LinearSettings::Preconditioner::k_block_jacobi, LinearSettings::Preconditioner::k_multigrid));
+                         testing::Values(LinearSettings::Preconditioner::k_block_jacobi,
+                                         LinearSettings::Preconditioner::k_multigrid));
 
 TEST(LinearSystem, needs_about_as_many_multigrid_iterations_for_a_fine_sheet_as_for_a_coarse_one) {
   int iterations[2] = {};
@@ -186,7 +191,8 @@ TEST(LinearSystem, solves_loose_vertices_and_separate_pieces) {
   for (std::size_t i = 0; i < 400; ++i) m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity();
   for (const auto& s : springs)
     for (const int a : {0, 1})
-      for (const int b : {0, 1}) m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += Mat3f::Identity() * (a == b ? 50.f : -50.f);
+      for (const int b : {0, 1})
+        m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += Mat3f::Identity() * (a == b ? 50.f : -50.f);
   system.add_pair_terms({});
   std::vector<Vec3> x(400);
   const LinearReport report = system.solve(std::vector<Vec3>(400, Vec3(1, 2, 3)), std::vector<char>(400, 0), x);

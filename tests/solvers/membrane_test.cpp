@@ -10,7 +10,8 @@
 namespace ft {
 namespace {
 
-/// Force [N] that holds a sheet of 0.2 m x 0.3 m stretched by `strain` along its warp, its width kept; the warp is the pattern's v.
+/// Force [N] that holds a sheet of 0.2 m x 0.3 m stretched by `strain` along its warp, its width kept; the warp is the
+/// pattern's v.
 double pull(const Fabric& fabric, double strain) {
   auto rest = grid_points(4, 6, [](double s, double t) { return Vec3(0.2 * s, 0.3 * t, 0); });
   const auto triangles = grid_triangles(4, 6);

@@ -13,19 +13,23 @@ namespace {
 class PhysicsConformance : public testing::TestWithParam<ValidationScene> {};
 
 TEST_P(PhysicsConformance, Every_row_is_within_its_tolerance) {
-  if (test::k_thread_sanitized && GetParam().slow) GTEST_SKIP() << "thousands of small loops: the quick rows run the same ones";
+  if (test::k_thread_sanitized && GetParam().slow)
+    GTEST_SKIP() << "thousands of small loops: the quick rows run the same ones";
   const auto rows = GetParam().run();
   EXPECT_FALSE(rows.empty());
   for (const ValidationCase& row : rows) {
     EXPECT_EQ(row.name, GetParam().name);
     EXPECT_FALSE(row.source.empty()) << row.what;
-    EXPECT_TRUE(row.passed) << row.what << ": " << row.value << " " << row.unit << ", expected " << row.reference << " +- "
-                            << row.tolerance << " (" << row.source << ")";
+    EXPECT_TRUE(row.passed) << row.what << ": " << row.value << " " << row.unit << ", expected " << row.reference
+                            << " +- " << row.tolerance << " (" << row.source << ")";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, PhysicsConformance, testing::ValuesIn(validation_scenes().begin(), validation_scenes().end()),
-                         [](const auto& scene) { return std::string(scene.param.name) + (scene.param.slow ? "_slow" : ""); });
+INSTANTIATE_TEST_SUITE_P(Table, PhysicsConformance,
+                         testing::ValuesIn(validation_scenes().begin(), validation_scenes().end()),
+                         [](const auto& scene) {
+                           return std::string(scene.param.name) + (scene.param.slow ? "_slow" : "");
+                         });
 
 TEST(Validation, A_row_passes_within_its_tolerance_only) {
   EXPECT_TRUE(validation_case("s", "w", 1.01, 1, 0.011, "m", "x").passed);

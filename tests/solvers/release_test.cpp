@@ -1,4 +1,5 @@
-// Pins that let go and take hold at a frame: free fall from the very instant, the same bits before it, and after a resume.
+// Pins that let go and take hold at a frame: free fall from the very instant, the same bits before it, and after a
+// resume.
 #include <gtest/gtest.h>
 
 #include "solvers/cloth/cloth_solver.h"
@@ -57,7 +58,9 @@ Vec3 mean_of(const State& state, const char* block) {
   return sum / (3 * 2 * k_cells * k_cells);
 }
 
-Vec3 centre_of(const State& state) { return mean_of(state, "x"); }
+Vec3 centre_of(const State& state) {
+  return mean_of(state, "x");
+}
 
 TEST(HoldSpan, is_whole_up_to_its_end_and_fades_linearly) {
   const HoldSpan always;
@@ -101,7 +104,8 @@ TEST(Release, A_held_square_falls_freely_from_the_frame_at_which_it_is_let_go) {
     const Vec3 expected = start + Vec3(0, -0.5 * k_gravity * t * t, 0);
     EXPECT_LT((centre_of(states[at(f)]) - expected).norm(), once) << f;
     const auto x = as_points(*states[at(f)].find("x"));
-    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i].y() - start.y(), expected.y() - start.y(), 1.2 * once) << f << " " << i;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      EXPECT_NEAR(x[i].y() - start.y(), expected.y() - start.y(), 1.2 * once) << f << " " << i;
   }
 }
 
@@ -135,7 +139,8 @@ TEST(Release, A_pin_that_fades_holds_less_and_less_and_then_nothing) {
   EXPECT_NEAR(1 - centre_of(states[18]).y(), 2 * sag, 0.2 * sag);
   // From the frame after the fade on, every second difference is that of free fall.
   for (int f = 26; f < 36; ++f) {
-    const double bend = centre_of(states[at(f + 1)]).y() - 2 * centre_of(states[at(f)]).y() + centre_of(states[at(f - 1)]).y();
+    const double bend =
+        centre_of(states[at(f + 1)]).y() - 2 * centre_of(states[at(f)]).y() + centre_of(states[at(f - 1)]).y();
     EXPECT_NEAR(bend, -k_gravity / (k_fps * k_fps), 1e-3 * k_gravity / (k_fps * k_fps)) << f;
   }
 }

@@ -14,7 +14,8 @@
 namespace ft {
 namespace {
 
-std::vector<std::array<Vec2, 3>> pattern_of(std::span<const Vec3> flat, std::span<const Triangle> triangles, double mirror) {
+std::vector<std::array<Vec2, 3>> pattern_of(std::span<const Vec3> flat, std::span<const Triangle> triangles,
+                                            double mirror) {
   std::vector<std::array<Vec2, 3>> out;
   for (const Triangle& t : triangles) {
     std::array<Vec2, 3> uv;
@@ -32,7 +33,8 @@ TEST(Pattern, A_flat_panel_is_the_same_cloth_as_its_pattern_mirrored_or_not) {
   Fabric fabric;
   fabric.stretch_warp = 900, fabric.stretch_weft = 300, fabric.shear = 80;
   const int count = static_cast<int>(rest.size());
-  const ClothPiece placed[] = {{0, count, fabric}}, cut[] = {{0, count, fabric, 1.0}}, in_centimetres[] = {{0, count, fabric, 0.01}};
+  const ClothPiece placed[] = {{0, count, fabric}}, cut[] = {{0, count, fabric, 1.0}},
+                   in_centimetres[] = {{0, count, fabric, 0.01}};
   auto uvs = pattern_of(rest, triangles, 1), mirrored = pattern_of(rest, triangles, -1), large = uvs;
   for (auto& uv : large)
     for (Vec2& p : uv) p *= 100;
@@ -42,8 +44,9 @@ TEST(Pattern, A_flat_panel_is_the_same_cloth_as_its_pattern_mirrored_or_not) {
   ASSERT_GT(expected, 0);
   // The staged positions are of no consequence once it is cut from a pattern.
   const auto elsewhere = jitter(rest, 0.05, 1);
-  for (const ClothTopology& b : {make_cloth_topology(elsewhere, triangles, cut, uvs), make_cloth_topology(elsewhere, triangles, cut, mirrored),
-                                 make_cloth_topology(elsewhere, triangles, in_centimetres, large)}) {
+  for (const ClothTopology& b :
+       {make_cloth_topology(elsewhere, triangles, cut, uvs), make_cloth_topology(elsewhere, triangles, cut, mirrored),
+        make_cloth_topology(elsewhere, triangles, in_centimetres, large)}) {
     EXPECT_NEAR(Membrane(b).value(x), expected, 1e-9 * expected);
     for (std::size_t i = 0; i < a.mass.size(); ++i) EXPECT_NEAR(b.mass[i], a.mass[i], 1e-12 * a.mass[i]);
     for (const Hinge& hinge : b.hinges) EXPECT_EQ(hinge.rest_angle, 0);
@@ -80,22 +83,24 @@ Vec3 force_at(const ClothTopology& topology, double time) {
 
 TEST(Seams, A_seam_closes_evenly_with_a_bounded_force_and_then_holds) {
   const ClothTopology topology = one_seam(0.3);
-  EXPECT_EQ(force_at(topology, -2), Vec3::Zero());                                      // not yet
-  EXPECT_NEAR(force_at(topology, -2 + 1e-4 / 0.3).x(), -1000 * 1e-4, 1e-9);             // 0.1 mm shorter by now
-  EXPECT_NEAR(force_at(topology, -1.5).x(), -0.2, 1e-12);                               // 15 cm too long: the limit
-  EXPECT_NEAR(force_at(topology, -0.5).x(), -0.5 * (0.2 + 5), 1e-12);                   // closed; the limit grows
+  EXPECT_EQ(force_at(topology, -2), Vec3::Zero());                           // not yet
+  EXPECT_NEAR(force_at(topology, -2 + 1e-4 / 0.3).x(), -1000 * 1e-4, 1e-9);  // 0.1 mm shorter by now
+  EXPECT_NEAR(force_at(topology, -1.5).x(), -0.2, 1e-12);                    // 15 cm too long: the limit
+  EXPECT_NEAR(force_at(topology, -0.5).x(), -0.5 * (0.2 + 5), 1e-12);        // closed; the limit grows
   EXPECT_NEAR(force_at(topology, 3).x(), -5, 1e-12);
-  EXPECT_NEAR(force_at(one_seam(1e-4), 3).x(), -0.1, 1e-12);                            // below the limit: a spring
+  EXPECT_NEAR(force_at(one_seam(1e-4), 3).x(), -0.1, 1e-12);  // below the limit: a spring
 }
 
-/// Two square panels of 20 cm, 8 cm apart, edge to edge; the second has three cells for two of the first along the seam.
+/// Two square panels of 20 cm, 8 cm apart, edge to edge; the second has three cells for two of the first along the
+/// seam.
 ClothSetup two_panels() {
   Mesh mesh;
   mesh.name = "bib";
   std::vector<Triangle> triangles;
   const auto add = [&](int columns, int rows, double x0) {
     const int first = static_cast<int>(mesh.positions.size());
-    for (const Vec3& p : grid_points(columns, rows, [&](double s, double t) { return Vec3(x0 + 0.2 * s, 0.5, 0.2 * t); })) {
+    for (const Vec3& p :
+         grid_points(columns, rows, [&](double s, double t) { return Vec3(x0 + 0.2 * s, 0.5, 0.2 * t); })) {
       mesh.positions.push_back(p);
       mesh.uvs.emplace_back(p.x(), p.z());
     }
@@ -201,7 +206,8 @@ TEST(Sewing, Seams_do_not_depend_on_the_mass_of_the_cloth) {
 }
 
 TEST(Sewing, A_stitch_that_cannot_be_sewn_is_refused) {
-  for (const Stitch& bad : {Stitch{0, {0, 1}, 0.5, 0}, Stitch{-1, {0, 1}, 0.5, 0}, Stitch{3, {0, 99999}, 0.5, 0}, Stitch{3, {0, 1}, std::nan(""), 0}}) {
+  for (const Stitch& bad : {Stitch{0, {0, 1}, 0.5, 0}, Stitch{-1, {0, 1}, 0.5, 0}, Stitch{3, {0, 99999}, 0.5, 0},
+                            Stitch{3, {0, 1}, std::nan(""), 0}}) {
     ClothSetup setup = two_panels();
     setup.garments[0].mesh.stitches.push_back(bad);
     EXPECT_FALSE(make_cloth_solver(std::move(setup)));

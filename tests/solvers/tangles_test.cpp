@@ -1,4 +1,5 @@
-// Cloth that crosses cloth where the shot starts: the walk keeps its pace, says so, and cloth holds cloth again once it is out.
+// Cloth that crosses cloth where the shot starts: the walk keeps its pace, says so, and cloth holds cloth again once it
+// is out.
 #include <gtest/gtest.h>
 
 #include "baker/core/random.h"

@@ -11,7 +11,9 @@ namespace {
 constexpr int k_cut = 9;
 constexpr double k_fps = 24;
 
-Eigen::Isometry3d placed(double angle, const Vec3& to) { return Eigen::Translation3d(to) * Eigen::AngleAxisd(angle, Vec3::UnitY()); }
+Eigen::Isometry3d placed(double angle, const Vec3& to) {
+  return Eigen::Translation3d(to) * Eigen::AngleAxisd(angle, Vec3::UnitY());
+}
 
 /// A ball that wanders, from frame k_cut on seen from elsewhere; between the two frames it is smeared over the way.
 std::shared_ptr<ScriptedBody> wandering_ball(const Eigen::Isometry3d& elsewhere) {
@@ -82,17 +84,23 @@ void expect_nothing_changes(bool held, double tolerance) {
     const Walked cut = walk(std::move(setup), 11);
     for (std::size_t f = 0; f < cut.x.size(); ++f) {
       const bool there = cut.reports[f].frame >= k_cut;
-      EXPECT_LT(farthest(still.x[f], cut.x[f], there ? elsewhere : Eigen::Isometry3d::Identity()), tolerance) << cut.reports[f].frame;
+      EXPECT_LT(farthest(still.x[f], cut.x[f], there ? elsewhere : Eigen::Isometry3d::Identity()), tolerance)
+          << cut.reports[f].frame;
       EXPECT_NEAR(cut.reports[f].strain_max, still.reports[f].strain_max, 100 * tolerance) << cut.reports[f].frame;
       EXPECT_EQ(cut.reports[f].crossings_body, 0) << cut.reports[f].frame;
     }
   }
 }
 
-TEST(Teleport, of_the_body_changes_nothing_in_the_frame_of_the_body) { expect_nothing_changes(true, 1e-9); }
+TEST(Teleport, of_the_body_changes_nothing_in_the_frame_of_the_body) {
+  expect_nothing_changes(true, 1e-9);
+}
 
-// Contact and three Newton iterations in single precision make 1e-7 of the rounding of the new place within a few frames.
-TEST(Teleport, of_the_body_changes_nothing_for_cloth_that_lies_on_it) { expect_nothing_changes(false, 2e-6); }
+// Contact and three Newton iterations in single precision make 1e-7 of the rounding of the new place within a few
+// frames.
+TEST(Teleport, of_the_body_changes_nothing_for_cloth_that_lies_on_it) {
+  expect_nothing_changes(false, 2e-6);
+}
 
 TEST(Teleport, that_nobody_names_tears_at_the_cloth) {
   // What the carrying is for: the same cut, simulated as motion.

@@ -11,7 +11,9 @@ std::filesystem::path assets_root() {
   return std::filesystem::path(FT_SOURCE_DIR).parent_path() / "shared" / "assets";
 }
 
-std::filesystem::path assimp_models_root() { return "/usr/share/assimp/models"; }
+std::filesystem::path assimp_models_root() {
+  return "/usr/share/assimp/models";
+}
 
 ScratchFolder::ScratchFolder(Place place) {
   const bool in_memory = place == k_in_memory && ::access("/dev/shm", W_OK) == 0;

@@ -27,7 +27,7 @@ class ScratchFolder {
 
 }  // namespace ft::test
 
-#define FT_REQUIRE_FILE(path) \
-  do {                        \
+#define FT_REQUIRE_FILE(path)                                                                    \
+  do {                                                                                           \
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: " << (path) << " not present"; \
   } while (false)

@@ -1,6 +1,6 @@
-// Damaged input for the tests of readers: every cut, flipped bits, and random edits of a good text. What happens is a function of the
-// seed, so that a failure comes back. A damage that every reader should survive belongs here; what one format alone can
-// suffer (a length that lies) stays with its test.
+// Damaged input for the tests of readers: every cut, flipped bits, and random edits of a good text. What happens is a
+// function of the seed, so that a failure comes back. A damage that every reader should survive belongs here; what one
+// format alone can suffer (a length that lies) stays with its test.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ void for_each_flipped_bit(Bytes bytes, Visit&& visit) {
 }
 
 struct TextDamage {
-  std::string_view alphabet;     ///< what is written over and between; write it as "..."sv where a NUL is in it
+  std::string_view alphabet;  ///< what is written over and between; write it as "..."sv where a NUL is in it
   std::uint64_t most_edits = 4;
   std::uint64_t most_erased = 25;  ///< characters, by one edit
 };
@@ -40,7 +40,9 @@ struct TextDamage {
 /// The text after 1 to most_edits edits: a character written over, one put between, or a few taken out.
 inline std::string damaged(std::string text, const TextDamage& damage, std::uint64_t seed) {
   std::uint64_t draws = 0;
-  const auto draw = [&](std::uint64_t range) { return static_cast<std::size_t>(random_bits({.seed = seed}, draws++) % range); };
+  const auto draw = [&](std::uint64_t range) {
+    return static_cast<std::size_t>(random_bits({.seed = seed}, draws++) % range);
+  };
   for (std::size_t edits = 1 + draw(damage.most_edits); edits > 0; --edits) {
     const std::size_t place = draw(text.size() + 1), kind = draw(10);
     const char c = damage.alphabet[draw(damage.alphabet.size())];

@@ -14,14 +14,24 @@ namespace {
 using Rational = boost::multiprecision::cpp_rational;
 using RationalVec = std::array<Rational, 3>;
 
-RationalVec exact(const Vec3& v) { return {Rational(v.x()), Rational(v.y()), Rational(v.z())}; }
-RationalVec operator-(const RationalVec& a, const RationalVec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Rational dot(const RationalVec& a, const RationalVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+RationalVec exact(const Vec3& v) {
+  return {Rational(v.x()), Rational(v.y()), Rational(v.z())};
+}
+RationalVec operator-(const RationalVec& a, const RationalVec& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Rational dot(const RationalVec& a, const RationalVec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 RationalVec cross(const RationalVec& a, const RationalVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-bool zero(const RationalVec& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; }
-bool in_unit(const Rational& t) { return t >= 0 && t <= 1; }
+bool zero(const RationalVec& a) {
+  return a[0] == 0 && a[1] == 0 && a[2] == 0;
+}
+bool in_unit(const Rational& t) {
+  return t >= 0 && t <= 1;
+}
 
 bool segments_meet(const RationalVec& p, const RationalVec& q, const RationalVec& r, const RationalVec& s) {
   const RationalVec along = q - p, other = s - r, between = r - p, normal = cross(along, other);
@@ -42,7 +52,8 @@ bool meets_in_rationals(const Vec3& p_in, const Vec3& q_in, const std::array<Vec
   const RationalVec p = exact(p_in), q = exact(q_in);
   const std::array<RationalVec, 3> c = {exact(corners[0]), exact(corners[1]), exact(corners[2])};
   const RationalVec normal = cross(c[1] - c[0], c[2] - c[0]);
-  if (zero(normal)) return segments_meet(p, q, c[0], c[1]) || segments_meet(p, q, c[1], c[2]) || segments_meet(p, q, c[2], c[0]);
+  if (zero(normal))
+    return segments_meet(p, q, c[0], c[1]) || segments_meet(p, q, c[1], c[2]) || segments_meet(p, q, c[2], c[0]);
   const Rational above_p = dot(normal, p - c[0]), above_q = dot(normal, q - c[0]);
   if (above_p * above_q > 0) return false;
   Rational from = 0, to = 1;
@@ -57,8 +68,8 @@ bool meets_in_rationals(const Vec3& p_in, const Vec3& q_in, const std::array<Vec
   return from <= to;
 }
 
-/// Sign of (b - a) x (c - a) . (d - a), or 2 where 64 bits of mantissa do not decide. Each of the six products has at most ten
-/// roundings; sixteen are allowed for.
+/// Sign of (b - a) x (c - a) . (d - a), or 2 where 64 bits of mantissa do not decide. Each of the six products has at
+/// most ten roundings; sixteen are allowed for.
 int clear_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   using Real = long double;
   Real u[3], v[3], w[3], volume = 0, size = 0;
@@ -80,7 +91,8 @@ Box box_of(std::span<const Vec3> x, std::span<const int> vertices) {
   return box;
 }
 
-/// Triangles by the cells that their boxes meet. Those that would fill too many cells are kept apart and looked at always.
+/// Triangles by the cells that their boxes meet. Those that would fill too many cells are kept apart and looked at
+/// always.
 class Grid {
  public:
   Grid(std::span<const Vec3> x, std::span<const Triangle> triangles) {
@@ -88,7 +100,9 @@ class Grid {
     for (const Triangle& t : triangles) boxes_.push_back(box_of(x, t)), size += boxes_.back().size().maxCoeff();
     cell_ = std::max(1e-6, 1.5 * size / static_cast<double>(std::max<std::size_t>(1, triangles.size())));
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      const bool small = for_cells(boxes_[i], [&](std::uint64_t key) { entries_.push_back({key, static_cast<int>(i)}); });
+      const bool small = for_cells(boxes_[i], [&](std::uint64_t key) {
+        entries_.push_back({key, static_cast<int>(i)});
+      });
       if (!small) large_.push_back(static_cast<int>(i));
     }
     std::sort(entries_.begin(), entries_.end());
@@ -98,7 +112,8 @@ class Grid {
   void find(const Box& box, std::vector<int>& out) const {
     out = large_;
     const bool small = for_cells(box, [&](std::uint64_t key) {
-      for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(key, -1)); e != entries_.end() && e->first == key; ++e)
+      for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(key, -1));
+           e != entries_.end() && e->first == key; ++e)
         out.push_back(e->second);
     });
     if (!small)
@@ -118,7 +133,8 @@ class Grid {
     for (int k = 0; k < 3; ++k) {
       const double first = std::floor(box.lo[k] / cell_), last = std::floor(box.hi[k] / cell_);
       cells *= last - first + 1;
-      if (!(cells <= k_most_cells) || !(std::abs(first) < 1e6) || !(std::abs(last) < 1e6)) return false;  // 21 bits each in a key
+      if (!(cells <= k_most_cells) || !(std::abs(first) < 1e6) || !(std::abs(last) < 1e6))
+        return false;  // 21 bits each in a key
       lo[at(k)] = static_cast<std::int64_t>(first), hi[at(k)] = static_cast<std::int64_t>(last);
     }
     for (auto i = lo[0]; i <= hi[0]; ++i)
@@ -137,7 +153,8 @@ class Grid {
 };
 
 std::vector<EdgeTriangle> find_crossings(std::span<const Vec3> edge_x, std::span<const Triangle> edge_surface,
-                                         std::span<const Vec3> x, std::span<const Triangle> triangles, bool one_surface) {
+                                         std::span<const Vec3> x, std::span<const Triangle> triangles,
+                                         bool one_surface) {
   std::vector<EdgeTriangle> out;
   const Grid grid(x, triangles);
   std::vector<int> near;
@@ -147,7 +164,8 @@ std::vector<EdgeTriangle> find_crossings(std::span<const Vec3> edge_x, std::span
       const Triangle& t = triangles[at(i)];
       const auto shares = [&](int v) { return std::find(t.begin(), t.end(), v) != t.end(); };
       if (one_surface && (shares(e[0]) || shares(e[1]))) continue;
-      if (exactly_meets(edge_x[at(e[0])], edge_x[at(e[1])], x[at(t[0])], x[at(t[1])], x[at(t[2])])) out.push_back({e, t});
+      if (exactly_meets(edge_x[at(e[0])], edge_x[at(e[1])], x[at(t[0])], x[at(t[1])], x[at(t[2])]))
+        out.push_back({e, t});
     }
   }
   std::sort(out.begin(), out.end());

@@ -1,7 +1,8 @@
-// A second, independent opinion on the certificate's crossings: no code is shared with collision/crossings.cpp. Candidates come from
-// a uniform grid instead of trees; the decision from signs in extended precision with an error bound, and where that does not decide,
-// from rational arithmetic that computes the intersection itself instead of orientations. Exact; touching counts as crossing.
-// For the torture scenes, where it looks at every frame. Slower than the certificate.
+// A second, independent opinion on the certificate's crossings: no code is shared with collision/crossings.cpp.
+// Candidates come from a uniform grid instead of trees; the decision from signs in extended precision with an error
+// bound, and where that does not decide, from rational arithmetic that computes the intersection itself instead of
+// orientations. Exact; touching counts as crossing. For the torture scenes, where it looks at every frame. Slower than
+// the certificate.
 #pragma once
 
 #include <span>
@@ -11,7 +12,8 @@
 
 namespace ft {
 
-/// Does the closed segment p q meet the closed triangle a b c? Triangles without area are the segments that they have shrunk to.
+/// Does the closed segment p q meet the closed triangle a b c? Triangles without area are the segments that they have
+/// shrunk to.
 bool exactly_meets(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
 struct EdgeTriangle {

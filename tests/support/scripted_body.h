@@ -36,13 +36,15 @@ class ScriptedBody final : public Trajectory {
 };
 
 /// Latitude-longitude sphere around the origin, closed, outward counter-clockwise.
-inline void make_sphere(double radius, int rings, int segments, std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
+inline void make_sphere(double radius, int rings, int segments, std::vector<Vec3>& points,
+                        std::vector<Triangle>& triangles) {
   const int first = static_cast<int>(points.size());
   points.push_back({0, radius, 0});
   for (int r = 1; r < rings; ++r)
     for (int s = 0; s < segments; ++s) {
       const double polar = std::numbers::pi * r / rings, around = 2 * std::numbers::pi * s / segments;
-      points.push_back(radius * Vec3(std::sin(polar) * std::cos(around), std::cos(polar), -std::sin(polar) * std::sin(around)));
+      points.push_back(radius *
+                       Vec3(std::sin(polar) * std::cos(around), std::cos(polar), -std::sin(polar) * std::sin(around)));
     }
   points.push_back({0, -radius, 0});
   const int last = static_cast<int>(points.size()) - 1;
@@ -63,7 +65,8 @@ inline Mesh make_sheet(double side, int cells, double height) {
   std::vector<Triangle> triangles;
   const int n = cells + 1;
   for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) points.push_back({side * (i / double(cells) - 0.5), height, side * (j / double(cells) - 0.5)});
+    for (int i = 0; i < n; ++i)
+      points.push_back({side * (i / double(cells) - 0.5), height, side * (j / double(cells) - 0.5)});
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i) {
       const int a = j * n + i, b = a + 1, c = a + n, d = c + 1;

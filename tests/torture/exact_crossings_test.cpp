@@ -1,10 +1,12 @@
-// The independent checker against the certificate, where they must agree to the last crossing, and against cases worked by hand.
+// The independent checker against the certificate, where they must agree to the last crossing, and against cases worked
+// by hand.
+#include "tests/support/exact_crossings.h"
+
 #include <gtest/gtest.h>
 
 #include "baker/core/mesh.h"
 #include "baker/core/random.h"
 #include "collision/crossings.h"
-#include "tests/support/exact_crossings.h"
 
 namespace ft {
 namespace {
@@ -28,7 +30,8 @@ Soup soup(std::uint64_t seed, int vertices, int triangles, int steps) {
   for (int i = 0; i < triangles; ++i) {
     Triangle t;
     for (int k = 0; k < 3; ++k)
-      t[at(k)] = static_cast<int>(vertices * random_uniform({seed, 2, 0, static_cast<std::uint64_t>(i)}, static_cast<std::uint64_t>(k)));
+      t[at(k)] = static_cast<int>(
+          vertices * random_uniform({seed, 2, 0, static_cast<std::uint64_t>(i)}, static_cast<std::uint64_t>(k)));
     out.t.push_back(t);
   }
   return out;
@@ -64,8 +67,8 @@ TEST(ExactCrossings, tell_a_touch_from_the_least_distance_there_is) {
   EXPECT_TRUE(exactly_meets({-1, 0.5, 0}, {2, 0.5, 0}, a, b, c));
   EXPECT_TRUE(exactly_meets({0.1, 0.1, 0}, {0.2, 0.2, 0}, a, b, c));
   EXPECT_FALSE(exactly_meets({1, 1, 0}, {2, 0.5, 0}, a, b, c));
-  EXPECT_TRUE(exactly_meets({0.5, -1, 0}, {0.5, 1, 0}, a, b, b));   // a triangle that is a segment
-  EXPECT_TRUE(exactly_meets(a, a, a, a, a));                        // and one that is a point
+  EXPECT_TRUE(exactly_meets({0.5, -1, 0}, {0.5, 1, 0}, a, b, b));  // a triangle that is a segment
+  EXPECT_TRUE(exactly_meets(a, a, a, a, a));                       // and one that is a point
   EXPECT_FALSE(exactly_meets(a, a, b, b, b));
 }
 

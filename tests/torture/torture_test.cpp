@@ -1,6 +1,7 @@
-// Every torture scene, every frame: finite, no crossing that the independent checker finds, strain and speed within what the scene
-// itself does to the cloth. Where there is no room: nothing explodes, the report names frame, place and depth, and the cloth comes
-// back. A scene whose entry says what fails today is listed and not run by default; --gtest_also_run_disabled_tests runs it.
+// Every torture scene, every frame: finite, no crossing that the independent checker finds, strain and speed within
+// what the scene itself does to the cloth. Where there is no room: nothing explodes, the report names frame, place and
+// depth, and the cloth comes back. A scene whose entry says what fails today is listed and not run by default;
+// --gtest_also_run_disabled_tests runs it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Torture scenes in which cloth is hit at speed, falls in a pile, lies on points, or has triangles of very different size.
+// Torture scenes in which cloth is hit at speed, falls in a pile, lies on points, or has triangles of very different
+// size.
 #include <numbers>
 
 #include "baker/core/random.h"
@@ -10,7 +11,9 @@ namespace {
 
 constexpr double k_pi = std::numbers::pi;
 
-Pose still(double) { return Pose::Identity(); }
+Pose still(double) {
+  return Pose::Identity();
+}
 
 ClothSetup setup_of(std::vector<ClothGarment> garments, std::shared_ptr<const Trajectory> body) {
   ClothSetup setup;
@@ -28,10 +31,13 @@ ClothSetup ball_through(double speed) {
   make_sphere(0.08, 16, 24, ball.points, ball.triangles);
   RigidParts body;
   body.add("bar", moved(box({0.64, 0.02, 0.02}), {0, 0.016, 0}), still);
-  body.add("ball", moved(ball, {0.013, -0.31, -0.3}), [speed](double t) { return shift({0, 0, std::min(speed * t, 1.5)}); });
+  body.add("ball", moved(ball, {0.013, -0.31, -0.3}), [speed](double t) {
+    return shift({0, 0, std::min(speed * t, 1.5)});
+  });
   ClothGarment sheet;
   sheet.name = "sheet";
-  sheet.mesh = grid("sheet", k_cells, k_cells, false, [](double s, double t) { return Vec3(k_side * (s - 0.5), -k_side * t, 0); });
+  sheet.mesh = grid("sheet", k_cells, k_cells, false,
+                    [](double s, double t) { return Vec3(k_side * (s - 0.5), -k_side * t, 0); });
   ClothPin top;
   for (int i = 0; i <= k_cells; ++i) top.vertices.push_back(i);
   sheet.pins.push_back(top);
@@ -50,18 +56,22 @@ std::shared_ptr<const Trajectory> swinging_ball(double radius) {
   Shape ball;
   make_sphere(radius, 24, 36, ball.points, ball.triangles);
   RigidParts body;
-  body.add("ball", ball, [](double t) { return shift({0.2 * (1 - std::cos(2.5 * k_pi * t)) * (t < 1.6 ? 1 : 0), 0, 0}); });
+  body.add("ball", ball, [](double t) {
+    return shift({0.2 * (1 - std::cos(2.5 * k_pi * t)) * (t < 1.6 ? 1 : 0), 0, 0});
+  });
   return body.build();
 }
 
-/// A sheet of 32 x 32 cells in which some squares of 4 x 4 cells hold rings of squares, each `shrink` times smaller than the last, and
-/// in the middle a grid of 4 x 4 cells again. Two rings.
+/// A sheet of 32 x 32 cells in which some squares of 4 x 4 cells hold rings of squares, each `shrink` times smaller
+/// than the last, and in the middle a grid of 4 x 4 cells again. Two rings.
 Mesh sheet_with_dense_spots(double side, double height, double shrink, int spots) {
   constexpr int k_cells = 32, k_block = 4, k_blocks = k_cells / k_block, k_rings = 2;
   const int n = k_cells + 1;
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
-  const auto place = [&](double i, double j) { return Vec3(side * (i / k_cells - 0.5), height, side * (j / k_cells - 0.5)); };
+  const auto place = [&](double i, double j) {
+    return Vec3(side * (i / k_cells - 0.5), height, side * (j / k_cells - 0.5));
+  };
   const auto quad = [&](int a, int b, int c, int d) {  // around, counter-clockwise seen from above
     triangles.insert(triangles.end(), {{a, b, c}, {a, c, d}});
   };
@@ -122,10 +132,18 @@ Mesh sheet_with_dense_spots(double side, double height, double shrink, int spots
 
 }  // namespace
 
-ClothSetup ball_5() { return ball_through(5); }
-ClothSetup ball_10() { return ball_through(10); }
-ClothSetup ball_20() { return ball_through(20); }
-ClothSetup ball_40() { return ball_through(40); }
+ClothSetup ball_5() {
+  return ball_through(5);
+}
+ClothSetup ball_10() {
+  return ball_through(10);
+}
+ClothSetup ball_20() {
+  return ball_through(20);
+}
+ClothSetup ball_40() {
+  return ball_through(40);
+}
 
 ClothSetup stack() {
   constexpr int k_sheets = 10, k_cells = 18;
@@ -152,7 +170,9 @@ ClothSetup needles() {
   RigidParts body;
   for (int j = 0; j < k_across; ++j)
     for (int i = 0; i < k_across; ++i)
-      body.add("needle", moved(needle, {k_apart * (i - 2) + 0.0013 * j, 0.004 * ((3 * i + 2 * j) % 5), k_apart * (j - 2)}), still);
+      body.add("needle",
+               moved(needle, {k_apart * (i - 2) + 0.0013 * j, 0.004 * ((3 * i + 2 * j) % 5), k_apart * (j - 2)}),
+               still);
   return setup_of({on_a_ball(make_sheet(0.4, 32, 0.16))}, body.build());
 }
 

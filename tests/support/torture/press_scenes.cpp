@@ -34,8 +34,8 @@ ClothSetup pressed_tube(double nearest, bool carve) {
   return setup;
 }
 
-/// An arm along x, one skin with two parts, whose elbow at the origin bends to `degrees` and back. Around the elbow the middle line is an
-/// arc of 10 cm, so the inner side of the skin folds into itself.
+/// An arm along x, one skin with two parts, whose elbow at the origin bends to `degrees` and back. Around the elbow the
+/// middle line is an arc of 10 cm, so the inner side of the skin folds into itself.
 std::shared_ptr<ScriptedBody> bending_arm(double degrees) {
   constexpr double k_radius = 0.045, k_half_arc = 0.05;
   const Shape arm = capsule(0.34, -0.34, k_radius, 64, 32);
@@ -67,8 +67,12 @@ std::shared_ptr<ScriptedBody> bending_arm(double degrees) {
 
 }  // namespace
 
-ClothSetup plates() { return pressed_tube(1e-3, true); }
-ClothSetup plates_no_room() { return pressed_tube(-2e-3, false); }
+ClothSetup plates() {
+  return pressed_tube(1e-3, true);
+}
+ClothSetup plates_no_room() {
+  return pressed_tube(-2e-3, false);
+}
 
 ClothSetup elbow() {
   constexpr int k_around = 40, k_along = 44;
@@ -103,7 +107,8 @@ ClothSetup legs() {
   constexpr int k_columns = 28, k_rows = 52;
   ClothGarment panel;
   panel.name = "panel";
-  panel.mesh = grid("panel", k_columns, k_rows, false, [](double s, double t) { return Vec3(0, 0.085 - 0.65 * t, 0.35 * (s - 0.5)); });
+  panel.mesh = grid("panel", k_columns, k_rows, false,
+                    [](double s, double t) { return Vec3(0, 0.085 - 0.65 * t, 0.35 * (s - 0.5)); });
   ClothPin top;
   for (int i = 0; i <= k_columns; ++i) top.vertices.push_back(i);
   panel.pins.push_back(top);

@@ -25,15 +25,18 @@ ClothSetup setup_of(ClothGarment garment, std::shared_ptr<const Trajectory> body
   return setup;
 }
 
-/// A sheet with a ball under its middle that takes it straight down, by `way` in `seconds`, through the opening of `part`.
-ClothSetup pulled_down_through(const std::string& part, const Shape& opening, double height, double side, double way, double seconds) {
+/// A sheet with a ball under its middle that takes it straight down, by `way` in `seconds`, through the opening of
+/// `part`.
+ClothSetup pulled_down_through(const std::string& part, const Shape& opening, double height, double side, double way,
+                               double seconds) {
   constexpr double k_ball = 12e-3;
   Shape ball;
   make_sphere(k_ball, 8, 12, ball.points, ball.triangles);
   RigidParts body;
   body.add(part, opening, [](double) { return Pose::Identity(); });
-  body.add("ball", moved(ball, {0, height - k_ball - 3.5e-3, 0}),
-           [=](double t) { return shift({0, -way * ease(t, 0.1, 0.1 + seconds), 0}); });
+  body.add("ball", moved(ball, {0, height - k_ball - 3.5e-3, 0}), [=](double t) {
+    return shift({0, -way * ease(t, 0.1, 0.1 + seconds), 0});
+  });
   ClothGarment sheet;
   sheet.name = "sheet";
   constexpr int k_cells = 32;
@@ -53,7 +56,8 @@ ClothSetup twist() {
   const auto clamp_motion = [](double side) {
     return [side](double t) {
       const double share = ease(t, 0, k_seconds);
-      return shift({-side * 0.5 * k_shortening * share, 0, 0}) * turn(Vec3::Zero(), Vec3::UnitX(), side * k_pi * k_turns * share);
+      return shift({-side * 0.5 * k_shortening * share, 0, 0}) *
+             turn(Vec3::Zero(), Vec3::UnitX(), side * k_pi * k_turns * share);
     };
   };
   RigidParts body;
@@ -74,18 +78,20 @@ ClothSetup twist() {
 
 ClothSetup ring() {
   std::vector<Vec2> profile;
-  for (int i = 0; i < 12; ++i) profile.push_back({0.06 + 0.01 * std::cos(k_pi * i / 6), -0.01 * std::sin(k_pi * i / 6)});
+  for (int i = 0; i < 12; ++i)
+    profile.push_back({0.06 + 0.01 * std::cos(k_pi * i / 6), -0.01 * std::sin(k_pi * i / 6)});
   return pulled_down_through("ring", lathe(profile, true, 48), 0.02, 0.36, 0.45, 1.5);
 }
 
 ClothSetup funnel() {
   constexpr double k_wall = 8e-3;
-  std::vector<Vec2> profile = {{0.3 + k_wall, 0.2}, {0.05 + k_wall, 0}, {0.05 + k_wall, -0.12}, {0.05, -0.12}, {0.05, 0}, {0.3, 0.2}};
+  std::vector<Vec2> profile = {{0.3 + k_wall, 0.2}, {0.05 + k_wall, 0}, {0.05 + k_wall, -0.12},
+                               {0.05, -0.12},       {0.05, 0},          {0.3, 0.2}};
   return pulled_down_through("funnel", lathe(profile, true, 64), 0.21, 0.36, 0.6, 1.5);
 }
 
-/// The trefoil of Shastri (1992), (t^3 - 3t, t^4 - 4t^2, t^5 - 10t), squeezed along z; the ribbon's width lies along the binormal, so
-/// that its middle line is as straight in the ribbon as it can be.
+/// The trefoil of Shastri (1992), (t^3 - 3t, t^4 - 4t^2, t^5 - 10t), squeezed along z; the ribbon's width lies along
+/// the binormal, so that its middle line is as straight in the ribbon as it can be.
 ClothSetup knot() {
   constexpr double k_scale = 0.036, k_squeeze = 0.3, k_end = 2.15, k_width = 12e-3, k_pull = 0.24;
   constexpr int k_columns = 300, k_rows = 4, k_fine = 4000;
@@ -93,12 +99,14 @@ ClothSetup knot() {
     return Vec3(k_scale * Vec3(t * t * t - 3 * t, t * t * t * t - 4 * t * t, k_squeeze * (std::pow(t, 5) - 10 * t)));
   };
   const auto binormal = [&](double t) {
-    const Vec3 d1(3 * t * t - 3, 4 * t * t * t - 8 * t, k_squeeze * (5 * t * t * t * t - 10)), d2(6 * t, 12 * t * t - 8, k_squeeze * 20 * t * t * t);
+    const Vec3 d1(3 * t * t - 3, 4 * t * t * t - 8 * t, k_squeeze * (5 * t * t * t * t - 10)),
+        d2(6 * t, 12 * t * t - 8, k_squeeze * 20 * t * t * t);
     return d1.cross(d2).normalized().eval();
   };
   std::vector<double> length = {0};  // to parameter -k_end + 2 k_end i / k_fine
   const auto parameter = [&](double i) { return k_end * (2 * i / k_fine - 1); };
-  for (int i = 0; i < k_fine; ++i) length.push_back(length.back() + (curve(parameter(i + 1)) - curve(parameter(i))).norm());
+  for (int i = 0; i < k_fine; ++i)
+    length.push_back(length.back() + (curve(parameter(i + 1)) - curve(parameter(i))).norm());
   const auto parameter_at = [&](double share) {
     const auto next = std::upper_bound(length.begin() + 1, length.end() - 1, share * length.back());
     const double i = static_cast<double>(next - length.begin());
@@ -122,7 +130,8 @@ ClothSetup knot() {
   const auto beyond = [&](double t, double sign) {
     return Vec3(curve(t) + 11e-3 * (curve(t) - curve(t - sign * 1e-4)).normalized());
   };
-  body.add("first", moved(ball, beyond(-k_end, -1)), [apart](double t) { return shift(-k_pull * ease(t, 0, 2) * apart); });
+  body.add("first", moved(ball, beyond(-k_end, -1)),
+           [apart](double t) { return shift(-k_pull * ease(t, 0, 2) * apart); });
   body.add("last", moved(ball, beyond(k_end, 1)), [apart](double t) { return shift(k_pull * ease(t, 0, 2) * apart); });
   return setup_of(std::move(ribbon), body.build());
 }

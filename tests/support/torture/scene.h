@@ -1,5 +1,6 @@
-// Torture scenes: small, short, and each nasty in one way. One visible list (scenes.cpp) serves the tests (tests/torture) and the
-// benchmark (tests/bench/run.sh torture NAME|all). A new scene is a function and a line in the list.
+// Torture scenes: small, short, and each nasty in one way. One visible list (scenes.cpp) serves the tests
+// (tests/torture) and the benchmark (tests/bench/run.sh torture NAME|all). A new scene is a function and a line in the
+// list.
 #pragma once
 
 #include <functional>
@@ -13,13 +14,15 @@ namespace ft::torture {
 
 struct Scene {
   std::string name;
-  std::string what;             ///< one sentence
+  std::string what;  ///< one sentence
   ClothSetup (*make)() = nullptr;
-  int frames = 24;              ///< 24 a second, no pre-roll: the walk goes from frame 1 to frame 1 + frames
-  double strain_bar = 0.1;      ///< p99 edge strain that no frame may exceed [1]: what this scene's pull stretches cloth to, and not more
-  double speed_bar = 10;        ///< root mean square speed that no frame may exceed [m/s]: twice what drives the scene, and 3 m/s
-  bool has_room = true;         ///< false: for some frames there is none, cloth must be let through, named, and come back
-  std::string fails_today;      ///< empty, or what is seen: the test is then listed and not run by default
+  int frames = 24;  ///< 24 a second, no pre-roll: the walk goes from frame 1 to frame 1 + frames
+  double strain_bar =
+      0.1;  ///< p99 edge strain that no frame may exceed [1]: what this scene's pull stretches cloth to, and not more
+  double speed_bar =
+      10;  ///< root mean square speed that no frame may exceed [m/s]: twice what drives the scene, and 3 m/s
+  bool has_room = true;     ///< false: for some frames there is none, cloth must be let through, named, and come back
+  std::string fails_today;  ///< empty, or what is seen: the test is then listed and not run by default
 };
 
 /// All scenes.
@@ -35,7 +38,7 @@ struct CheckedFrame {
 };
 
 struct Walked {
-  CheckedFrame start;                  ///< nothing has moved; only its crossings are set
+  CheckedFrame start;  ///< nothing has moved; only its crossings are set
   std::vector<CheckedFrame> frames;
   int vertex_count = 0, triangle_count = 0;
 };

@@ -1,9 +1,8 @@
 // The list of torture scenes.
-#include "tests/support/torture/scene.h"
-
 #include <algorithm>
 #include <vector>
 
+#include "tests/support/torture/scene.h"
 #include "tests/support/torture/scene_functions.h"
 
 namespace ft::torture {
@@ -11,18 +10,21 @@ namespace ft::torture {
 std::span<const Scene> scenes() {
   static const std::vector<Scene> list = {
       // name, what, make, frames, strain, speed, has room, fails today
-      // Twist: 20 cm of cloth 2 mm apart make a rope 3 cm thick, whose outer fibre ten turns over 64 cm stretch by 42 %.
+      // Twist: 20 cm of cloth 2 mm apart make a rope 3 cm thick, whose outer fibre ten turns over 64 cm stretch by 42
+      // %.
       {"twist", "a sheet is twisted by ten turns", twist, 56, 0.3, 9, true,
        "from the seventh turn on (frame 31) a frame takes 10 s and more; not walked to its end yet"},
       {"ring", "a sheet is pulled through a ring", ring, 44, 0.3, 5, true, ""},
       {"funnel", "a sheet is pulled through a funnel", funnel, 44, 0.3, 5, true, ""},
       {"knot", "a knotted ribbon is pulled tight", knot, 54, 0.3, 5, true,
-       "p99 strain reaches 13 % in frame 4 and 150 % from frame 6 on, before anything is tight; 12 Newton iterations instead of 3 keep frame 4 at 0.6 %"},
+       "p99 strain reaches 13 % in frame 4 and 150 % from frame 6 on, before anything is tight; 12 Newton iterations "
+       "instead of 3 keep frame 4 at 0.6 %"},
       {"plates", "plates close on a tube of cloth to less than its thickness, and open", plates, 60, 0.2, 4, true, ""},
-      {"plates_no_room", "plates pass into each other with cloth between them, and open", plates_no_room, 72, 0.3, 4, false,
-       "the walk gets stuck in frame 24, when the plates touch"},
+      {"plates_no_room", "plates pass into each other with cloth between them, and open", plates_no_room, 72, 0.3, 4,
+       false, "the walk gets stuck in frame 24, when the plates touch"},
       {"elbow", "a sleeve on an elbow that bends to 150 degrees, and back", elbow, 64, 0.3, 6, true,
-       "the walk gets stuck when the crease closes: frame 21 takes 20 s, frame 22 more than that; nothing crosses up to there"},
+       "the walk gets stuck when the crease closes: frame 21 takes 20 s, frame 22 more than that; nothing crosses up "
+       "to there"},
       {"legs", "a panel between two legs that cross, and open", legs, 60, 0.3, 6, true, ""},
       {"ball_5", "a ball goes through a hanging sheet at 5 m/s", ball_5, 24, 0.5, 13, true, ""},
       {"ball_10", "a ball goes through a hanging sheet at 10 m/s", ball_10, 24, 0.5, 23, true, ""},

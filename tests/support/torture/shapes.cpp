@@ -47,7 +47,8 @@ Shape capsule(double top, double bottom, double radius, int rings, int segments)
 
 Shape box(const Vec3& sides) {
   Shape out;
-  for (int i = 0; i < 8; ++i) out.points.push_back(0.5 * sides.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  for (int i = 0; i < 8; ++i)
+    out.points.push_back(0.5 * sides.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
   const std::array<std::array<int, 4>, 6> faces = {
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
   for (const auto& f : faces) out.triangles.insert(out.triangles.end(), {{f[0], f[1], f[2]}, {f[0], f[2], f[3]}});
@@ -59,7 +60,9 @@ Shape moved(Shape shape, const Vec3& by) {
   return shape;
 }
 
-Pose shift(const Vec3& by) { return Pose(Eigen::Translation3d(by)); }
+Pose shift(const Vec3& by) {
+  return Pose(Eigen::Translation3d(by));
+}
 
 Pose turn(const Vec3& pivot, const Vec3& axis, double angle) {
   return Eigen::Translation3d(pivot) * Eigen::AngleAxisd(angle, axis.normalized()) * Eigen::Translation3d(-pivot);
@@ -76,7 +79,8 @@ RigidParts& RigidParts::add(const std::string& name, const Shape& shape, RigidMo
 }
 
 std::shared_ptr<ScriptedBody> RigidParts::build() const {
-  const auto place = [parts = surface_.part_of_vertex, points = points_, motions = motions_](double time, std::span<Vec3> out) {
+  const auto place = [parts = surface_.part_of_vertex, points = points_, motions = motions_](double time,
+                                                                                             std::span<Vec3> out) {
     std::vector<Pose> poses;
     for (const RigidMotion& motion : motions) poses.push_back(motion(time));
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = poses[at(parts[i])] * points[i];
@@ -91,12 +95,14 @@ double ease(double time, double from, double to) {
   return t * t * (3 - 2 * t);
 }
 
-Mesh grid(const std::string& name, int columns, int rows, bool round, const std::function<Vec3(double, double)>& place) {
+Mesh grid(const std::string& name, int columns, int rows, bool round,
+          const std::function<Vec3(double, double)>& place) {
   const int across = round ? columns : columns + 1;
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
   for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i < across; ++i) points.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
+    for (int i = 0; i < across; ++i)
+      points.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int a = j * across + i, b = j * across + (i + 1) % across, c = a + across, d = b + across;

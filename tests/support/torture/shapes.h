@@ -1,5 +1,5 @@
-// Bodies and meshes that torture scenes are made of: closed surfaces of revolution, boxes, bodies of rigid parts that move by formula,
-// and cloth as grids over a function.
+// Bodies and meshes that torture scenes are made of: closed surfaces of revolution, boxes, bodies of rigid parts that
+// move by formula, and cloth as grids over a function.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,8 @@ struct Shape {
   std::vector<Triangle> triangles;  ///< counter-clockwise seen from outside
 };
 
-/// Profile of (radius, height) turned around the y axis. Open profiles run from the top to the bottom and begin and end on the axis;
-/// closed ones run downwards where the radius is largest.
+/// Profile of (radius, height) turned around the y axis. Open profiles run from the top to the bottom and begin and end
+/// on the axis; closed ones run downwards where the radius is largest.
 Shape lathe(const std::vector<Vec2>& profile, bool closed, int segments);
 /// From `top` to `bottom` along the y axis, hemispheres included [m].
 Shape capsule(double top, double bottom, double radius, int rings, int segments);
@@ -47,8 +47,8 @@ class RigidParts {
 /// 0 before `from`, 1 after `to`, a smooth step between [s].
 double ease(double time, double from, double to);
 
-/// Grid of columns x rows cells over place(s, t), s and t in [0, 1]; alternating diagonals. Vertex (i, j) is i + (columns + 1) j;
-/// with `round` the last column is the first one again and a row has `columns` vertices.
+/// Grid of columns x rows cells over place(s, t), s and t in [0, 1]; alternating diagonals. Vertex (i, j) is i +
+/// (columns + 1) j; with `round` the last column is the first one again and a row has `columns` vertices.
 Mesh grid(const std::string& name, int columns, int rows, bool round, const std::function<Vec3(double, double)>& place);
 
 }  // namespace ft::torture

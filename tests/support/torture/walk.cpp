@@ -19,7 +19,8 @@ double cloth_mass(const ClothSetup& setup) {
   double mass = 0;
   for (const ClothGarment& g : setup.garments)
     for (const Triangle& t : triangulate(g.mesh))
-      mass += g.fabric.mass_per_area * triangle_area(g.mesh.positions[at(t[0])], g.mesh.positions[at(t[1])], g.mesh.positions[at(t[2])]);
+      mass += g.fabric.mass_per_area *
+              triangle_area(g.mesh.positions[at(t[0])], g.mesh.positions[at(t[1])], g.mesh.positions[at(t[2])]);
   return mass;
 }
 
