@@ -60,11 +60,12 @@ Result<std::vector<double>> values_of(const MapSpec& map, const Mesh& mesh) {
   return values;
 }
 
+/// A kind of the shot file is the solver's map of that name.
 std::vector<double> VertexMaps::*member_of(const std::string& kind) {
-  return kind == "stretch"     ? &VertexMaps::stretch
-         : kind == "bend"      ? &VertexMaps::bend
-         : kind == "thickness" ? &VertexMaps::thickness
-                               : &VertexMaps::mass_per_area;
+  const auto found =
+      std::find_if(k_vertex_maps.begin(), k_vertex_maps.end(), [&](const NamedMap& map) { return map.name == kind; });
+  CHECK(found != k_vertex_maps.end());
+  return found->values;
 }
 
 }  // namespace
@@ -85,10 +86,10 @@ Result<VertexMaps> resolve_maps(std::span<const MapSpec> maps, const Mesh& mesh)
 
 VertexMaps on_joined(const VertexMaps& maps, std::span<const int> joined_of, int joined_count) {
   VertexMaps out;
-  for (const auto map : {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness}) {
-    const std::vector<double>& values = maps.*map;
+  for (const NamedMap& map : k_vertex_maps) {
+    const std::vector<double>& values = maps.*map.values;
     if (values.empty()) continue;
-    std::vector<double>& joined = out.*map;
+    std::vector<double>& joined = out.*map.values;
     std::vector<int> count(at(joined_count), 0);
     joined.assign(at(joined_count), 0.0);
     // Running means: what agrees stays exactly what it is.

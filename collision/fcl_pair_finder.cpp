@@ -249,16 +249,9 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& ou
   out.vertex_face.clear();
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
-  const Walk<k_some> walk{features,
-                          cloth.nodes(),
-                          other.nodes(),
-                          cloth.marks(),
-                          other.marks(),
-                          changed,
-                          features.cloth.data(),
-                          task.self ? features.cloth.data() : features.collider.data(),
-                          want_edges,
-                          out};
+  const PairElement* other_elements = task.self ? features.cloth.data() : features.collider.data();
+  const Walk<k_some> walk{features, cloth.nodes(),         other.nodes(),  cloth.marks(), other.marks(),
+                          changed,  features.cloth.data(), other_elements, want_edges,    out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
 

@@ -15,7 +15,7 @@ constexpr double k_shortest_cut = 0.25;
 constexpr int k_shortened_newton = 4;
 /// Cloth that wants to leave its slack by more than k_negligible gets more, with some to spare: what is held back loses
 /// momentum [m].
-constexpr double k_negligible = 5e-4;
+constexpr double k_negligible = 2e-5;
 constexpr double k_spare = 5e-4;
 constexpr double k_asked = 1.5;  ///< of what is missing
 /// Rounds in which cloth that would touch is joined to zones, before the piece is shortened.

@@ -19,7 +19,6 @@ constexpr double k_farthest_range = 0.05;  ///< body motion that the search for 
 constexpr double k_slack_way = 0.6;           ///< of the way between the two; half of it reaches both
 constexpr double k_slack_acceleration = 0.6;  ///< of what the last step's acceleration makes in this one, on top
 constexpr double k_slack_gravity = 0.6;       ///< of h2 g
-constexpr double k_slack_let_go = 6;          ///< of h2 g, in a step without history: what was let go may jump
 constexpr double k_most_acceleration =
     2e-3;                              ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
 constexpr double k_slack_body = 0.03;  ///< of the body's motion near the cloth: rubbing and the carry's own error
@@ -147,12 +146,11 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
   Vec3 acceleration = gained * (cloth.v[i] - cloth.v_previous[i]);
   const double pull = acceleration.norm();
   if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
-  const double fall = cloth.h_previous > 0 ? k_slack_gravity : k_slack_let_go;
   const Vec3 way = h_ * cloth.v[i] + 0.5 * acceleration - piece.carry[i];
   piece.centre[i] = piece.carry[i] + 0.5 * way;
   piece.slack[i] = k_slack_way * way.norm() + k_slack_acceleration * std::min(pull, k_most_acceleration) +
-                   fall * h_ * h_ * model_.setup.gravity.norm() + k_slack_body * std::min(fastest_, k_farthest_range) +
-                   k_slack_least;
+                   k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() +
+                   k_slack_body * std::min(fastest_, k_farthest_range) + k_slack_least;
   set_box(i, cloth, piece);
 }
 

@@ -31,6 +31,24 @@ std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Tr
   return out;
 }
 
+Status check_maps(const ClothGarment& garment) {
+  for (const NamedMap& map : k_vertex_maps) {
+    const std::vector<double>& values = garment.maps.*map.values;
+    const std::string owner = "cloth \"" + garment.name + "\": map of " + std::string(map.name);
+    if (values.empty()) continue;
+    if (values.size() != garment.mesh.positions.size())
+      return input_error(owner + " has " + std::to_string(values.size()) + " values for " +
+                         std::to_string(garment.mesh.positions.size()) + " vertices");
+    // Cloth folds without resistance where it likes, but it has mass, thickness and a length.
+    const bool may_vanish = map.values == &VertexMaps::bend;
+    for (std::size_t v = 0; v < values.size(); ++v)
+      if (!std::isfinite(values[v]) || values[v] < 0 || (values[v] == 0 && !may_vanish))
+        return input_error(owner + ": " + std::to_string(values[v]) + " at vertex " + std::to_string(v) + " is not " +
+                           (may_vanish ? "0 or above" : "above 0"));
+  }
+  return {};
+}
+
 Status check(const ClothSetup& setup) {
   if (setup.garments.empty()) return input_error("a cloth system needs at least one garment");
   for (const ClothGarment& g : setup.garments) {
@@ -43,17 +61,7 @@ Status check(const ClothSetup& setup) {
             !(s.place >= 0 && s.place <= 1))
           return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) +
                              " cannot be sewn");
-    for (const auto map :
-         {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness}) {
-      const std::vector<double>& values = g.maps.*map;
-      if (!values.empty() && values.size() != g.mesh.positions.size())
-        return input_error("cloth \"" + g.name + "\": a map needs one value per vertex");
-      // Cloth folds without resistance where it likes, but it has mass, thickness and a length.
-      const bool may_vanish = map == &VertexMaps::bend;
-      for (const double value : values)
-        if (!std::isfinite(value) || value < 0 || (value == 0 && !may_vanish))
-          return input_error("cloth \"" + g.name + "\": a map has a value that is no number or not above 0");
-    }
+    if (const Status maps = check_maps(g); !maps) return maps;
     for (const ClothPin& pin : g.pins) {
       for (const int v : pin.vertices)
         if (v < 0 || v >= g.mesh.vertex_count())

@@ -13,8 +13,8 @@
 #include "baker/core/teleport.h"
 #include "baker/core/trajectory.h"
 #include "collision/feasible_collider.h"
+#include "solvers/cloth/hold_span.h"
 #include "solvers/energies/cloth_topology.h"
-#include "solvers/energies/hold_span.h"
 #include "solvers/solver.h"
 
 namespace ft {

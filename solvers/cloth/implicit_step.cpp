@@ -6,6 +6,7 @@
 
 #include "baker/core/parallel.h"
 #include "collision/truncate_dat.h"
+#include "solvers/energies/limited_spring.h"
 
 namespace ft {
 namespace {
@@ -34,20 +35,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-struct PinForce {
-  Vec3 gradient;
-  double stiffness, energy;
-};
-
-/// Spring with a force limit: quadratic up to the limit, linear beyond. `share` of it holds.
-PinForce pin_force(const PinPoint& pin, double share, const Vec3& x, const Vec3& target) {
-  const Vec3 d = x - target;
-  const double length = d.norm();
-  const double stiffness = share * pin.stiffness, max_pull = share * pin.max_pull;
-  const double pull = stiffness * length;
-  if (pull <= max_pull) return {stiffness * d, stiffness, 0.5 * stiffness * length * length};
-  const double elastic = max_pull / stiffness;
-  return {max_pull / length * d, max_pull / length, max_pull * (length - 0.5 * elastic)};
+LimitedSpring pin_spring(const PinPoint& pin, double share, double stretch) {
+  return limited_spring(stretch, share * pin.stiffness, share * pin.max_pull);
 }
 
 }  // namespace
@@ -65,7 +54,7 @@ struct ImplicitStep::Scratch {
   ContactPotential contact;
   std::vector<Vec3> y, gradient, direction, all, trial;
   std::vector<double> share, missing;
-  std::vector<double> pin_share;  // of each pin\'s force, at the end of the step
+  std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
   std::vector<PairTerm> terms;
   ContactPairs near;
 };
@@ -124,7 +113,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     for (const auto& energy : model_.energies) e += energy->value(x);
     for (std::size_t p = 0; p < model_.pins.size(); ++p)
       if (s.pin_share[p] > 0)
-        e += pin_force(model_.pins[p], s.pin_share[p], x[at(model_.pins[p].vertex)], in.pin_target[p]).energy;
+        e +=
+            pin_spring(model_.pins[p], s.pin_share[p], (x[at(model_.pins[p].vertex)] - in.pin_target[p]).norm()).energy;
     return e + s.contact.value(all);
   };
 
@@ -151,12 +141,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     for (std::size_t p = 0; p < model_.pins.size(); ++p) {
       const PinPoint& pin = model_.pins[p];
       if (s.pin_share[p] == 0) continue;
-      const PinForce f = pin_force(pin, s.pin_share[p], x[at(pin.vertex)], in.pin_target[p]);
-      s.gradient[at(pin.vertex)] += f.gradient;
+      const Vec3 d = x[at(pin.vertex)] - in.pin_target[p];
+      const double stiffness = pin_spring(pin, s.pin_share[p], d.norm()).secant;
+      s.gradient[at(pin.vertex)] += stiffness * d;
       PairTerm term;
       term.vertex[0] = pin.vertex;
       term.weight[0] = 1;
-      term.stiffness = Mat3f::Identity() * static_cast<float>(f.stiffness);
+      term.stiffness = Mat3f::Identity() * static_cast<float>(stiffness);
       s.terms.push_back(term);
     }
     s.contact.add_gradient(s.all, s.gradient);

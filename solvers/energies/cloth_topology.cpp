@@ -91,8 +91,10 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
   std::vector<int> piece_of(rest.size(), -1);
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     CHECK(pieces[p].first_vertex >= 0 && pieces[p].first_vertex + pieces[p].vertex_count <= out.vertex_count);
-    for (const auto map : {&VertexMaps::stretch, &VertexMaps::bend, &VertexMaps::mass_per_area, &VertexMaps::thickness})
-      CHECK((pieces[p].maps.*map).empty() || (pieces[p].maps.*map).size() == at(pieces[p].vertex_count));
+    for (const NamedMap& map : k_vertex_maps) {
+      const std::vector<double>& values = pieces[p].maps.*map.values;
+      CHECK(values.empty() || values.size() == at(pieces[p].vertex_count));
+    }
     std::fill_n(piece_of.begin() + pieces[p].first_vertex, pieces[p].vertex_count, static_cast<int>(p));
   }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "baker/core/types.h"
@@ -21,6 +22,16 @@ struct VertexMaps {
   std::vector<double> mass_per_area;  ///< kg/m2, instead of the fabric's
   std::vector<double> thickness;      ///< m, instead of the garment's; for contact
 };
+
+/// The maps by name, as users and messages call them.
+struct NamedMap {
+  std::string_view name;
+  std::vector<double> VertexMaps::*values;
+};
+inline constexpr std::array<NamedMap, 4> k_vertex_maps = {{{"stretch", &VertexMaps::stretch},
+                                                           {"bend", &VertexMaps::bend},
+                                                           {"mass_per_area", &VertexMaps::mass_per_area},
+                                                           {"thickness", &VertexMaps::thickness}}};
 
 /// A garment: a range of vertices of one fabric.
 struct ClothPiece {

@@ -48,7 +48,7 @@ Fabric measured(std::string name, double mass, double warp, double weft, double 
 }
 
 /// The weave stiffens beyond these strains of warp and weft.
-Fabric limited(Fabric fabric, double warp, double weft) {
+Fabric limited(double warp, double weft, Fabric fabric) {
   fabric.limit_warp = warp;
   fabric.limit_weft = weft;
   return fabric;
@@ -67,32 +67,32 @@ std::span<const Fabric> fabrics() {
       measured("jersey", 0.187, 331, 97, 36.9, 0.45, 32.4e-6, 15.1e-6, 3e-3,
                std::string(k_wang) + "gray-interlock (tee-shirt, 60 % cotton 40 % polyester)"),
       limited(
+          0.04, 0.04,
           typical(
               "cotton", 0.150, 500, 500, 1.8, 0.243, 0.10, 0.10, 2e-3,
               "Penava et al. 2014 (density, Poisson's ratio, plain weave); stretch between their 261 N/m at first load "
               "and Wang 2011's 2110 "
-              "N/m of a cotton-polyester weave; bending and shear typical KES values of shirting [literature]"),
-          0.04, 0.04),
-      limited(measured("denim", 0.324, 1055, 227, 72.6, 0.09, 62.0e-6, 109.6e-6, 3e-3,
-                       std::string(k_wang) + "11oz-black-denim (jeans, 99 % cotton 1 % spandex, elastic weft)"),
-              0.04, 0),
-      limited(typical("silk", 0.060, 400, 350, 0.32, 0.2, 0.036, 0.030, 1e-3,
-                      "typical KES values of silk filament weaves, 14 momme; stretch at garment loads [literature]"),
-              0.04, 0.04),
+              "N/m of a cotton-polyester weave; bending and shear typical KES values of shirting [literature]")),
+      limited(0.04, 0,
+              measured("denim", 0.324, 1055, 227, 72.6, 0.09, 62.0e-6, 109.6e-6, 3e-3,
+                       std::string(k_wang) + "11oz-black-denim (jeans, 99 % cotton 1 % spandex, elastic weft)")),
+      limited(0.04, 0.04,
+              typical("silk", 0.060, 400, 350, 0.32, 0.2, 0.036, 0.030, 1e-3,
+                      "typical KES values of silk filament weaves, 14 momme; stretch at garment loads [literature]")),
       limited(
+          0.05, 0.05,
           typical("wool", 0.235, 400, 300, 0.7, 0.277, 0.13, 0.09, 3e-3,
                   "Penava et al. 2014 (density, Poisson's ratio, plain weave); the rest typical KES values of suiting "
-                  "[literature]"),
-          0.05, 0.05),
+                  "[literature]")),
       limited(
+          0.02, 0.02,
           typical(
               "ripstop", 0.0475, 3000, 2500, 3.0, 0.15, 0.055, 0.045, 1e-3,
               "coated nylon ripstop of kites and shells: Doyle, North Cloth (1.4 oz/yd2); stiffness typical of coated "
-              "nylon [literature]"),
-          0.02, 0.02),
-      limited(typical("linen", 0.185, 900, 800, 1.2, 0.15, 0.20, 0.16, 3e-3,
-                      "typical KES values of dress linen [literature]"),
-              0.03, 0.03),
+              "nylon [literature]")),
+      limited(0.03, 0.03,
+              typical("linen", 0.185, 900, 800, 1.2, 0.15, 0.20, 0.16, 3e-3,
+                      "typical KES values of dress linen [literature]")),
       measured("sweater", 0.224, 221, 75, 17.6, 0.45, 42.1e-6, 34.8e-6, 5e-3,
                std::string(k_wang) + "navy-sparkle-sweat (sweater, 96 % polyester 4 % spandex)"),
       measured("rib_knit", 0.276, 177, 65.6, 83.2, 0.01, 72.5e-6, 37.1e-6, 5e-3,
@@ -101,12 +101,12 @@ std::span<const Fabric> fabrics() {
                std::string(k_wang) + "camel-ponte-roma (jacket, 60 % polyester 40 % rayon)"),
       measured("swim", 0.204, 115, 50.4, 60.8, 0.21, 60.4e-6, 50.6e-6, 4e-3,
                std::string(k_wang) + "white-swim-solid (swimsuit, 87 % nylon 13 % spandex)"),
-      limited(measured("polyester", 0.128, 2146, 2107, 43.7, 0.02, 51.8e-6, 27.8e-6, 2e-3,
-                       std::string(k_wang) + "white-dots-on-blk (tablecloth, 100 % polyester)"),
-              0.04, 0.04),
-      limited(measured("twill", 0.220, 2148, 2110, 49.8, 0.02, 180.8e-6, 180.8e-6, 3e-3,
-                       std::string(k_wang) + "royal-target (trousers, 65 % cotton 35 % polyester)"),
-              0.04, 0.04),
+      limited(0.04, 0.04,
+              measured("polyester", 0.128, 2146, 2107, 43.7, 0.02, 51.8e-6, 27.8e-6, 2e-3,
+                       std::string(k_wang) + "white-dots-on-blk (tablecloth, 100 % polyester)")),
+      limited(0.04, 0.04,
+              measured("twill", 0.220, 2148, 2110, 49.8, 0.02, 180.8e-6, 180.8e-6, 3e-3,
+                       std::string(k_wang) + "royal-target (trousers, 65 % cotton 35 % polyester)")),
   };
   return list;
 }

@@ -41,7 +41,7 @@ void strain(const Deformation& d, Lane* e) {
   }
 }
 
-/// Strain over which the crimp goes out of yarns and their stiffness comes in.
+/// Strain over which the crimp goes out of yarns and their stiffness comes in [1].
 constexpr double k_straightening = 0.01;
 
 struct Taut {

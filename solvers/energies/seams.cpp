@@ -4,21 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "solvers/energies/limited_spring.h"
+
 namespace ft {
 namespace {
 
 constexpr double k_no_length = 1e-12;  ///< a spring shorter than this has no direction [m]
-
-struct Pull {
-  double energy = 0, force = 0, secant = 0;  ///< J, N, N/m
-};
-
-Pull pull_of(double excess, double stiffness, double limit) {
-  if (excess <= 0) return {};
-  const double elastic = limit / stiffness;
-  if (excess <= elastic) return {0.5 * stiffness * excess * excess, stiffness * excess, stiffness};
-  return {limit * (excess - 0.5 * elastic), limit, limit / excess};
-}
 
 Vec3 gap(const SeamPoint& p, std::span<const Vec3> x) {
   return x[at(p.vertex)] - (1 - p.place) * x[at(p.edge[0])] - p.place * x[at(p.edge[1])];
@@ -54,7 +45,8 @@ void Seams::begin_step(const StepContext& context) {
 double Seams::value(std::span<const Vec3> x) const {
   double sum = 0;
   for (std::size_t i = 0; i < points_.size(); ++i)
-    sum += pull_of(gap(points_[i], x).norm() - targets_[i].length, points_[i].stiffness, targets_[i].limit).energy;
+    sum +=
+        limited_spring(gap(points_[i], x).norm() - targets_[i].length, points_[i].stiffness, targets_[i].limit).energy;
   return sum;
 }
 
@@ -63,7 +55,7 @@ void Seams::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) cons
     const Vec3 d = gap(points_[i], x);
     const double length = d.norm();
     if (length < k_no_length) continue;
-    const Pull pull = pull_of(length - targets_[i].length, points_[i].stiffness, targets_[i].limit);
+    const LimitedSpring pull = limited_spring(length - targets_[i].length, points_[i].stiffness, targets_[i].limit);
     const auto w = weights(points_[i]);
     for (std::size_t k = 0; k < 3; ++k) gradient[at(stencils_[i][k])] += (w[k] * pull.force / length) * d;
   }
@@ -74,7 +66,7 @@ void Seams::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec3 d = gap(points_[i], x);
     const double length = d.norm();
-    const Pull pull = pull_of(length - targets_[i].length, points_[i].stiffness, targets_[i].limit);
+    const LimitedSpring pull = limited_spring(length - targets_[i].length, points_[i].stiffness, targets_[i].limit);
     Mat3 k = Mat3::Identity() * points_[i].stiffness;
     if (length >= k_no_length) {
       const Mat3 along = d * d.transpose() / (length * length);

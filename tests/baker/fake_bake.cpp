@@ -114,9 +114,10 @@ BakeOptions FakeScene::options() const {
 }
 
 BakeServices FakeScene::services(FakeBehaviour behaviour) const {
-  return {[](const ImportRequest& request) -> Result<ImportedPrimary> {
+  return {[move = behaviour.move](const ImportRequest& request) -> Result<ImportedPrimary> {
             ImportedPrimary out;
             out.trajectory = bobbing_box(request.preroll);
+            if (move) out.trajectory = move(*out.trajectory, request);
             out.info.bind_bounds.include(Vec3::Zero());
             out.info.bind_bounds.include(Vec3::Ones());
             return out;

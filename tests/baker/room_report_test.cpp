@@ -11,7 +11,7 @@ namespace ft {
 namespace {
 
 /// A box of 1 m and a ball of 20 cm that is 5 cm inside it at frames 4 to 6, and far away otherwise.
-std::unique_ptr<Trajectory> box_and_ball(const Trajectory& box, double fps) {
+std::unique_ptr<Trajectory> box_and_ball(const Trajectory& box, const ImportRequest& request) {
   Surface surface = box.surface();
   std::vector<Vec3> points(8);
   box.bind_pose(points);
@@ -19,23 +19,19 @@ std::unique_ptr<Trajectory> box_and_ball(const Trajectory& box, double fps) {
   for (std::size_t i = 8; i < points.size(); ++i) points[i] += Vec3(2, 0.5, 0.5);
   surface.parts = {{"box", -1, 1.0}, {"ball", -1, 0.004}};
   surface.part_of_vertex.resize(points.size(), 1);
-  return std::make_unique<ScriptedBody>(surface, points, box.preroll(), [fps](double time, std::span<Vec3> x) {
-    const double frame = 1 + time * fps;
-    if (frame > 3.5 && frame < 6.5)
-      for (std::size_t i = 8; i < x.size(); ++i) x[i].x() -= 2 - 1.05;
-  });
+  return std::make_unique<ScriptedBody>(surface, points, box.preroll(),
+                                        [fps = request.shot_fps](double time, std::span<Vec3> x) {
+                                          const double frame = 1 + time * fps;
+                                          if (frame > 3.5 && frame < 6.5)
+                                            for (std::size_t i = 8; i < x.size(); ++i) x[i].x() -= 2 - 1.05;
+                                        });
 }
 
 TEST(Room, is_looked_for_before_the_bake_and_told) {
   test::FakeScene scene;
   scene.write_shot(10);
   test::RecordedProgress progress;
-  BakeServices services = scene.services();
-  services.importer = [inner = services.importer](const ImportRequest& request) -> Result<ImportedPrimary> {
-    auto primary = inner(request);
-    if (primary) primary->trajectory = box_and_ball(*primary->trajectory, request.shot_fps);
-    return primary;
-  };
+  const BakeServices services = scene.services({.move = box_and_ball});
   BakeOptions options = scene.options();
   options.overrides.push_back("primary.box.teleports=ignore");
   options.dry_run = true;

@@ -7,24 +7,22 @@
 namespace ft {
 namespace {
 
+/// A box that is 3 m further on from frame 7.
+std::unique_ptr<Trajectory> jumping_box(const Trajectory& box, const ImportRequest& request) {
+  std::vector<Vec3> bind(8);
+  box.bind_pose(bind);
+  const auto move = [fps = request.shot_fps](double time, std::span<Vec3> x) {
+    if (time * fps > 5.5)
+      for (Vec3& p : x) p.x() += 3;
+  };
+  return std::make_unique<ScriptedBody>(box.surface(), bind, box.preroll(), move);
+}
+
 TEST(Teleports, are_told_by_the_dry_run_the_progress_and_the_manifest) {
   test::FakeScene scene;
   scene.write_shot(10);
   test::RecordedProgress progress;
-  BakeServices services = scene.services();
-  services.importer = [inner = services.importer](const ImportRequest& request) -> Result<ImportedPrimary> {
-    auto primary = inner(request);
-    if (!primary) return primary.error();
-    const auto& box = *primary->trajectory;
-    std::vector<Vec3> bind(8);
-    box.bind_pose(bind);
-    primary->trajectory = std::make_unique<ScriptedBody>(box.surface(), bind, box.preroll(),
-                                                         [fps = request.shot_fps](double time, std::span<Vec3> x) {
-                                                           if (time * fps > 5.5)
-                                                             for (Vec3& p : x) p.x() += 3;
-                                                         });
-    return primary;
-  };
+  const BakeServices services = scene.services({.move = jumping_box});
   BakeOptions options = scene.options();
   const std::string expected = "jumps 3.00 m between frames 6 and 7: the cloth is carried along";
   options.dry_run = true;

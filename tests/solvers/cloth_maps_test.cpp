@@ -209,11 +209,17 @@ TEST(ClothMaps, A_map_that_cannot_be_is_refused_by_name) {
     ClothGarment spoilt = sheet;
     spoilt.maps.stretch.assign(9, 1);
     spoilt.maps.stretch[4] = bad;
-    EXPECT_FALSE(make_cloth_solver(one_garment(spoilt))) << bad;
+    const auto refused = make_cloth_solver(one_garment(spoilt));
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_NE(refused.error().text().find("map of stretch"), std::string::npos) << refused.error().text();
+    EXPECT_NE(refused.error().text().find("vertex 4"), std::string::npos) << refused.error().text();
   }
   ClothGarment short_one = sheet;
   short_one.maps.bend.assign(8, 1);
-  EXPECT_FALSE(make_cloth_solver(one_garment(short_one)));
+  const auto refused = make_cloth_solver(one_garment(short_one));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text().find("map of bend has 8 values for 9 vertices"), std::string::npos)
+      << refused.error().text();
   ClothGarment folds_freely = sheet;
   folds_freely.maps.bend.assign(9, 0);
   EXPECT_TRUE(make_cloth_solver(one_garment(folds_freely)));

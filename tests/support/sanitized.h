@@ -7,28 +7,25 @@
 
 namespace ft::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool k_sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-inline constexpr bool k_sanitized = true;
-#else
-inline constexpr bool k_sanitized = false;
+// g++ says by a macro of its own what clang says by a feature.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__ 1
 #endif
-#else
-inline constexpr bool k_sanitized = false;
+#if __has_feature(thread_sanitizer)
+#define __SANITIZE_THREAD__ 1
+#endif
 #endif
 
-#if defined(__SANITIZE_THREAD__)
-inline constexpr bool k_thread_sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
+#ifdef __SANITIZE_THREAD__
 inline constexpr bool k_thread_sanitized = true;
 #else
 inline constexpr bool k_thread_sanitized = false;
 #endif
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool k_sanitized = true;
 #else
-inline constexpr bool k_thread_sanitized = false;
+inline constexpr bool k_sanitized = k_thread_sanitized;
 #endif
 
 /// 1, and in a sanitized build `step`: only every step-th case is tried, which is printed.
