@@ -27,16 +27,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-void carry(const Teleport& teleport, ClothMotion& m) {
-  carry(teleport, std::span(m.x));
-  carry(teleport, std::span(m.x_previous));
-  // The history is that of a cloth that always had the new velocity: BDF2 sees no step.
-  const Vec3 step = m.h_previous * teleport.velocity_change;
-  for (Vec3& x : m.x_previous) x -= step;
-  for (auto* velocities : {&m.v, &m.v_previous})
-    for (Vec3& v : *velocities) v = teleport.motion.linear() * v + teleport.velocity_change;
-}
-
 struct BodyAdvance::Scratch {
   explicit Scratch(const ClothModel& model) : candidates(model), step(model) {}
   Candidates candidates;

@@ -7,21 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "baker/core/teleport.h"
+#include "solvers/cloth/cloth_motion.h"
 #include "solvers/cloth/implicit_step.h"
 
 namespace ft {
-
-/// The changing part of a cloth system, as vectors; saved in State by cloth_solver.cpp.
-struct ClothMotion {
-  std::vector<Vec3> x, v, x_previous, v_previous;
-  double h_previous = 0;         ///< s; 0: no history
-  std::vector<double> released;  ///< per cloth vertex: collider part that it may pass, -1 none
-  std::vector<double> tangled;   ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
-};
-
-/// Position, velocity and history to the new place.
-void carry(const Teleport& teleport, ClothMotion& motion);
 
 /// What one substep knows of the outside.
 struct SubstepInput {

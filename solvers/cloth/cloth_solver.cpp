@@ -1,10 +1,10 @@
 // The walk of a frame:
-//   collider at both ends (where the primary is cut to another place, cloth and collider at t0 go there first) ->
-//   substeps from the body's speed near the cloth
-//     per substep: collider and pins at its end -> BodyAdvance (carry, CCD, Newton, truncation)
-//   certificate.cpp: exact crossings; any that released cloth does not explain: back to the frame's start, twice the
-//   substeps, at most three times and as long as it helps parts that no cloth touches any more hold the cloth again;
-//   report
+//   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
+//   2. substeps from the body's speed near the cloth; in each: collider and pins at its end, then BodyAdvance (carry,
+//      CCD, Newton, truncation)
+//   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
+//      the substeps, at most three times and as long as it helps
+//   4. parts that no cloth touches any more hold the cloth again; the report
 #include "solvers/cloth/cloth_solver.h"
 
 #include <algorithm>
@@ -26,43 +26,6 @@ constexpr int k_rewinds = 3;
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
-}
-
-std::vector<double> flat(const std::vector<Vec3>& points) {
-  const double* begin = points.empty() ? nullptr : points[0].data();
-  return {begin, begin + 3 * points.size()};
-}
-
-std::vector<Vec3> points(const std::vector<double>* values, std::size_t count) {
-  CHECK(values && values->size() == 3 * count);
-  const auto view = as_points(*values);
-  return {view.begin(), view.end()};
-}
-
-void store(State& state, const ClothMotion& m) {
-  state.block("x") = flat(m.x);
-  state.block("v") = flat(m.v);
-  state.block("x_previous") = flat(m.x_previous);
-  state.block("v_previous") = flat(m.v_previous);
-  state.block("h_previous") = {m.h_previous};
-  state.block("released") = m.released;
-  state.block("tangled") = m.tangled;
-}
-
-ClothMotion load(const State& state, std::size_t count) {
-  ClothMotion m;
-  m.x = points(state.find("x"), count);
-  m.v = points(state.find("v"), count);
-  m.x_previous = points(state.find("x_previous"), count);
-  m.v_previous = points(state.find("v_previous"), count);
-  const auto* h = state.find("h_previous");
-  const auto* released = state.find("released");
-  const auto* tangled = state.find("tangled");
-  CHECK(h && h->size() == 1 && released && released->size() == count && tangled && tangled->size() == count);
-  m.h_previous = h->front();
-  m.released = *released;
-  m.tangled = *tangled;
-  return m;
 }
 
 class ClothSolver final : public Solver {
@@ -296,7 +259,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     model_->collider->feasible(frame.t1, frame.drawn_t1, frame.body_t1);
     body_at_ = {frame.t1, frame.drawn_t1, frame.body_t1};
   }
-  ClothMotion start = load(state, at(model_->vertex_count()));
+  ClothMotion start = load_motion(state, at(model_->vertex_count()));
   if (const Teleport* teleport = teleport_into(setup.teleports, frame.number)) {
     carry(*teleport, start);
     carry(*teleport, std::span(frame.drawn_t0));

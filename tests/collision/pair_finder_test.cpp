@@ -11,84 +11,16 @@
 #include "collision/contact_pairs.h"
 #include "tests/collision/pair_scene.h"
 #include "tests/support/assets.h"
+#include "tests/support/pair_brute_force.h"
 
 namespace ft {
 namespace {
 
+using test::brute_force;
 using test::Dice;
+using Scene = test::PairScene;
 
 constexpr float k_inf = std::numeric_limits<float>::infinity();
-
-bool nowhere(const VertexBox& b) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(b.lo[i] <= b.hi[i])) return true;
-  return false;
-}
-
-/// Unions of the boxes of the vertices of each feature; a vertex that is nowhere takes its feature with it.
-template <class Features>
-std::vector<VertexBox> feature_boxes(std::span<const VertexBox> boxes, const Features& features) {
-  std::vector<VertexBox> out;
-  for (const auto& feature : features) {
-    VertexBox u{{k_inf, k_inf, k_inf}, {-k_inf, -k_inf, -k_inf}};
-    for (const int v : feature) {
-      const VertexBox& w = boxes[static_cast<std::size_t>(v)];
-      for (std::size_t i = 0; i < 3; ++i) u.lo[i] = std::min(u.lo[i], w.lo[i]), u.hi[i] = std::max(u.hi[i], w.hi[i]);
-    }
-    const bool gone =
-        std::any_of(feature.begin(), feature.end(), [&](int v) { return nowhere(boxes[static_cast<std::size_t>(v)]); });
-    out.push_back(gone ? VertexBox{{k_inf, k_inf, k_inf}, {-k_inf, -k_inf, -k_inf}} : u);
-  }
-  return out;
-}
-
-bool meets(const VertexBox& a, const VertexBox& b) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(a.lo[i] <= b.hi[i] && b.lo[i] <= a.hi[i])) return false;
-  return true;
-}
-
-struct Scene {
-  int cloth_vertices = 0, collider_vertices = 0;
-  std::vector<Triangle> cloth, collider;
-  std::vector<VertexBox> boxes;
-};
-
-ContactPairs brute_force(const Scene& scene, bool self) {
-  ContactPairs out;
-  std::vector<Triangle> faces = scene.cloth;
-  faces.insert(faces.end(), scene.collider.begin(), scene.collider.end());
-  std::vector<Edge> edges = unique_edges(faces);
-  const auto of_cloth = [&](int v) { return v < scene.cloth_vertices; };
-  std::vector<int> vertices;
-  for (const Triangle& t : faces) vertices.insert(vertices.end(), t.begin(), t.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const auto wanted = [&](int a, int b) { return of_cloth(a) != of_cloth(b) || (self && of_cloth(a) && of_cloth(b)); };
-  std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
-  const std::vector<VertexBox> face_boxes = feature_boxes(scene.boxes, faces),
-                               edge_boxes = feature_boxes(scene.boxes, edges);
-  for (const int v : vertices) {
-    const VertexBox& box = scene.boxes[static_cast<std::size_t>(v)];
-    if (nowhere(box)) continue;
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      const Triangle& t = faces[i];
-      if (meets(box, face_boxes[i]) && wanted(v, t[0]) && v != t[0] && v != t[1] && v != t[2])
-        out.vertex_face.push_back({{v, t[0], t[1], t[2]}});
-    }
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i)
-    for (std::size_t j = i + 1; j < edges.size(); ++j) {
-      const Edge &a = edges[i], &b = edges[j];
-      if (!meets(edge_boxes[i], edge_boxes[j]) || !wanted(a[0], b[0])) continue;
-      if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
-      out.edge_edge.push_back({{a[0], a[1], b[0], b[1]}});
-    }
-  std::sort(out.vertex_face.begin(), out.vertex_face.end());
-  out.vertex_face.erase(std::unique(out.vertex_face.begin(), out.vertex_face.end()), out.vertex_face.end());
-  std::sort(out.edge_edge.begin(), out.edge_edge.end());
-  return out;
-}
 
 /// A wavy n x n grid of quads, two triangles each, numbered from first.
 void add_grid(int n, int first, double height, double wave, Dice& dice, std::vector<Vec3>& x,

@@ -1,0 +1,28 @@
+// What changes while cloth moves: positions, velocities, the history of the integrator, and what is let pass.
+#pragma once
+
+#include <vector>
+
+#include "baker/core/state.h"
+#include "baker/core/teleport.h"
+#include "baker/core/types.h"
+
+namespace ft {
+
+struct ClothMotion {
+  std::vector<Vec3> x, v, x_previous, v_previous;
+  double h_previous = 0;         ///< s; 0: no history
+  std::vector<double> released;  ///< per cloth vertex: collider part that it may pass, -1 none
+  std::vector<double> tangled;   ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
+};
+
+/// Position, velocity and history to the new place.
+void carry(const Teleport& teleport, ClothMotion& motion);
+
+/// Writes the motion into blocks of a state, bit for bit.
+void store(State& state, const ClothMotion& motion);
+
+/// The motion of `count` vertices that store() wrote; a state without it is a fault of the program.
+ClothMotion load_motion(const State& state, std::size_t count);
+
+}  // namespace ft
