@@ -1,5 +1,4 @@
-// The conductor: shot -> plan -> walk of the frames -> caches. One call is one `followthrough bake`. The walk of a
-// frame:
+// The conductor: shot -> plan -> walk of the frames -> caches. One call is one `followthrough bake`. A frame's walk:
 //
 //   advance every group's solver -> certificate -> snapshot -> writer thread: caches (durable), then the checkpoint
 //

@@ -1,9 +1,8 @@
 // Two lower bounds of the time of impact, the later one taken at every iteration:
-//   additive (Li et al. 2021):  the features cannot approach faster than l = max|dx| of one + max|dx| of the other;
-//   planes (ours):              along the present normal every vertex moves linearly, so the time at which the first
-//   pair of
-//                               vertices has used up the room is known in closed form. It makes sliding contact cheap:
-//                               additive steps alone need motion / distance iterations there.
+//   additive (Li et al. 2021): the features cannot approach faster than l = max|dx| of one + max|dx| of the other;
+//   planes (ours): along the present normal every vertex moves linearly, so the time at which the first pair of
+//     vertices has used up the room is known in closed form. It makes sliding contact cheap: additive steps alone need
+//     motion / distance iterations there.
 // Motion that all four vertices share is taken out first; it cannot change a distance.
 #include "collision/ccd_li2021.h"
 

@@ -1,6 +1,5 @@
 // Air drag of cloth panels, per area, relative to the wind:
-//   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: normal and tangential parts of the panel's velocity against the
-//   wind
+//   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: the velocity against the wind, normal and tangential to the panel
 // A third of each panel moves with each of its corners. The normal and the speed are those expected at the end of the
 // step, the law is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0| v0, so that the potential is
 // quadratic, stable for any wind and step, and second order in time. Vacuum (density or coefficients 0) is exactly

@@ -1,6 +1,6 @@
 // Curvature of a triangle from the angles theta_i at its edges:
-//   kappa = sum_i theta_i l_i / (A + A_i) t_i t_i^T        l_i edge length, t_i its in-plane normal, A_i the triangle
-//   beyond
+//   kappa = sum_i theta_i l_i / (A + A_i) t_i t_i^T
+//   l_i: edge length; t_i: its in-plane normal; A_i: area of the triangle beyond it
 // which is exact for sheets bent on regular meshes of any direction (the rotation-free shell triangle of Onate and
 // Zarate 2000, with the angle shared between the two triangles in proportion to their heights). Energy A/2
 // kappa.D.kappa with D from the bending rigidities of weft and warp; no Poisson effect in bending. The single-hinge

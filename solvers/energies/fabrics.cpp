@@ -1,22 +1,18 @@
-// The list of fabrics, in SI units, each with its source. For shot files ("fabric = "denim"") and for tests of
-// materials.
+// The list of fabrics, in SI units, each with its source. For shot files ("fabric = "denim"") and for material tests.
 //
-// [W] Wang, O'Brien, Ramamoorthi 2011, "Data-driven elastic models for cloth", the published ten-material database. It
-// is nonlinear;
-//     we keep one linear constant each: stretch = mean of c11 (weft) and c22 (warp) over the strained rows, shear = c33
-//     of the unstrained row for knits (the strained ones scatter around it), mean of the strained rows for wovens;
-//     poisson = mean c12 / sqrt(c11 c22), at most 0.45; bending = mean over the curvatures 0, 10, 20, 30 /m of the row
-//     whose fold lies along the weft (bend_warp) and along the warp (bend_weft).
+// [W] Wang, O'Brien, Ramamoorthi 2011, "Data-driven elastic models for cloth", the published ten-material database.
+//     It is nonlinear; we keep one linear constant each: stretch = mean of c11 (weft) and c22 (warp) over the strained
+//     rows, shear = c33 of the unstrained row for knits (the strained ones scatter around it), mean of the strained rows
+//     for wovens; poisson = mean c12 / sqrt(c11 c22), at most 0.45; bending = mean over the curvatures 0, 10, 20, 30 /m
+//     of the row whose fold lies along the weft (bend_warp) and along the warp (bend_weft).
 // [P] Penava, Simic Penava, Knezic 2014, "Determination of the elastic constants of plain woven fabrics by a tensile
-// test", as
-//     quoted by public simulation code: areal density and Poisson's ratio.
-// [literature] Typical values of the Kawabata system (KES), recalled and not read again: 1 gf cm2/cm = 9.807e-5 N m for
-// bending,
-//     1 gf/cm/degree = 56.2 N/m for shear. Right in size, not a measurement of one piece of cloth.
+//     test", as quoted by public simulation code: areal density and Poisson's ratio.
+// [literature] Typical values of the Kawabata system (KES), recalled and not read again:
+//     1 gf cm2/cm = 9.807e-5 N m for bending, 1 gf/cm/degree = 56.2 N/m for shear. Right in size, not a measurement of
+//     one piece of cloth.
 // Limits of stretch of the weaves: KES reads the strain at 490 N/m, which is 3 to 10 % for them (shirting, suiting,
-// denim); the
-//     first half of that goes into the crimp at the soft slope above, the rest at 1e4 N/m [literature]. Knits and
-//     elastic wefts have none that a garment reaches.
+//     denim); the first half of that goes into the crimp at the soft slope above, the rest at 1e4 N/m [literature].
+//     Knits and elastic wefts have none that a garment reaches.
 // Damping times are ours, none of the sources has any: as small as what swings in a second and is still in a few.
 #include <algorithm>
 

@@ -1,7 +1,6 @@
 // In-plane elasticity of cloth: constant-strain triangles, orthotropic St. Venant-Kirchhoff, with strain-rate damping.
 //   U = sum A/2 (E.CE + d (E - E_ref).C(E - E_ref)),   d = damping time / rate time of the integrator
-//       + sum A k (t(E11 - L1) + t(E22 - L2)),   t'' rising from 0 to 1 over a strain of 1 %: yarns pulled straight, a
-//       weave's limits
+//       + sum A k (t(E11 - L1) + t(E22 - L2)),   t'' rising from 0 to 1 over a strain of 1 %: limits of a weave
 // E is the Green strain (E11, E22, 2 E12) in weft/warp axes, E_ref what the integrator's rate formula subtracts from E:
 // a body that moves rigidly feels neither term, exactly. Hessian: Gauss-Newton plus the geometric term with the
 // positive part of the 2x2 stress (closed form, no 9x9 eigenproblem). For cloth, mats, sails. Caution: StVK softens

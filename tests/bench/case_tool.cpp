@@ -1,7 +1,7 @@
 // Carries benchmark cases to our program and back, and sums up. For tests/bench/run.sh:
 //   case_tool to-shot CASE FOLDER [--pins 0-199]     body.obj, body.pc2, cloth.obj and shot.toml from Blender's case
-//   case_tool from-bake CASE BAKE OUT drawn|feasible our cloth beside the drawn body or the feasible collider, as a
-//   case case_tool obj CACHE FRAME OUT.obj                one frame of any cache that knows its faces, to look at
+//   case_tool from-bake CASE BAKE OUT drawn|feasible our cloth beside the drawn body or the feasible collider
+//   case_tool obj CACHE FRAME OUT.obj                one frame of any cache that knows its faces, to look at
 //   case_tool result ...                             the table and the RESULT line, see result_line()
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // Walks torture scenes and prints what was measured. For tests/bench/run.sh torture:
-//   torture_bench list                          the names of the scenes
-//   torture_bench NAME [--frames N] [--obj FOLDER]    table of the frames, RESULT line; cloth and feasible collider as
-//   OBJ files
+//   torture_bench list                              the names of the scenes
+//   torture_bench NAME [--frames N] [--obj FOLDER]  table of the frames, RESULT line; cloth and collider as OBJ files
 //                 [--substeps LEAST] [--newton N] [--linear TOLERANCE]    to find out what a failure depends on
 // The crossings are those that the independent checker finds; 1 is returned when there are any, or when it disagrees
 // with the certificate, or when the scene misses a bar of its own.

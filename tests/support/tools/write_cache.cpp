@@ -1,6 +1,6 @@
 // A process of its own that writes a known cache, so that tests can make its writes fail or kill it.
-//   write_cache PATH FRAMES KEEP     format by extension; 10 frames are announced; prints each frame count when it is
-//   durable
+//   write_cache PATH FRAMES KEEP
+// The format is that of the extension; 10 frames are announced; each frame count is printed when it is durable.
 // Exit code 0, or that of the error.
 #include <cstdio>
 #include <cstdlib>
