@@ -202,7 +202,7 @@ struct PairFinder::Impl {
   // Scratch, kept from search to search.
   std::vector<Task> tasks, next_tasks;
   std::vector<Found> found;
-  PairSorter sorter;
+  PairSorter sort_vertex_face, sort_edge_edge;
 
   void split_tasks(bool self);
   template <bool k_some>
@@ -264,6 +264,7 @@ PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_t
                      {},
                      {},
                      {},
+                     {},
                      {}}) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
@@ -291,42 +292,47 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.features.set_boxes(boxes);
   if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes);
   if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes);
-  m.cloth.refit(features.cloth_boxes);
-  m.collider.refit(features.collider_boxes);
+  parallel_tasks(2, [&](std::size_t task) {
+    Tree& tree = task == 0 ? m.cloth : m.collider;
+    tree.refit(task == 0 ? features.cloth_boxes : features.collider_boxes);
+    if (!changed.empty()) tree.mark(task == 0 ? features.cloth : features.collider, changed);
+  });
 
   m.split_tasks(self);
   if (m.found.size() < m.tasks.size()) m.found.resize(m.tasks.size());
   if (changed.empty()) {
     parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<false>(m.tasks[i], nullptr, m.found[i]); });
   } else {
-    m.cloth.mark(features.cloth, changed);
-    m.collider.mark(features.collider, changed);
     parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<true>(m.tasks[i], changed.data(), m.found[i]); });
   }
   const std::span<const Found> found(m.found.data(), m.tasks.size());
 
-  m.sorter.begin(features.vertex_count);
-  for (const Found& f : found) m.sorter.add(f.vertex_face);
-  const std::span<const std::uint64_t> vertex_face = m.sorter.sort();
-  out.vertex_face.resize(vertex_face.size());
-  parallel_for(vertex_face.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& f = features.faces[at(key_second(vertex_face[i]))];
-      out.vertex_face[i] = {{key_first(vertex_face[i]), f[0], f[1], f[2]}};
-    }
-  });
-
-  m.sorter.begin(static_cast<int>(features.edges.size()));
-  for (const Found& f : found) m.sorter.add(f.edge_edge);
-  const std::span<const std::uint64_t> edge_edge = m.sorter.sort();
-  out.edge_edge.resize(edge_edge.size());
-  parallel_for(edge_edge.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Edge& a = features.edges[at(key_first(edge_edge[i]))];
-      const Edge& b = features.edges[at(key_second(edge_edge[i]))];
-      out.edge_edge[i] = {{a[0], a[1], b[0], b[1]}};
-    }
-  });
+  const auto vertex_face = [&] {
+    m.sort_vertex_face.begin(features.vertex_count);
+    for (const Found& f : found) m.sort_vertex_face.add(f.vertex_face);
+    const std::span<const std::uint64_t> keys = m.sort_vertex_face.sort();
+    out.vertex_face.resize(keys.size());
+    parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Triangle& f = features.faces[at(key_second(keys[i]))];
+        out.vertex_face[i] = {{key_first(keys[i]), f[0], f[1], f[2]}};
+      }
+    });
+  };
+  const auto edge_edge = [&] {
+    m.sort_edge_edge.begin(static_cast<int>(features.edges.size()));
+    for (const Found& f : found) m.sort_edge_edge.add(f.edge_edge);
+    const std::span<const std::uint64_t> keys = m.sort_edge_edge.sort();
+    out.edge_edge.resize(keys.size());
+    parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Edge& a = features.edges[at(key_first(keys[i]))];
+        const Edge& b = features.edges[at(key_second(keys[i]))];
+        out.edge_edge[i] = {{a[0], a[1], b[0], b[1]}};
+      }
+    });
+  };
+  parallel_tasks(2, [&](std::size_t task) { task == 0 ? vertex_face() : edge_edge(); });
 }
 
 }  // namespace ft

@@ -87,7 +87,9 @@ void PairFeatures::set_boxes(std::span<const VertexBox> boxes) {
   vertex_boxes.resize(boxes.size());
   edge_boxes.resize(edges.size());
   face_boxes.resize(faces.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) vertex_boxes[i] = valid(boxes[i]) ? boxes[i] : k_nowhere;
+  parallel_for(boxes.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) vertex_boxes[i] = valid(boxes[i]) ? boxes[i] : k_nowhere;
+  });
   const auto of = [&](int v) -> const VertexBox& { return vertex_boxes[at(v)]; };
   parallel_for(edges.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) edge_boxes[i] = join_present(of(edges[i][0]), of(edges[i][1]));

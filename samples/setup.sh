@@ -10,7 +10,7 @@ packages_build="g++ cmake ninja-build libeigen3-dev libassimp-dev libfcl-dev lib
 packages_samples="assimp-testmodels"
 # What the tests need on top. Chromium opens the preview page. Blender, which reads our caches and is the peer of the
 # benchmarks, is 500 MB: tests that want it skip when it is absent.
-packages_tests="assimp-testmodels libgtest-dev chromium"
+packages_tests="assimp-testmodels libgtest-dev chromium clang-format"
 packages_clang="clang-14"
 packages_bench="assimp-testmodels blender"
 

@@ -168,12 +168,16 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   piece.slack.resize(nc);
   piece.centre.resize(nc + nb);
   boxes_.resize(nc + nb);
-  for (std::size_t i = 0; i < nc; ++i) place(i, cloth, piece);
+  parallel_for(nc, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) place(i, cloth, piece);
+  });
   std::copy(piece.body_motion.begin(), piece.body_motion.end(), piece.centre.begin() + static_cast<std::ptrdiff_t>(nc));
-  for (std::size_t i = 0; i < nb; ++i) {
-    const Vec3& start = piece.start[nc + i];
-    boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
-  }
+  parallel_for(nb, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& start = piece.start[nc + i];
+      boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
+    }
+  });
   finder_.find(boxes_, any_self_, found_);
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());

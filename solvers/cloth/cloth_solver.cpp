@@ -13,6 +13,7 @@
 #include <mutex>
 
 #include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/body_ahead.h"
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/sewing.h"
@@ -23,6 +24,7 @@ namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
+constexpr double k_travel = 4;  ///< of the body against the cloth in a substep, in contact radii
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -31,7 +33,7 @@ double elapsed(std::chrono::steady_clock::time_point since) {
 class ClothSolver final : public Solver {
  public:
   explicit ClothSolver(std::unique_ptr<ClothModel> model)
-      : model_(std::move(model)), advance_(*model_), certificate_(*model_) {}
+      : model_(std::move(model)), advance_(*model_), certificate_(*model_), body_(model_->collider.get()) {}
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
   const Mesh& system_mesh(int system) const override { return model_->setup.garments[at(system)].mesh; }
@@ -53,8 +55,8 @@ class ClothSolver final : public Solver {
     out.clear();
     if (!model_->collider) return;
     const std::lock_guard lock(one_at_a_time_);
-    if (body_at_.time == state.time) {
-      out = body_at_.body;
+    if (const BodyPose* known = body_.known(state.time)) {
+      out = known->feasible;
       return;
     }
     std::vector<Vec3> drawn;
@@ -76,21 +78,14 @@ class ClothSolver final : public Solver {
   // Scratch only: forgotten between frames, one frame at a time.
   mutable BodyAdvance advance_;
   mutable Certificate certificate_;
-  /// The body at one time, kept because a frame starts where the last one ended. A function of the time alone.
-  struct BodyAt {
-    double time = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Vec3> drawn, body;
-  };
-  mutable BodyAt body_at_;
+  mutable BodyAhead body_;
+  mutable int expected_substeps_ = 1;  ///< those of the last frame; of no effect on any result
   mutable std::mutex one_at_a_time_;
 };
 
-/// The outside of one frame: body at both ends.
 struct ClothSolver::Frame {
   int number = 0;  ///< of its end
   double t0 = 0, t1 = 0;
-  bool cut = false;  ///< a teleport lies within: what the trajectory says between the ends is not to be used
-  std::vector<Vec3> drawn_t0, drawn_t1, body_t0, body_t1;
 };
 
 State ClothSolver::initial_state() const {
@@ -129,7 +124,8 @@ State ClothSolver::initial_state() const {
 
 int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const {
   const ClothSetup& setup = model_->setup;
-  if (frame.body_t0.empty()) return setup.min_substeps;
+  const std::vector<Vec3>&body_t0 = body_.start().feasible, &body_t1 = body_.end().feasible;
+  if (body_t0.empty()) return setup.min_substeps;
   // Speed of the body relative to the cloth's own mean motion, where cloth is near.
   const double dt = frame.t1 - frame.t0, cell = 0.06;
   Vec3 mean = Vec3::Zero();
@@ -143,56 +139,50 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
   for (const Vec3& p : m.x) cells.push_back(cell_of(p));
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  double fastest = 0;
-  for (std::size_t i = 0; i < frame.body_t0.size(); ++i) {
-    const double speed = (frame.body_t1[i] - frame.body_t0[i] - mean).norm();
-    if (speed <= fastest) continue;
-    bool near = false;
-    const Vec3 way = frame.body_t1[i] - mean - frame.body_t0[i];
+  const auto is_near = [&](const Vec3& from, const Vec3& way, double length) {
     // What starts before the cloth and ends behind it was near on its way.
-    const int stops = 1 + static_cast<int>(std::min(speed / cell, 256.0));
-    for (int stop = 0; stop <= stops && !near; ++stop) {
-      const auto c = cell_of(frame.body_t0[i] + (static_cast<double>(stop) / stops) * way);
-      for (int k = 0; k < 27 && !near; ++k)
-        near = std::binary_search(cells.begin(), cells.end(),
-                                  std::array<int, 3>{c[0] + k % 3 - 1, c[1] + k / 3 % 3 - 1, c[2] + k / 9 - 1});
+    const int stops = 1 + static_cast<int>(std::min(length / cell, 256.0));
+    for (int stop = 0; stop <= stops; ++stop) {
+      const auto c = cell_of(from + (static_cast<double>(stop) / stops) * way);
+      for (int k = 0; k < 27; ++k)
+        if (std::binary_search(cells.begin(), cells.end(),
+                               std::array<int, 3>{c[0] + k % 3 - 1, c[1] + k / 3 % 3 - 1, c[2] + k / 9 - 1}))
+          return true;
     }
-    if (near) fastest = speed;
-  }
+    return false;
+  };
   double radius = 1e-3;
   for (const double r : model_->contact.radius) radius = std::max(radius, r);
-  return std::clamp(static_cast<int>(std::ceil(fastest / (4 * radius))), setup.min_substeps, setup.max_substeps);
+  const double travel = k_travel * radius;
+  // The fastest first: the first that is near decides, and slow ones change nothing.
+  std::vector<std::pair<double, std::size_t>> by_speed;
+  for (std::size_t i = 0; i < body_t0.size(); ++i) {
+    const double speed = (body_t1[i] - body_t0[i] - mean).norm();
+    if (speed > setup.min_substeps * travel) by_speed.emplace_back(-speed, i);
+  }
+  std::sort(by_speed.begin(), by_speed.end());
+  double fastest = 0;
+  for (const auto& [negative_speed, i] : by_speed) {
+    if (!is_near(body_t0[i], body_t1[i] - mean - body_t0[i], -negative_speed)) continue;
+    fastest = -negative_speed;
+    break;
+  }
+  return std::clamp(static_cast<int>(std::ceil(fastest / travel)), setup.min_substeps, setup.max_substeps);
 }
 
 void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
-  std::vector<Vec3> drawn = frame.drawn_t0, body = frame.body_t0, body_next, pins(model_->pins.size()),
-                    pins_next(pins.size());
-  std::vector<Vec3> push;
-  pin_targets(*model_, drawn, pins);
+  std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
+  pin_targets(*model_, body_.start().drawn, pins);
   for (int k = 0; k < substeps; ++k) {
     const double t0 = frame.t0 + k * h;
     const auto clock = std::chrono::steady_clock::now();
-    if (model_->collider) {
-      if (k + 1 == substeps) {
-        drawn = frame.drawn_t1;
-        body_next = frame.body_t1;
-      } else {
-        if (frame.cut) {
-          const double share = (k + 1.0) / substeps;
-          for (std::size_t i = 0; i < drawn.size(); ++i)
-            drawn[i] = frame.drawn_t0[i] + share * (frame.drawn_t1[i] - frame.drawn_t0[i]);
-        } else {
-          model_->collider->drawn(t0 + h, drawn);
-        }
-        model_->collider->feasible(t0 + h, drawn, body_next);
-      }
-    }
-    pin_targets(*model_, drawn, pins_next);
+    const BodyPose& next = body_.after(k, substeps);
+    pin_targets(*model_, next.drawn, pins_next);
     report.profile.body += elapsed(clock);
     SubstepInput in;
     in.body_t0 = body;
-    in.body_t1 = body_next;
+    in.body_t1 = next.feasible;
     in.pins_t0 = pins;
     in.pins_t1 = pins_next;
     in.h = h;
@@ -211,7 +201,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     report.profile.assembly += step.seconds_assembly;
     report.profile.linear += step.seconds_linear;
     report.profile.narrow += step.seconds_contact;
-    body.swap(body_next);
+    body = next.feasible;
     pins.swap(pins_next);
   }
 }
@@ -247,26 +237,13 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   frame.t0 = (state.frame - setup.first_frame) / setup.fps;
   frame.t1 = (frame.number - setup.first_frame) / setup.fps;
   const auto body_clock = std::chrono::steady_clock::now();
-  if (model_->collider) {
-    if (body_at_.time == frame.t0) {
-      frame.drawn_t0.swap(body_at_.drawn);
-      frame.body_t0.swap(body_at_.body);
-    } else {
-      model_->collider->drawn(frame.t0, frame.drawn_t0);
-      model_->collider->feasible(frame.t0, frame.drawn_t0, frame.body_t0);
-    }
-    model_->collider->drawn(frame.t1, frame.drawn_t1);
-    model_->collider->feasible(frame.t1, frame.drawn_t1, frame.body_t1);
-    body_at_ = {frame.t1, frame.drawn_t1, frame.body_t1};
-  }
+  body_.begin(frame.t0, frame.t1, expected_substeps_);
   ClothMotion start = load_motion(state, at(model_->vertex_count()));
   if (const Teleport* teleport = teleport_into(setup.teleports, frame.number)) {
     carry(*teleport, start);
-    carry(*teleport, std::span(frame.drawn_t0));
-    carry(*teleport, std::span(frame.body_t0));
-    frame.cut = true;
+    body_.cut(*teleport);
   }
-  const int substeps = choose_substeps(frame, start);
+  const int substeps = expected_substeps_ = choose_substeps(frame, start);
   FrameReport report, best_report;
   ClothMotion motion, best;
   int fewest = -1;
@@ -282,7 +259,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     walk(frame, substeps << attempt, motion, report);
     if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
-    const int avoidable = certificate_.certify(frame.body_t1, motion, report);
+    const int avoidable = certificate_.certify(body_.end().feasible, motion, report);
     report.profile.certificate += elapsed(certificate);
     spent = report.profile;
     const int score = report.finite ? avoidable : std::numeric_limits<int>::max();
@@ -300,7 +277,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
-  certificate_.describe(frame.drawn_t1, motion, report);
+  certificate_.describe(body_.end().drawn, motion, report);
   report.profile.certificate += elapsed(certificate);
   store(state, motion);
   state.frame = frame.number;

@@ -1,6 +1,6 @@
 // Out-of-plane elasticity of cloth. The angles theta of all inner edges, less those of the rest shape, are coupled
 // triangle by triangle, because three of them make the curvature of one (cloth_topology_bending.cpp):
-//   U = 1/2 phi.K.phi + 1/2 rho.K.rho,  phi = theta - rest,  rho = sqrt(d) (theta - theta_ref),  d, theta_ref: membrane.h
+//   U = 1/2 phi.K.phi + 1/2 rho.K.rho,  phi = theta - rest,  rho = sqrt(d) (theta - theta_ref),  d: as in membrane.h
 // K holds up to five numbers per edge and never changes. Hessian: Gauss-Newton with the diagonal of K, sum (1 + d) K_ii
 // grad theta_i grad theta_i^T: positive semidefinite, blind to rigid rotation, and of the plain hinge pattern. Dropping
 // the coupling keeps the matrix a third smaller and its assembly several times cheaper; the true Hessian stays below

@@ -1,0 +1,71 @@
+#include "solvers/cloth/body_ahead.h"
+
+#include <algorithm>
+
+#include "baker/core/parallel.h"
+
+namespace ft {
+namespace {
+
+constexpr int k_at_once = 8;  ///< poses that are worked out together: enough for any machine's cores to share
+
+}  // namespace
+
+void BodyAhead::fill(double time, BodyPose& pose) const {
+  collider_->drawn(time, pose.drawn);
+  collider_->feasible(time, pose.drawn, pose.feasible);
+}
+
+void BodyAhead::begin(double t0, double t1, int expected_substeps) {
+  if (!collider_) return;
+  const bool goes_on = t1_ == t0;
+  if (goes_on) std::swap(start_, end_);
+  t0_ = t0;
+  t1_ = t1;
+  cut_ = false;
+  first_ = 0;
+  substeps_ = expected_substeps;
+  count_ = std::min(substeps_ - 1, k_at_once);
+  ahead_.resize(k_at_once);
+  parallel_tasks(static_cast<std::size_t>(count_) + 2, [&](std::size_t i) {
+    if (i == 0) {
+      fill(t1, end_);
+    } else if (i == 1) {
+      if (!goes_on) fill(t0, start_);
+    } else {
+      fill(t0 + static_cast<double>(i - 1) * ((t1 - t0) / substeps_), ahead_[i - 2]);
+    }
+  });
+}
+
+void BodyAhead::cut(const Teleport& teleport) {
+  carry(teleport, std::span(start_.drawn));
+  carry(teleport, std::span(start_.feasible));
+  cut_ = true;
+  count_ = 0;
+}
+
+const BodyPose& BodyAhead::after(int k, int substeps) {
+  if (!collider_ || k + 1 == substeps) return end_;
+  if (substeps != substeps_ || k < first_ || k >= first_ + count_)
+    evaluate(k, std::min(substeps - 1 - k, k_at_once), substeps);
+  return ahead_[at(k - first_)];
+}
+
+void BodyAhead::evaluate(int first, int count, int substeps) {
+  first_ = first;
+  count_ = count;
+  substeps_ = substeps;
+  const double h = (t1_ - t0_) / substeps;
+  parallel_tasks(at(count), [&](std::size_t i) {
+    BodyPose& pose = ahead_[i];
+    const double number = static_cast<double>(at(first) + i + 1);
+    if (!cut_) return fill(t0_ + number * h, pose);
+    pose.drawn = start_.drawn;
+    for (std::size_t v = 0; v < pose.drawn.size(); ++v)
+      pose.drawn[v] += number / substeps * (end_.drawn[v] - start_.drawn[v]);
+    collider_->feasible(t0_ + number * h, pose.drawn, pose.feasible);
+  });
+}
+
+}  // namespace ft
