@@ -2,9 +2,9 @@
 //
 // [W] Wang, O'Brien, Ramamoorthi 2011, "Data-driven elastic models for cloth", the published ten-material database.
 //     It is nonlinear; we keep one linear constant each: stretch = mean of c11 (weft) and c22 (warp) over the strained
-//     rows, shear = c33 of the unstrained row for knits (the strained ones scatter around it), mean of the strained rows
-//     for wovens; poisson = mean c12 / sqrt(c11 c22), at most 0.45; bending = mean over the curvatures 0, 10, 20, 30 /m
-//     of the row whose fold lies along the weft (bend_warp) and along the warp (bend_weft).
+//     rows, shear = c33 of the unstrained row for knits (the strained ones scatter around it), mean of the strained
+//     rows for wovens; poisson = mean c12 / sqrt(c11 c22), at most 0.45; bending = mean over the curvatures 0, 10, 20,
+//     30 /m of the row whose fold lies along the weft (bend_warp) and along the warp (bend_weft).
 // [P] Penava, Simic Penava, Knezic 2014, "Determination of the elastic constants of plain woven fabrics by a tensile
 //     test", as quoted by public simulation code: areal density and Poisson's ratio.
 // [literature] Typical values of the Kawabata system (KES), recalled and not read again:

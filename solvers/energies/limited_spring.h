@@ -1,4 +1,5 @@
-// A spring that pulls no harder than a limit: quadratic up to it, linear beyond. What holds by it slips instead of tearing.
+// A spring that pulls no harder than a limit: quadratic up to it, linear beyond. What holds by it slips instead of
+// tearing.
 #pragma once
 
 namespace ft {
@@ -9,7 +10,8 @@ struct LimitedSpring {
   double secant = 0;  ///< force / stretch [N/m]; never below the true stiffness, and finite at no stretch
 };
 
-/// stretch in m; stiffness in N/m and limit in N, both above 0. A spring that is pushed together (stretch below 0) does nothing.
+/// stretch in m; stiffness in N/m and limit in N, both above 0. A spring that is pushed together (stretch below 0) does
+/// nothing.
 inline LimitedSpring limited_spring(double stretch, double stiffness, double limit) {
   if (stretch < 0) return {};
   const double elastic = limit / stiffness;

@@ -1,24 +1,33 @@
 #!/usr/bin/env bash
 # Runs a benchmark scene, and Blender beside it, in one run on one machine; both results go to the same judge.
-#   tests/bench/run.sh SCENE [--frames N] [--preset NAME] [--threads N] [--keep FOLDER] [--peer FOLDER] [-- BAKE ARGUMENTS]
+#   tests/bench/run.sh SCENE [--n N] [--frames N] [--preset NAME] [--threads N] [--keep FOLDER] [--peer FOLDER] [-- BAKE ARGUMENTS]
 #   tests/bench/run.sh torture NAME|all [--frames N] [--obj FOLDER]
-# SCENE     S1 (a square on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
+#   tests/bench/run.sh size [--frames N] [CELLS ...]
+# SCENE     S1 (a square of N x N vertices on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
 # torture   the scenes of tests/support/torture, without a peer, each for at most FOLLOWTHROUGH_TORTURE_SECONDS (600)
+# size      what S1 costs as N grows, without a peer: 50, 100, 200 and 400
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
 # Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
+  size) shift ;;
   torture) [ $# -ge 2 ] || { usage >&2; exit 2; }; shift ;;
   S1 | S2) shift ;;
   *) usage >&2; exit 2 ;;
 esac
 
+if [ "$scene" = size ]; then
+  # shellcheck disable=SC2086
+  install_packages $packages_build $packages_tests
+  build release size_bench
+  exec "$root/build/release/bin/size_bench" "$@"
+fi
 if [ "$scene" = torture ]; then
   # shellcheck disable=SC2086
   install_packages $packages_build $packages_tests $packages_bench
@@ -34,10 +43,11 @@ if [ "$scene" = torture ]; then
   done
   exit $failed
 fi
-frames=100 preset=default keep="" peer="" bake_arguments=()
+n=100 frames=100 preset=default keep="" peer="" bake_arguments=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --frames | --preset | --threads | --keep | --peer) [ $# -gt 1 ] || fail "$1 needs a value" ;;&
+    --n | --frames | --preset | --threads | --keep | --peer) [ $# -gt 1 ] || fail "$1 needs a value" ;;&
+    --n) [ "$scene" = S1 ] || fail "--n is S1's"; n=$2; shift ;;
     --frames) frames=$2; shift ;;
     --preset) preset=$2; shift ;;
     --threads) bake_arguments+=(--threads "$2"); shift ;;
@@ -67,7 +77,7 @@ else
 fi
 
 case $scene in
-  S1) n=10000 pins=() skip=0; script=(S1_sphere.py -- --n 100) ;;
+  S1) pins=() skip=0; script=(S1_sphere.py -- --n "$n"); n=$((n * n)) ;;
   S2) n=4000 pins=(--pins 0-199) skip=200; script=(S2_skirt.py -- --rings 40 --segs 100) ;;
 esac
 if [ -z "$peer" ]; then
