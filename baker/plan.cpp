@@ -6,6 +6,7 @@
 #include <map>
 
 #include "baker/pins.h"
+#include "baker/quality.h"
 #include "baker/vertex_maps.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
@@ -200,6 +201,7 @@ ClothSetup common_setup(const Shot& shot) {
   setup.bdf2 = shot.solver.integrator == "bdf2";
   setup.feasible.gap = shot.solver.gap;
   setup.feasible.carve = shot.solver.carve;
+  apply_quality(shot, setup);
   return setup;
 }
 
@@ -228,6 +230,7 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     for (std::string& note : teleport_notes(scan, spec.name)) plan.notes.push_back(std::move(note));
     plan.primaries.push_back({spec.name, std::move(imported->trajectory), std::move(imported->info), std::move(scan)});
   }
+  if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {

@@ -107,6 +107,7 @@ struct Shot {
   double fps = 24;
   int preroll = 24;  ///< frames before the first
   bool write_preroll = false;
+  std::string quality = "final";  ///< "final" or "preview"
   std::vector<PrimarySpec> primaries;
   std::vector<ClothSpec> cloths;
   WindSpec wind;

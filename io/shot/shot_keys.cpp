@@ -14,6 +14,8 @@ std::span<const ShotKey<Shot>> shot_keys() {
        "Frames before the first, in which the bind pose blends into the first frame and the cloth settles"},
       {"write_preroll", &Shot::write_preroll, 0, 0, "", "", false, "",
        "Also write the frames of the pre-roll into the caches"},
+      {"quality", &Shot::quality, 0, 0, "", "final preview", false, "",
+       "`preview` bakes several times faster with a larger error, for setting a shot up"},
   };
   return keys;
 }

@@ -9,28 +9,6 @@
 namespace ft {
 namespace {
 
-/// Pattern coordinates of the corners of each triangle of triangulate(); empty when the mesh has none.
-std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles) {
-  std::vector<std::array<Vec2, 3>> out;
-  if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size()) return out;
-  out.reserve(triangles.size());
-  std::size_t begin = 0, next = 0;
-  for (const int size : mesh.face_sizes) {
-    for (int k = 0; k + 2 < size; ++k, ++next) {
-      std::array<Vec2, 3> uv;
-      for (std::size_t c = 0; c < 3; ++c) {
-        std::size_t corner = begin;
-        while (corner < begin + at(size) && mesh.face_vertices[corner] != triangles[next][c]) ++corner;
-        const int index = corner < begin + at(size) ? mesh.face_uvs[corner] : -1;
-        uv[c] = index >= 0 && at(index) < mesh.uvs.size() ? mesh.uvs[at(index)] : Vec2::Zero();
-      }
-      out.push_back(uv);
-    }
-    begin += at(size);
-  }
-  return out;
-}
-
 Status check_maps(const ClothGarment& garment) {
   for (const NamedMap& map : k_vertex_maps) {
     const std::vector<double>& values = garment.maps.*map.values;
@@ -46,34 +24,6 @@ Status check_maps(const ClothGarment& garment) {
         return input_error(owner + ": " + std::to_string(values[v]) + " at vertex " + std::to_string(v) + " is not " +
                            (may_vanish ? "0 or above" : "above 0"));
   }
-  return {};
-}
-
-Status check(const ClothSetup& setup) {
-  if (setup.garments.empty()) return input_error("a cloth system needs at least one garment");
-  for (const ClothGarment& g : setup.garments) {
-    if (g.mesh.positions.empty() || g.mesh.face_sizes.empty())
-      return input_error("cloth \"" + g.name + "\" has no faces");
-    if (!all_finite(g.mesh.positions)) return input_error("cloth \"" + g.name + "\" has a vertex that is not a number");
-    for (const Stitch& s : g.mesh.stitches)
-      for (const int v : {s.vertex, s.edge[0], s.edge[1]})
-        if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] ||
-            !(s.place >= 0 && s.place <= 1))
-          return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) +
-                             " cannot be sewn");
-    if (const Status maps = check_maps(g); !maps) return maps;
-    for (const ClothPin& pin : g.pins) {
-      for (const int v : pin.vertices)
-        if (v < 0 || v >= g.mesh.vertex_count())
-          return input_error("cloth \"" + g.name + "\": pin names vertex " + std::to_string(v) + " of " +
-                             std::to_string(g.mesh.vertex_count()));
-      if (!pin.weights.empty() && pin.weights.size() != pin.vertices.size())
-        return input_error("cloth \"" + g.name + "\": a pin needs one weight per vertex");
-    }
-  }
-  if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps ||
-      setup.newton_iterations < 1)
-    return input_error("cloth settings are out of range");
   return {};
 }
 
@@ -165,6 +115,55 @@ void place_and_pin(ClothModel& model) {
 }
 
 }  // namespace
+
+std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles) {
+  std::vector<std::array<Vec2, 3>> out;
+  if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size()) return out;
+  out.reserve(triangles.size());
+  std::size_t begin = 0, next = 0;
+  for (const int size : mesh.face_sizes) {
+    for (int k = 0; k + 2 < size; ++k, ++next) {
+      std::array<Vec2, 3> uv;
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::size_t corner = begin;
+        while (corner < begin + at(size) && mesh.face_vertices[corner] != triangles[next][c]) ++corner;
+        const int index = corner < begin + at(size) ? mesh.face_uvs[corner] : -1;
+        uv[c] = index >= 0 && at(index) < mesh.uvs.size() ? mesh.uvs[at(index)] : Vec2::Zero();
+      }
+      out.push_back(uv);
+    }
+    begin += at(size);
+  }
+  return out;
+}
+
+Status check(const ClothSetup& setup) {
+  if (setup.garments.empty()) return input_error("a cloth system needs at least one garment");
+  for (const ClothGarment& g : setup.garments) {
+    if (g.mesh.positions.empty() || g.mesh.face_sizes.empty())
+      return input_error("cloth \"" + g.name + "\" has no faces");
+    if (!all_finite(g.mesh.positions)) return input_error("cloth \"" + g.name + "\" has a vertex that is not a number");
+    for (const Stitch& s : g.mesh.stitches)
+      for (const int v : {s.vertex, s.edge[0], s.edge[1]})
+        if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] ||
+            !(s.place >= 0 && s.place <= 1))
+          return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) +
+                             " cannot be sewn");
+    if (const Status maps = check_maps(g); !maps) return maps;
+    for (const ClothPin& pin : g.pins) {
+      for (const int v : pin.vertices)
+        if (v < 0 || v >= g.mesh.vertex_count())
+          return input_error("cloth \"" + g.name + "\": pin names vertex " + std::to_string(v) + " of " +
+                             std::to_string(g.mesh.vertex_count()));
+      if (!pin.weights.empty() && pin.weights.size() != pin.vertices.size())
+        return input_error("cloth \"" + g.name + "\": a pin needs one weight per vertex");
+    }
+  }
+  if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps ||
+      setup.newton_iterations < 1 || !(setup.coarsen >= 1 && setup.coarsen <= 4))
+    return input_error("cloth settings are out of range");
+  return {};
+}
 
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   if (Status status = check(setup); !status) return status.error();

@@ -52,6 +52,12 @@ struct ClothModel {
   int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
 };
 
+/// What is wrong with a setup, by garment and vertex.
+Status check(const ClothSetup& setup);
+
+/// Pattern coordinates of the corners of each triangle of triangulate(); empty when the mesh has none.
+std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles);
+
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup);
 
 /// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without

@@ -16,6 +16,7 @@
 #include "solvers/cloth/body_ahead.h"
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/coarse_solver.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/tangles.h"
 #include "solvers/cloth/untangle.h"
@@ -24,7 +25,6 @@ namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
-constexpr double k_travel = 4;  ///< of the body against the cloth in a substep, in contact radii
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -153,7 +153,7 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
   };
   double radius = 1e-3;
   for (const double r : model_->contact.radius) radius = std::max(radius, r);
-  const double travel = k_travel * radius;
+  const double travel = setup.travel * radius;
   // The fastest first: the first that is near decides, and slow ones change nothing.
   std::vector<std::pair<double, std::size_t>> by_speed;
   for (std::size_t i = 0; i < body_t0.size(); ++i) {
@@ -289,6 +289,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
 }  // namespace
 
 Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup) {
+  if (setup.coarsen > 1) return make_coarse_solver(std::move(setup));
   auto model = build_cloth_model(std::move(setup));
   if (!model) return model.error();
   return std::unique_ptr<Solver>(std::make_unique<ClothSolver>(std::move(*model)));

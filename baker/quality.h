@@ -1,0 +1,20 @@
+// What `quality = "preview"` means: the same solver on coarser garments and a coarser collider, in longer steps. One
+// place, so that bake, dry run and manifest say the same.
+#pragma once
+
+#include <string>
+
+#include "io/shot/shot.h"
+#include "solvers/cloth/cloth_solver.h"
+
+namespace ft {
+
+bool is_preview(const Shot& shot);
+
+/// Makes a setup a preview's; a final one stays as it is.
+void apply_quality(const Shot& shot, ClothSetup& setup);
+
+/// For the log and the manifest: what a preview's certificate is worth.
+std::string quality_note();
+
+}  // namespace ft

@@ -1,0 +1,45 @@
+// A coarser mesh over some of the vertices of a surface, for previews: edges are collapsed, the shortest first, until
+// they are as long as wanted everywhere. The outline, seams of the pattern and groups of vertices keep their shape, and
+// every vertex of the finer mesh gets a place on the coarser one. For cloth: what decides is the shape of the triangles
+// at rest, not curvature, since flat cloth has to bend anywhere.
+// After Hoppe et al. 1993, "Mesh optimization" (collapses that keep the topology), without the optimization.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "baker/core/types.h"
+
+namespace ft {
+
+inline constexpr int k_group_stays = -1;
+
+struct CoarsenInput {
+  std::span<const Vec3> rest;  ///< m
+  std::span<const Triangle> triangles;
+  std::span<const std::array<Vec2, 3>> uvs;  ///< of the corners of each triangle, or empty
+  /// Per vertex, or empty. 0: free. A vertex of a group above 0 is only drawn into one of its group; k_group_stays
+  /// stays.
+  std::span<const int> group;
+  double factor = 2;  ///< edges get this many times as long, 1..4; a quarter of the vertices are left at 2
+};
+
+struct CoarsenedMesh {
+  /// A point of the coarser surface: corners in its numbering, weights that sum to 1.
+  struct Place {
+    std::array<int, 3> vertex{};
+    std::array<double, 3> weight{1, 0, 0};
+  };
+  std::vector<int> kept;                 ///< finer vertex of each coarser one, ascending
+  std::vector<Triangle> triangles;       ///< coarser numbering
+  std::vector<std::array<Vec2, 3>> uvs;  ///< as the input's
+  std::vector<Place> places;             ///< of each finer vertex: the nearest point at rest
+};
+
+/// Depends on the input alone. Where nothing may be collapsed (degenerate or branching surfaces) the mesh stays as it
+/// is.
+CoarsenedMesh coarsen_mesh(const CoarsenInput& input);
+
+}  // namespace ft

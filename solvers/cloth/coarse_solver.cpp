@@ -1,0 +1,79 @@
+#include "solvers/cloth/coarse_solver.h"
+
+#include <algorithm>
+
+#include "baker/core/parallel.h"
+#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/coarse_garment.h"
+
+namespace ft {
+namespace {
+
+constexpr std::size_t k_block = 4096;
+
+struct Garment {
+  std::string name;
+  Mesh mesh;  ///< as given
+  std::vector<int> kept;
+  std::vector<CoarsenedMesh::Place> places;
+};
+
+class CoarseSolver final : public Solver {
+ public:
+  CoarseSolver(std::unique_ptr<Solver> inner, std::vector<Garment> garments)
+      : inner_(std::move(inner)), garments_(std::move(garments)) {}
+
+  int system_count() const override { return inner_->system_count(); }
+  const Mesh& system_mesh(int system) const override { return garments_[at(system)].mesh; }
+  void system_positions(const State& state, int system, std::span<Vec3> out) const override {
+    const Garment& garment = garments_[at(system)];
+    CHECK(out.size() == garment.places.size());
+    std::vector<Vec3> coarse(garment.kept.size());
+    inner_->system_positions(state, system, coarse);
+    parallel_for(out.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const CoarsenedMesh::Place& place = garment.places[i];
+        out[i] = place.weight[0] * coarse[at(place.vertex[0])] + place.weight[1] * coarse[at(place.vertex[1])] +
+                 place.weight[2] * coarse[at(place.vertex[2])];
+      }
+    });
+  }
+  std::span<const Triangle> collider_triangles() const override { return inner_->collider_triangles(); }
+  void collider_positions(const State& state, std::vector<Vec3>& out) const override {
+    inner_->collider_positions(state, out);
+  }
+  State initial_state() const override { return inner_->initial_state(); }
+  FrameReport advance_frame(State& state) const override {
+    FrameReport report = inner_->advance_frame(state);
+    for (Incident& incident : report.incidents) {
+      const auto garment =
+          std::find_if(garments_.begin(), garments_.end(), [&](const Garment& g) { return g.name == incident.system; });
+      if (garment != garments_.end() && incident.vertex >= 0) incident.vertex = garment->kept[at(incident.vertex)];
+    }
+    return report;
+  }
+
+ private:
+  std::unique_ptr<Solver> inner_;
+  std::vector<Garment> garments_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Solver>> make_coarse_solver(ClothSetup setup) {
+  // What is wrong with a garment is said of the garment as it was given.
+  if (Status status = check(setup); !status) return status.error();
+  const double factor = setup.coarsen;
+  setup.coarsen = 1;
+  std::vector<Garment> garments;
+  for (ClothGarment& garment : setup.garments) {
+    CoarseGarment coarse = coarse_garment(garment, factor);
+    garments.push_back({garment.name, std::move(garment.mesh), std::move(coarse.kept), std::move(coarse.places)});
+    garment = std::move(coarse.garment);
+  }
+  auto inner = make_cloth_solver(std::move(setup));
+  if (!inner) return inner.error();
+  return std::unique_ptr<Solver>(std::make_unique<CoarseSolver>(std::move(*inner), std::move(garments)));
+}
+
+}  // namespace ft
