@@ -293,6 +293,13 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
   return t;
 }
 
+bool Candidates::cloth_blocks_cloth() const {
+  const auto any = [&](const std::vector<Stencil>& blocked) {
+    return std::any_of(blocked.begin(), blocked.end(), [&](const Stencil& s) { return part_of(s) < 0; });
+  };
+  return any(blocked_.vertex_face) || any(blocked_.edge_edge);
+}
+
 int Candidates::release_blocked(ClothMotion& cloth) {
   int freed = 0;
   for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge})

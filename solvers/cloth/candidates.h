@@ -38,6 +38,8 @@ class Candidates {
   /// After a collect() or join_blocked() that gave less than 1: carries the cloth of the pairs that would touch as one,
   /// brings pairs() up to it and returns the share anew.
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
+  /// Whether cloth is about to touch cloth, by the last collect() or join_blocked().
+  bool cloth_blocks_cloth() const;
   /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is
   /// carried already. What release_blocked() has dropped stays out.
   void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
