@@ -28,9 +28,8 @@ void apply_quality(const Shot& shot, ClothSetup& setup) {
 }
 
 std::string quality_note() {
-  return "preview quality: a quarter of the vertices of each garment move and the others ride on them (all, where it "
-         "is "
-         "sewn or cut from a pattern); crossings, gaps and strains are those of what moves";
+  return "preview quality: a quarter of the vertices of each garment move and the others ride on them "
+         "(all move where it is sewn or cut from a pattern); crossings, gaps and strains are those of what moves";
 }
 
 }  // namespace ft

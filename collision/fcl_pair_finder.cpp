@@ -195,6 +195,8 @@ struct Task {
 }  // namespace
 
 struct PairFinder::Impl {
+  explicit Impl(PairFeatures f) : features(std::move(f)) {}
+
   PairFeatures features;
   bool want_edges = true;
   Tree cloth, collider;
@@ -257,15 +259,7 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& ou
 
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                        std::span<const Triangle> collider_triangles)
-    : impl_(new Impl{{cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles},
-                     true,
-                     {},
-                     {},
-                     {},
-                     {},
-                     {},
-                     {},
-                     {}}) {}
+    : impl_(new Impl(PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles))) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 
@@ -307,32 +301,29 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   }
   const std::span<const Found> found(m.found.data(), m.tasks.size());
 
-  const auto vertex_face = [&] {
-    m.sort_vertex_face.begin(features.vertex_count);
-    for (const Found& f : found) m.sort_vertex_face.add(f.vertex_face);
-    const std::span<const std::uint64_t> keys = m.sort_vertex_face.sort();
-    out.vertex_face.resize(keys.size());
+  const auto write = [&](PairSorter& sorter, std::size_t first_count, auto keys_of, auto stencil_of, auto& pairs) {
+    sorter.begin(static_cast<int>(first_count));
+    for (const Found& f : found) sorter.add(f.*keys_of);
+    const std::span<const std::uint64_t> keys = sorter.sort();
+    pairs.resize(keys.size());
     parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Triangle& f = features.faces[at(key_second(keys[i]))];
-        out.vertex_face[i] = {{key_first(keys[i]), f[0], f[1], f[2]}};
-      }
+      for (std::size_t i = begin; i < end; ++i) pairs[i] = stencil_of(key_first(keys[i]), key_second(keys[i]));
     });
   };
-  const auto edge_edge = [&] {
-    m.sort_edge_edge.begin(static_cast<int>(features.edges.size()));
-    for (const Found& f : found) m.sort_edge_edge.add(f.edge_edge);
-    const std::span<const std::uint64_t> keys = m.sort_edge_edge.sort();
-    out.edge_edge.resize(keys.size());
-    parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Edge& a = features.edges[at(key_first(keys[i]))];
-        const Edge& b = features.edges[at(key_second(keys[i]))];
-        out.edge_edge[i] = {{a[0], a[1], b[0], b[1]}};
-      }
-    });
+  const auto vertex_face = [&](int v, int face) {
+    const Triangle& f = features.faces[at(face)];
+    return Stencil{{v, f[0], f[1], f[2]}};
   };
-  parallel_tasks(2, [&](std::size_t task) { task == 0 ? vertex_face() : edge_edge(); });
+  const auto edge_edge = [&](int first, int second) {
+    const Edge &a = features.edges[at(first)], &b = features.edges[at(second)];
+    return Stencil{{a[0], a[1], b[0], b[1]}};
+  };
+  parallel_tasks(2, [&](std::size_t task) {
+    if (task == 0)
+      write(m.sort_vertex_face, at(features.vertex_count), &Found::vertex_face, vertex_face, out.vertex_face);
+    else
+      write(m.sort_edge_edge, features.edges.size(), &Found::edge_edge, edge_edge, out.edge_edge);
+  });
 }
 
 }  // namespace ft

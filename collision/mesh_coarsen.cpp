@@ -13,9 +13,9 @@ namespace {
 
 constexpr double k_short = 0.8;  ///< of the wanted length: shorter edges are collapsed [1]
 constexpr double k_long = 1.4;   ///< of the wanted length: no collapse makes a longer edge [1]
-constexpr double k_least_shape =
-    0.3;                        ///< of a triangle after a collapse, 1 is equilateral; what is worse may not get worse
-constexpr double k_turn = 0.7;  ///< cosine of the most that a triangle turns in a collapse
+/// Of a triangle after a collapse, 1 is equilateral [1]; what is worse may not get worse.
+constexpr double k_least_shape = 0.3;
+constexpr double k_turn = 0.7;       ///< cosine of the most that a triangle turns in a collapse
 constexpr double k_straight = -0.8;  ///< cosine between an outline's edges up to which it is no corner
 
 /// 4 sqrt(3) area / sum of squared edges [1].

@@ -7,7 +7,8 @@
 namespace ft {
 namespace {
 
-constexpr int k_at_once = 8;  ///< poses that are worked out together: enough for any machine's cores to share
+constexpr int k_at_once =
+    8;  ///< most poses that are worked out together; more would keep more cores busy and more memory
 
 }  // namespace
 

@@ -19,8 +19,8 @@ struct PieceMotion {
   std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
   std::vector<Vec3> carry;        ///< per cloth vertex [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
-  std::vector<Vec3>
-      centre;  ///< per vertex: from the start to the middle of where the solve may put it; the body's motion [m]
+  /// Per vertex: from the start to the middle of where the solve may put it; of the body its motion [m].
+  std::vector<Vec3> centre;
   std::vector<double> slack;  ///< per cloth vertex: how far the solve may put it from there [m]
 };
 

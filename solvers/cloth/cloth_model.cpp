@@ -160,7 +160,7 @@ Status check(const ClothSetup& setup) {
     }
   }
   if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps ||
-      setup.newton_iterations < 1 || !(setup.coarsen >= 1 && setup.coarsen <= 4))
+      setup.newton_iterations < 1 || !(setup.coarsen >= 1 && setup.coarsen <= 4) || !(setup.travel > 0))
     return input_error("cloth settings are out of range");
   return {};
 }

@@ -124,7 +124,8 @@ State ClothSolver::initial_state() const {
 
 int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const {
   const ClothSetup& setup = model_->setup;
-  const std::vector<Vec3>&body_t0 = body_.start().feasible, &body_t1 = body_.end().feasible;
+  const std::vector<Vec3>& body_t0 = body_.start().feasible;
+  const std::vector<Vec3>& body_t1 = body_.end().feasible;
   if (body_t0.empty()) return setup.min_substeps;
   // Speed of the body relative to the cloth's own mean motion, where cloth is near.
   const double dt = frame.t1 - frame.t0, cell = 0.06;

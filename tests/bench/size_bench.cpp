@@ -1,5 +1,5 @@
-// What a frame costs as the mesh gets finer: the square of 1 m on a swinging sphere (the benchmark's scene S1), the
-// same frames with ever more vertices. For tests/bench/run.sh size.
+// What a frame costs as the mesh gets finer: the square of 1 m on a sphere as in the benchmark's scene S1 (the sphere
+// swings from frame 10 on instead of 40), the same frames with ever more vertices. For tests/bench/run.sh size.
 //   size_bench [--frames N] [CELLS ...]
 // A line per size, then the exponent of CPU time against vertices, fitted over all of them. Every frame's cloth is
 // checked by the independent checker; 1 is returned when it finds a crossing.
