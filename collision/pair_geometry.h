@@ -7,7 +7,9 @@
 // not specified.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "baker/core/types.h"
@@ -36,6 +38,24 @@ inline PairGeometry pair_geometry(PairKind kind, const std::array<Vec3, 4>& x) {
 /// How many of the four vertices belong to the first feature.
 constexpr int first_feature_size(PairKind kind) {
   return kind == PairKind::k_vertex_face ? 1 : 2;
+}
+
+/// Squared distance between the boxes of the two features: a lower bound that is cheaper than theirs [m2].
+inline double box_gap_squared(PairKind kind, const std::array<Vec3, 4>& x) {
+  const auto split = static_cast<std::size_t>(first_feature_size(kind));
+  Vec3 lo_a = x[0], hi_a = x[0], lo_b = x[split], hi_b = x[split];
+  for (std::size_t k = 1; k < split; ++k) lo_a = lo_a.cwiseMin(x[k]), hi_a = hi_a.cwiseMax(x[k]);
+  for (std::size_t k = split + 1; k < 4; ++k) lo_b = lo_b.cwiseMin(x[k]), hi_b = hi_b.cwiseMax(x[k]);
+  return (lo_a - hi_b).cwiseMax(lo_b - hi_a).cwiseMax(0.0).squaredNorm();
+}
+
+/// Largest motion of a vertex of one feature relative to a vertex of the other, for displacements d [m].
+inline double largest_relative_motion(PairKind kind, const std::array<Vec3, 4>& d) {
+  const auto split = static_cast<std::size_t>(first_feature_size(kind));
+  double squared = 0;
+  for (std::size_t a = 0; a < split; ++a)
+    for (std::size_t b = split; b < 4; ++b) squared = std::max(squared, (d[a] - d[b]).squaredNorm());
+  return std::sqrt(squared);
 }
 
 /// Width of the slab across geometry.normal that has the first feature on one side and the second on the other [m];

@@ -3,6 +3,10 @@
 // that is taken with the shares below leaves every pair separated, whatever the others do, so a crossing-free state
 // stays crossing-free.
 //
+// The planes move: what the vertices of a pair have in common (common_motion.h) carries them along, and only the rest
+// of a displacement is truncated. With planes that stand still a mesh whose edges are shorter than its displacements
+// would be held fast by its own neighbourhood.
+//
 // Caution: the proof covers the listed pairs only. The list must hold every pair that can meet in the step; see
 // contact_pairs.h.
 #pragma once
@@ -10,21 +14,18 @@
 #include <span>
 
 #include "collision/contact_pairs.h"
-#include "collision/pair_geometry.h"
+#include "collision/pair_room.h"
 
 namespace ft {
 
-/// Share of the way to its plane that a vertex may use [1]. The rest keeps the next step possible.
-inline constexpr double k_truncate_reach = 0.9;
+/// For every vertex the largest share in [0, 1] of dx - common [m] so that common + share * (dx - common) brings no
+/// pair nearer than floor [m] (or than it is, where it is already nearer). No pair may be too near for `common` alone,
+/// which is zero or CommonMotion's. Vertices at or past movable_count do not move; x holds them too, the others need
+/// only hold the movable ones. Pairs that touch allow no motion. The order of pairs does not matter.
+void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, std::span<const Vec3> common,
+                            int movable_count, const ContactPairs& pairs, double floor, std::span<double> share);
 
-/// For every vertex the largest share in [0, 1] of its displacement dx [m] so that no pair can come nearer than floor
-/// [m] (or than it is, where it is already nearer). Vertices at or past movable_count do not move; x holds them too, dx
-/// and share need only hold the movable ones. Pairs that touch allow no motion. The order of pairs does not matter.
-void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count,
-                            const ContactPairs& pairs, double floor, std::span<double> share);
-
-/// The shares of one pair alone; a vertex with movable[i] false gets 1 and counts as still.
-std::array<double, 4> truncate_pair(PairKind kind, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx,
-                                    const std::array<bool, 4>& movable, double floor);
+/// The shares of one pair alone; a vertex that is not movable gets 1.
+std::array<double, 4> truncate_pair(PairKind kind, const PairMove& move, double floor);
 
 }  // namespace ft

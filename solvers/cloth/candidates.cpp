@@ -38,22 +38,6 @@ std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
   return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
 }
 
-/// Largest relative motion between the two features of a pair [m].
-double largest_difference(const std::array<Vec3, 4>& d, std::size_t split) {
-  double squared = 0;
-  for (std::size_t a = 0; a < split; ++a)
-    for (std::size_t b = split; b < 4; ++b) squared = std::max(squared, (d[a] - d[b]).squaredNorm());
-  return std::sqrt(squared);
-}
-
-/// Squared distance between the boxes of the two features: a lower bound that is cheaper than theirs.
-double box_gap_squared(const std::array<Vec3, 4>& x, std::size_t split) {
-  Vec3 lo_a = x[0], hi_a = x[0], lo_b = x[split], hi_b = x[split];
-  for (std::size_t k = 1; k < split; ++k) lo_a = lo_a.cwiseMin(x[k]), hi_a = hi_a.cwiseMax(x[k]);
-  for (std::size_t k = split + 1; k < 4; ++k) lo_b = lo_b.cwiseMin(x[k]), hi_b = hi_b.cwiseMax(x[k]);
-  return (lo_a - hi_b).cwiseMax(lo_b - hi_a).cwiseMax(0.0).squaredNorm();
-}
-
 }  // namespace
 
 Candidates::Candidates(const ClothModel& model)
@@ -259,7 +243,7 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
     double first = 1;
     for (std::size_t p = begin; p < end; ++p) {
       const std::array<Vec3, 4> x = gather(piece.start, found[p]), d = gather(piece.all, found[p]);
-      const double relative = largest_difference(d, split);
+      const double relative = largest_relative_motion(kind, d);
       double slack_a = 0, slack_b = 0;
       for (std::size_t k = 0; k < 4; ++k) {
         const int v = found[p].v[k];
@@ -269,8 +253,9 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
       const bool self = found[p].v[split] < model_.vertex_count() && found[p].v[0] < model_.vertex_count();
       const double radius = self ? self_radius_ : radius_;
       const double reach =
-          std::max(relative, largest_difference(gather(piece.centre, found[p]), split) + slack_a + slack_b) + radius;
-      if (box_gap_squared(x, split) >= reach * reach || !counts(cloth, kind, found[p])) continue;
+          std::max(relative, largest_relative_motion(kind, gather(piece.centre, found[p])) + slack_a + slack_b) +
+          radius;
+      if (box_gap_squared(kind, x) >= reach * reach || !counts(cloth, kind, found[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
+#include "collision/common_motion.h"
 #include "collision/truncate_dat.h"
 #include "solvers/energies/limited_spring.h"
 
@@ -52,7 +53,8 @@ struct ImplicitStep::Scratch {
       : system(model.pattern, model.contact.rest, settings), contact(model.contact) {}
   LinearSystem system;
   ContactPotential contact;
-  std::vector<Vec3> y, gradient, direction, all, trial;
+  CommonMotion common_motion;
+  std::vector<Vec3> y, gradient, direction, common, all, trial;
   std::vector<double> share, missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
   std::vector<PairTerm> terms;
@@ -95,6 +97,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.trial = s.all;
   s.gradient.resize(n);
   s.direction.resize(n);
+  s.common.resize(n);
   s.share.resize(n);
   s.missing.resize(n);
 
@@ -177,24 +180,19 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       s.contact.update(s.all);
       s.contact.lag_friction();
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 from = s.all[i] - in.centre[i];
-      const double room = in.slack[i];
-      if ((from + s.direction[i]).squaredNorm() <= room * room) continue;
-      const double dd = s.direction[i].squaredNorm(), fd = from.dot(s.direction[i]);
-      const double cc = from.squaredNorm() - room * room;
-      const double t = (-fd + std::sqrt(std::max(0.0, fd * fd - dd * cc))) / dd;
-      s.direction[i] *= std::clamp(t, 0.0, 1.0);
-    }
+    for (std::size_t i = 0; i < n; ++i)
+      s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
     s.contact.near_pairs(s.direction, k_floor, s.near);
-    truncate_displacements(s.all, s.direction, model_.vertex_count(), s.near, k_floor, s.share);
+    s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack}, s.common);
+    truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
+    for (std::size_t i = 0; i < n; ++i) s.direction[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
 
     double factor = 1;
     bool accepted = false, finite = true;
     for (int halving = 0; halving <= k_most_halvings && !accepted; ++halving, factor *= 0.5) {
       double step = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 d = (factor * s.share[i]) * s.direction[i];
+        const Vec3 d = factor * s.direction[i];
         s.trial[i] = s.all[i] + d;
         step = std::max(step, d.norm());
       }

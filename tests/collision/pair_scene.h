@@ -6,6 +6,7 @@
 
 #include "baker/core/random.h"
 #include "baker/core/types.h"
+#include "collision/pair_geometry.h"
 
 namespace ft::test {
 
@@ -48,6 +49,30 @@ inline std::array<Vec3, 4> random_stencil(Dice& dice, double scale) {
   }
   for (Vec3& p : x) p *= scale;
   return x;
+}
+
+/// True when the pair stayed apart all the way from x to x + dx. Straight moves on their own sides of one plane do;
+/// planes are tried across the closest points along the way and along the features' own normal. A rest that no plane
+/// decides is followed in small pieces.
+inline bool stays_apart(PairKind kind, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx, int depth = 0) {
+  std::array<Vec3, 4> middle, end;
+  for (std::size_t i = 0; i < 4; ++i) middle[i] = x[i] + 0.5 * dx[i], end[i] = x[i] + dx[i];
+  for (const auto& where : {x, end, middle}) {
+    const PairGeometry g = pair_geometry(kind, where);
+    if (separates(kind, x, g, 1e-9) && separates(kind, end, g, 1e-9)) return true;
+  }
+  Vec3 flat = kind == PairKind::k_vertex_face ? (x[2] - x[1]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[3] - x[2]);
+  if (flat.norm() > 1e-30) {
+    PairGeometry g = pair_geometry(kind, x);
+    for (const double sign : {1.0, -1.0}) {
+      g.normal = sign * flat.normalized();
+      if (separates(kind, x, g, 1e-9) && separates(kind, end, g, 1e-9)) return true;
+    }
+  }
+  if (depth == 12) return false;
+  std::array<Vec3, 4> half;
+  for (std::size_t i = 0; i < 4; ++i) half[i] = 0.5 * dx[i];
+  return stays_apart(kind, x, half, depth + 1) && stays_apart(kind, middle, half, depth + 1);
 }
 
 }  // namespace ft::test

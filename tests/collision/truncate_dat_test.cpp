@@ -14,31 +14,16 @@ namespace {
 
 using test::Dice;
 using test::random_stencil;
+using test::stays_apart;
 
 constexpr double k_floor = 1e-5;
 
-/// True when the pair stayed apart all the way from x to x + dx. Straight moves on their own sides of one plane do;
-/// planes are tried across the closest points along the way and along the features' own normal. A rest that no plane
-/// decides is followed in small pieces.
-bool stays_apart(PairKind kind, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx, int depth = 0) {
-  std::array<Vec3, 4> middle, end;
-  for (std::size_t i = 0; i < 4; ++i) middle[i] = x[i] + 0.5 * dx[i], end[i] = x[i] + dx[i];
-  for (const auto& where : {x, end, middle}) {
-    const PairGeometry g = pair_geometry(kind, where);
-    if (separates(kind, x, g, 1e-9) && separates(kind, end, g, 1e-9)) return true;
-  }
-  Vec3 flat = kind == PairKind::k_vertex_face ? (x[2] - x[1]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[3] - x[2]);
-  if (flat.norm() > 1e-30) {
-    PairGeometry g = pair_geometry(kind, x);
-    for (const double sign : {1.0, -1.0}) {
-      g.normal = sign * flat.normalized();
-      if (separates(kind, x, g, 1e-9) && separates(kind, end, g, 1e-9)) return true;
-    }
-  }
-  if (depth == 12) return false;
-  std::array<Vec3, 4> half;
-  for (std::size_t i = 0; i < 4; ++i) half[i] = 0.5 * dx[i];
-  return stays_apart(kind, x, half, depth + 1) && stays_apart(kind, middle, half, depth + 1);
+/// With nothing in common.
+PairMove move_of(const std::array<Vec3, 4>& x, std::array<Vec3, 4> dx, const std::array<bool, 4>& movable) {
+  for (std::size_t i = 0; i < 4; ++i)
+    if (!movable[i]) dx[i].setZero();
+  const Vec3 zero = Vec3::Zero();
+  return {x, dx, {zero, zero, zero, zero}, movable};
 }
 
 struct Tally {
@@ -75,7 +60,7 @@ Tally attack(PairKind kind, double from_origin, int pairs, std::uint64_t seed) {
         const double side = static_cast<int>(i) < first_feature_size(kind) ? -1 : 1;
         dx[i] = reach * (dice.direction() + side * dice.uniform(0, 2) * now.normal);
       }
-      const std::array<double, 4> share = truncate_pair(kind, x, dx, movable, k_floor);
+      const std::array<double, 4> share = truncate_pair(kind, move_of(x, dx, movable), k_floor);
       std::array<Vec3, 4> next = x, moved;
       for (std::size_t i = 0; i < 4; ++i) {
         if (movable[i]) next[i] = x[i] + share[i] * dx[i];
@@ -135,7 +120,7 @@ TEST(Truncation, The_judge_of_this_file_sees_a_crossing) {
 TEST(Truncation, A_vertex_falling_on_a_still_face_may_use_nine_tenths_of_the_room) {
   const std::array<Vec3, 4> x{Vec3(0.2, 0.2, 1), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   const std::array<Vec3, 4> dx{Vec3(0, 0, -2), Vec3(0, 0, 5), Vec3(0, 0, 5), Vec3(0, 0, 5)};
-  const auto share = truncate_pair(PairKind::k_vertex_face, x, dx, {true, false, false, false}, 0.1);
+  const auto share = truncate_pair(PairKind::k_vertex_face, move_of(x, dx, {true, false, false, false}), 0.1);
   EXPECT_NEAR(share[0], 0.9 * 0.9 / 2, 1e-15);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(share[i], 1);
 }
@@ -143,7 +128,7 @@ TEST(Truncation, A_vertex_falling_on_a_still_face_may_use_nine_tenths_of_the_roo
 TEST(Truncation, Two_that_approach_share_the_room_as_they_approach) {
   const std::array<Vec3, 4> x{Vec3(-1, 0, 1), Vec3(1, 0, 1), Vec3(0, -1, 0), Vec3(0, 1, 0)};
   const std::array<Vec3, 4> dx{Vec3(0, 0, -3), Vec3(0, 0, -3), Vec3(0, 0, 1), Vec3(0, 0, 1)};
-  const auto share = truncate_pair(PairKind::k_edge_edge, x, dx, {true, true, true, true}, 0);
+  const auto share = truncate_pair(PairKind::k_edge_edge, move_of(x, dx, {true, true, true, true}), 0);
   for (const double t : share) EXPECT_NEAR(t, 0.9 * 0.25, 1e-15);
 }
 
@@ -151,7 +136,7 @@ TEST(Truncation, Who_leaves_or_slides_is_not_held_back) {
   const std::array<Vec3, 4> x{Vec3(0.2, 0.2, 0.5 * k_floor), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   for (const Vec3& d : {Vec3(0, 0, 1), Vec3(5, -3, 0)}) {
     const std::array<Vec3, 4> dx{d, Vec3(0, 0, 0), Vec3(0, 0, -1), Vec3(0, 0, 0)};
-    for (const double t : truncate_pair(PairKind::k_vertex_face, x, dx, {true, true, true, true}, k_floor))
+    for (const double t : truncate_pair(PairKind::k_vertex_face, move_of(x, dx, {true, true, true, true}), k_floor))
       EXPECT_EQ(t, 1);
   }
 }
@@ -159,13 +144,13 @@ TEST(Truncation, Who_leaves_or_slides_is_not_held_back) {
 TEST(Truncation, A_pair_nearer_than_the_floor_comes_no_nearer) {
   std::array<Vec3, 4> x{Vec3(0.2, 0.2, 0.3 * k_floor), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   const std::array<Vec3, 4> dx{Vec3(0, 0, -1), Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)};
-  EXPECT_NEAR(truncate_pair(PairKind::k_vertex_face, x, dx, {true, true, true, true}, k_floor)[0], 0, 1e-18);
+  EXPECT_NEAR(truncate_pair(PairKind::k_vertex_face, move_of(x, dx, {true, true, true, true}), k_floor)[0], 0, 1e-18);
 }
 
 TEST(Truncation, A_pair_that_touches_allows_no_motion) {
   const std::array<Vec3, 4> x{Vec3(0.2, 0.2, 0), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   const std::array<Vec3, 4> dx{Vec3(0, 0, 1), Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)};
-  const auto share = truncate_pair(PairKind::k_vertex_face, x, dx, {true, true, false, true}, k_floor);
+  const auto share = truncate_pair(PairKind::k_vertex_face, move_of(x, dx, {true, true, false, true}), k_floor);
   EXPECT_EQ(share, (std::array<double, 4>{0, 0, 1, 0}));
 }
 
@@ -199,7 +184,8 @@ TEST(Truncation, Share_of_a_vertex_is_the_least_over_its_pairs_and_the_early_way
   const Soup soup = make_soup(31);
   const auto n = static_cast<std::size_t>(soup.movable_count);
   std::vector<double> share(n), expected(n, 1.0);
-  truncate_displacements(soup.x, soup.dx, soup.movable_count, soup.pairs, k_floor, share);
+  const std::vector<Vec3> still(n, Vec3::Zero());
+  truncate_displacements(soup.x, soup.dx, still, soup.movable_count, soup.pairs, k_floor, share);
   for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge}) {
     for (const Stencil& s : kind == PairKind::k_vertex_face ? soup.pairs.vertex_face : soup.pairs.edge_edge) {
       std::array<Vec3, 4> x, dx;
@@ -208,7 +194,7 @@ TEST(Truncation, Share_of_a_vertex_is_the_least_over_its_pairs_and_the_early_way
         const auto v = static_cast<std::size_t>(s.v[i]);
         x[i] = soup.x[v], dx[i] = soup.dx[v], movable[i] = v < n;
       }
-      const auto own = truncate_pair(kind, x, dx, movable, k_floor);
+      const auto own = truncate_pair(kind, move_of(x, dx, movable), k_floor);
       for (std::size_t i = 0; i < 4; ++i)
         if (movable[i])
           expected[static_cast<std::size_t>(s.v[i])] = std::min(expected[static_cast<std::size_t>(s.v[i])], own[i]);
@@ -221,12 +207,13 @@ TEST(Truncation, Share_of_a_vertex_is_the_least_over_its_pairs_and_the_early_way
 TEST(Truncation, Shares_are_the_same_bits_for_any_thread_count_and_any_order_of_pairs) {
   Soup soup = make_soup(32);
   std::vector<double> first(static_cast<std::size_t>(soup.movable_count)), share = first;
-  truncate_displacements(soup.x, soup.dx, soup.movable_count, soup.pairs, k_floor, first);
+  const std::vector<Vec3> still(first.size(), Vec3::Zero());
+  truncate_displacements(soup.x, soup.dx, still, soup.movable_count, soup.pairs, k_floor, first);
   for (const int threads : {1, 2, 3, 8}) {
     const ThreadLimit limit(threads);
     std::reverse(soup.pairs.vertex_face.begin(), soup.pairs.vertex_face.end());
     std::rotate(soup.pairs.edge_edge.begin(), soup.pairs.edge_edge.begin() + 777, soup.pairs.edge_edge.end());
-    truncate_displacements(soup.x, soup.dx, soup.movable_count, soup.pairs, k_floor, share);
+    truncate_displacements(soup.x, soup.dx, still, soup.movable_count, soup.pairs, k_floor, share);
     EXPECT_EQ(first, share) << threads << " threads";
   }
 }

@@ -1,0 +1,57 @@
+// What neighbours have in common of a step: displacements that may all be made at once without any pair coming too
+// near. It begins with the whole displacements; where a pair would use more than its room, they lose what the two
+// features approach each other by, along the pair's normal and nothing else, until no pair is left. A patch of cloth
+// that moves by many of its edges' lengths keeps nearly all of its motion in this way, and cloth that meets something
+// keeps what slides along it. The rest is for truncate_dat.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "collision/contact_pairs.h"
+#include "collision/pair_room.h"
+
+namespace ft {
+
+/// Balls that the movable vertices have to stay in: at x + dx all of them do, and at x. Empty: there are none.
+struct MotionBounds {
+  std::span<const Vec3> centre;    ///< m
+  std::span<const double> radius;  ///< m
+};
+
+/// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it.
+inline double share_inside_ball(const Vec3& from, const Vec3& d, double radius) {
+  if ((from + d).squaredNorm() <= radius * radius) return 1;
+  const double dd = d.squaredNorm(), fd = from.dot(d), outside = from.squaredNorm() - radius * radius;
+  return std::clamp((-fd + std::sqrt(std::max(0.0, fd * fd - dd * outside))) / dd, 0.0, 1.0);
+}
+
+class CommonMotion {
+ public:
+  /// Fills `common` from the displacements dx of the first movable_count vertices [m]; the others do not move. No
+  /// vertex moves farther than by its dx, so pairs that are complete for dx are complete for it. Where pairs are left
+  /// after the last round nothing is in common. Depends on the order of the pairs, not on the number of threads.
+  void find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const ContactPairs& pairs,
+            double floor, const MotionBounds& bounds, std::span<Vec3> common);
+  int rounds() const { return rounds_; }  ///< of the last find()
+
+ private:
+  struct TightPair {
+    PairKind kind;
+    Stencil stencil;
+    PairRoom room;
+  };
+  struct Problem;
+  void look(const Problem& problem, PairKind kind, std::span<const Stencil> stencils);
+  void relax(const Problem& problem, const TightPair& pair);
+
+  std::vector<char> changed_;  ///< per vertex: in the last round
+  std::vector<char> changing_;
+  std::vector<TightPair> tight_;
+  std::vector<std::vector<TightPair>> found_;  ///< per block of pairs
+  int rounds_ = 0;
+};
+
+}  // namespace ft
