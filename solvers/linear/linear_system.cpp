@@ -3,23 +3,17 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "baker/core/parallel.h"
+#include "solvers/linear/extra_rows.h"
 #include "solvers/linear/level.h"
 
 namespace ft {
 namespace {
 
-constexpr int k_dense_size = 64;    ///< vertices of the level that is factored densely
-constexpr int k_dense_limit = 400;  ///< no dense factor above this size: the coarsest level is only smoothed then
-constexpr std::size_t k_rows = 1024;
-
-/// Off-pattern blocks, rows ascending, columns ascending within a row.
-struct ExtraBlock {
-  int row, column;
-  Mat3f value;
-};
+constexpr int k_dense_size = 64;      ///< vertices of the level that is factored densely
+constexpr int k_dense_limit = 400;    ///< no dense factor above this size: the coarsest level is only smoothed then
+constexpr std::size_t k_rows = 1024;  ///< per block of a loop
 
 double dot(std::span<const Vec4f> a, std::span<const Vec4f> b) {
   return parallel_sum(a.size(), k_rows, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -37,7 +31,8 @@ struct LinearSystem::Impl {
   std::vector<std::unique_ptr<Level>> levels;
   Eigen::LLT<Eigen::MatrixXd> coarse_factor;
   bool coarse_is_factored = false;
-  std::vector<ExtraBlock> extra;
+  std::vector<ExtraBlock> added;
+  ExtraRows extra;
   std::vector<char> held;
   std::vector<Vec4f> solution, best, rhs, residual, direction, product, preconditioned;
 
@@ -80,7 +75,8 @@ LinearSystem::~LinearSystem() = default;
 
 BlockMatrix& LinearSystem::begin() {
   impl_->matrix.reset(*impl_->matrix.pattern);
-  impl_->extra.clear();
+  impl_->added.clear();
+  impl_->extra.gather(impl_->added, at(impl_->fine().size()));
   return impl_->matrix;
 }
 
@@ -96,19 +92,9 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
         if (place >= 0)
           s.matrix.blocks[at(place)] += value;
         else
-          s.extra.push_back({term.vertex[a], term.vertex[b], value});
+          s.added.push_back({term.vertex[a], term.vertex[b], value});
       }
-  std::stable_sort(s.extra.begin(), s.extra.end(), [](const ExtraBlock& a, const ExtraBlock& b) {
-    return std::tie(a.row, a.column) < std::tie(b.row, b.column);
-  });
-  std::size_t used = 0;
-  for (std::size_t k = 0; k < s.extra.size(); ++k) {
-    if (used > 0 && s.extra[used - 1].row == s.extra[k].row && s.extra[used - 1].column == s.extra[k].column)
-      s.extra[used - 1].value += s.extra[k].value;
-    else
-      s.extra[used++] = s.extra[k];
-  }
-  s.extra.resize(used);
+  s.extra.gather(s.added, at(s.fine().size()));
 }
 
 /// Copies the matrix into the finest level; rows and columns that are held become zero, so that nothing couples to
@@ -127,8 +113,10 @@ void LinearSystem::Impl::take_matrix(std::span<const char> fixed) {
         else
           block = matrix.blocks[at(k)];
       }
+    for (std::size_t i = begin; i < end; ++i)
+      for (int k = extra.start[i]; k < extra.start[i] + extra.used[i]; ++k)
+        if (held[i] || held[at(extra.column[at(k)])]) extra.value[at(k)].setZero();
   });
-  std::erase_if(extra, [&](const ExtraBlock& e) { return held[at(e.row)] || held[at(e.column)]; });
 }
 
 void LinearSystem::Impl::refresh_hierarchy() {
@@ -153,7 +141,15 @@ void LinearSystem::Impl::refresh_hierarchy() {
 }
 
 void LinearSystem::Impl::add_extra(std::span<const Vec4f> x, std::span<Vec4f> y, float sign) const {
-  for (const ExtraBlock& e : extra) y[at(e.row)].head<3>() += sign * (e.value * x[at(e.column)].head<3>());
+  if (added.empty()) return;
+  parallel_for(y.size(), k_rows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3f sum = Vec3f::Zero();
+      for (int k = extra.start[i]; k < extra.start[i] + extra.used[i]; ++k)
+        sum += extra.value[at(k)] * x[at(extra.column[at(k)])].head<3>();
+      y[i].head<3>() += sign * sum;
+    }
+  });
 }
 
 void LinearSystem::Impl::smooth_first(Level& level) {
