@@ -1,8 +1,5 @@
 // Pins: where they are on the body, and where the body takes them.
-#include <algorithm>
-#include <cmath>
-
-#include "collision/pair_geometry.h"
+#include "collision/nearest_point.h"
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
@@ -25,18 +22,9 @@ PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std
   PinPoint pin;
   pin.vertex = vertex;
   pin.offset = place;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : triangles) {
-    const Vec3 &a = body[at(t[0])], &b = body[at(t[1])], &c = body[at(t[2])];
-    // Cheap rejection: no point of the triangle is nearer than its first corner less its longest side.
-    const double reach = std::max((b - a).norm(), (c - a).norm());
-    if ((place - a).norm() - reach > nearest) continue;
-    const PairGeometry g = vertex_face_geometry(place, a, b, c);
-    if (g.distance >= nearest) continue;
-    nearest = g.distance;
-    pin.triangle = t;
-    pin.weight = {-g.weight[1], -g.weight[2], -g.weight[3]};
-  }
+  const SurfacePoint nearest = nearest_point(place, body, triangles);
+  pin.triangle = nearest.triangle;
+  pin.weight = nearest.weight;
   if (pin.triangle[0] >= 0) {
     const Vec3 &a = body[at(pin.triangle[0])], &b = body[at(pin.triangle[1])], &c = body[at(pin.triangle[2])];
     const Vec3 foot = pin.weight[0] * a + pin.weight[1] * b + pin.weight[2] * c;
