@@ -8,6 +8,7 @@
 #include "baker/core/parallel.h"
 #include "collision/pair_geometry.h"
 #include "io/shot/vertex_values.h"
+#include "solvers/cloth/attach.h"
 
 namespace ft {
 namespace {
@@ -91,8 +92,8 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
       }
       if (pin.vertices.empty())
         return usage_error(
-            fmt::format("pin within = {} m selects nothing: the nearest vertex is {:.4g} m from the body", spec.within,
-                        smallest),
+            fmt::format("pin within = {} m selects nothing: the nearest vertex is {:.4g} m from {}", spec.within,
+                        smallest, spec.to.empty() ? "the body" : "cloth \"" + spec.to + "\""),
             {}, "unit_scale, up and offset place the mesh");
       break;
     }
@@ -115,6 +116,26 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
       break;
   }
   return pin;
+}
+
+Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin,
+                       std::vector<std::string>& notes) {
+  const ClothGarment& target = garments[static_cast<std::size_t>(pin.to)];
+  for (const ClothGarment* garment : {&garments[own], &target})
+    if (!garment->mesh.stitches.empty())
+      return usage_error(
+          fmt::format("a pin holds to cloth \"{}\", but the panels of \"{}\" are apart until they are sewn",
+                      target.name, garment->name),
+          {}, "bake the sewing by itself, and give what comes out of it as the mesh");
+  const auto found = footholds(garments, own, pin);
+  const auto missing =
+      std::count_if(found.begin(), found.end(), [](const SurfacePoint& f) { return f.triangle[0] < 0; });
+  const std::string none =
+      fmt::format("no other side of cloth \"{}\" is found for {} of the {} vertices that a pin holds to it",
+                  target.name, missing, found.size());
+  if (missing == std::ssize(found)) return usage_error(none, {}, "within one cloth a pin holds what an opening parts");
+  if (missing > 0) notes.push_back(none + ": not held");
+  return {};
 }
 
 }  // namespace ft

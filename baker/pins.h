@@ -10,9 +10,15 @@
 
 namespace ft {
 
-/// body: the primary's bind pose and its triangles. A pin that selects nothing is an error that says what there is.
+/// body: what it holds to, the primary's bind pose or another garment, and its triangles. A pin that selects nothing is
+/// an error that says what there is.
 Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span<const Vec3> body,
                              std::span<const Triangle> triangles);
+
+/// What a pin to a garment would find: an error where that is nothing, or where panels are still to be sewn, and a note
+/// where some of its vertices find nothing.
+Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin,
+                       std::vector<std::string>& notes);
 
 /// Distance of each point to the surface [m]; infinite when there is no triangle.
 std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span<const Vec3> body,

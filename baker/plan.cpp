@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 
@@ -102,7 +103,6 @@ ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
   ClothPin out;
   out.stiffness = pin.stiffness;
   out.max_pull = pin.max_pull;
-  out.hold = pin.hold;
   for (const auto& [vertex, weight] : weight_of) out.vertices.push_back(vertex), out.weights.push_back(weight);
   return out;
 }
@@ -156,13 +156,6 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     if (!set_fabric_value(garment.fabric, key, value))
       return located(usage_error("fabric has no value \"" + key + "\""));
 
-  const auto body = bind_pose(*primary.trajectory);
-  for (const PinSpec& pin_spec : spec.pins) {
-    auto pin = resolve_pin(pin_spec, output.mesh, body, primary.trajectory->surface().triangles);
-    if (!pin) return located(pin.error());
-    pin->hold = hold_span(pin_spec, shot);
-    garment.pins.push_back(output.joined_of.empty() ? std::move(*pin) : on_joined(*pin, output.joined_of));
-  }
   auto maps = resolve_maps(spec.maps, output.mesh);
   if (!maps) return located(maps.error());
   garment.maps =
@@ -173,7 +166,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   garment.self_collision = spec.self_collision;
 
   const Box cloth_box = bounds(garment.mesh.positions);
-  Box body_box = bounds(body);
+  Box body_box = bounds(bind_pose(*primary.trajectory));
   const double ratio = cloth_box.size().maxCoeff() / body_box.size().maxCoeff();
   if (ratio > 10 || ratio < 0.01)
     notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?",
@@ -184,6 +177,36 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
                                 spec.name, primary.name));
   group.setup.garments.push_back(std::move(garment));
   group.outputs.push_back(std::move(output));
+  return {};
+}
+
+/// The pins of a garment of the group, once all garments are there: they may hold to any of them.
+Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, GroupPlan& group, std::size_t own,
+                std::vector<std::string>& notes) {
+  auto& garments = group.setup.garments;
+  const auto located = [&](Error error) {
+    error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
+    return error;
+  };
+  const GarmentOutput& output = group.outputs[own];
+  const auto body = bind_pose(*primary.trajectory);
+  for (const PinSpec& pin_spec : spec.pins) {
+    const auto target = std::find_if(garments.begin(), garments.end(),
+                                     [&](const ClothGarment& garment) { return garment.name == pin_spec.to; });
+    const bool to_cloth = !pin_spec.to.empty();
+    CHECK(!to_cloth || target != garments.end());  // the shot file was judged
+    auto resolved = to_cloth ? resolve_pin(pin_spec, output.mesh, target->mesh.positions, triangulate(target->mesh))
+                             : resolve_pin(pin_spec, output.mesh, body, primary.trajectory->surface().triangles);
+    if (!resolved) return located(resolved.error());
+    ClothPin pin = output.joined_of.empty() ? std::move(*resolved) : on_joined(*resolved, output.joined_of);
+    pin.hold = hold_span(pin_spec, shot);
+    pin.opens = pin_spec.opens;
+    if (to_cloth) {
+      pin.to = static_cast<int>(target - garments.begin());
+      if (const Status held = check_footholds(garments, own, pin, notes); !held) return located(held.error());
+    }
+    garments[own].pins.push_back(std::move(pin));
+  }
   return {};
 }
 
@@ -237,11 +260,16 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     GroupPlan group{p, common_setup(shot), {}};
     group.setup.primary = plan.primaries[p].trajectory;
     group.setup.teleports = plan.primaries[p].scan.teleports;
+    std::vector<const ClothSpec*> worn;
     for (const ClothSpec& spec : shot.cloths) {
       if (spec.on != plan.primaries[p].name) continue;
       if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added)
         return added.error();
+      worn.push_back(&spec);
     }
+    for (std::size_t g = 0; g < worn.size(); ++g)
+      if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added)
+        return added.error();
     if (!group.setup.garments.empty()) plan.groups.push_back(std::move(group));
   }
   if (plan.groups.empty()) return usage_error("no cloth is on any primary", shot.file.string());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "solvers/cloth/attach.h"
+
 namespace ft {
 namespace {
 
@@ -23,6 +25,19 @@ std::uint64_t cache_bytes(const BakePlan& plan) {
              static_cast<std::uint64_t>(plan.primaries[group.primary].trajectory->surface().vertex_count());
   }
   return sum;
+}
+
+/// "8 vertices held to "skirt", 2.1 to 7.9 mm from it".
+std::string attachment_text(std::span<const ClothGarment> garments, const ClothGarment& own, const ClothPin& pin) {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  int held = 0;
+  for (const SurfacePoint& f : footholds(garments, static_cast<std::size_t>(&own - garments.data()), pin)) {
+    if (f.triangle[0] < 0) continue;
+    nearest = std::min(nearest, f.distance), farthest = std::max(farthest, f.distance);
+    ++held;
+  }
+  return fmt::format("{} vertices held to \"{}\", {:.1f} to {:.1f} mm from it", held,
+                     garments[static_cast<std::size_t>(pin.to)].name, 1e3 * nearest, 1e3 * farthest);
 }
 
 }  // namespace
@@ -75,11 +90,13 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
   for (const GroupPlan& group : plan.groups)
     for (const ClothGarment& garment : group.setup.garments) {
       std::size_t pinned = 0;
-      for (const ClothPin& pin : garment.pins) pinned += pin.vertices.size();
+      for (const ClothPin& pin : garment.pins) pinned += pin.to < 0 ? pin.vertices.size() : 0;
       out.push_back(fmt::format("cloth \"{}\" on \"{}\": {} vertices, {} faces, {} pinned, {}, {} at {:g} kg/m2",
                                 garment.name, plan.primaries[group.primary].name, garment.mesh.vertex_count(),
                                 garment.mesh.face_count(), pinned, box_text(bounds(garment.mesh.positions)),
                                 garment.fabric.name, garment.fabric.mass_per_area));
+      for (const ClothPin& pin : garment.pins)
+        if (pin.to >= 0) out.push_back("  " + attachment_text(group.setup.garments, garment, pin));
       if (!garment.mesh.stitches.empty())
         out.push_back("  " + sewing_text(garment.mesh) + (garment.pattern_scale > 0 ? ", cut from its pattern" : ""));
     }

@@ -40,7 +40,7 @@ struct PrimarySpec {
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
 };
 
-/// One way to hold a garment to its primary.
+/// One way to hold a garment to its primary, or to a garment.
 struct PinSpec {
   enum class Select { k_group, k_within, k_vertices, k_file };
   Select select = Select::k_group;
@@ -53,6 +53,8 @@ struct PinSpec {
   double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
   std::optional<double> from, until;  ///< frames of the shot: it holds after the one, and up to and including the other
   double fade = 0;                    ///< frames that its force takes to come after `from` and to go after `until`
+  std::string to;                     ///< name of the cloth that it holds to, on the same primary; empty: the primary
+  Vec3 opens = Vec3::Zero();          ///< direction in which its vertices let go one after another; zero: all together
 };
 
 /// What varies over a garment, and where its values come from: see shot_maps.h for what can vary.

@@ -43,6 +43,28 @@ void judge_wearer(const Value& root, ClothSpec& cloth, const std::vector<std::st
                                 suggestion(cloth.on, primaries)));
 }
 
+/// Pins that hold to a cloth: only what one primary wears is solved together.
+void judge_attachments(const Value& root, const ClothSpec& cloth, const std::vector<ClothSpec>& cloths,
+                       const std::vector<std::string>& primaries, FaultList& faults) {
+  const Place place = place_of(root, {"cloth", cloth.name, "pins"});
+  std::vector<std::string> names;
+  for (const ClothSpec& other : cloths) names.push_back(other.name);
+  for (const PinSpec& pin : cloth.pins) {
+    if (pin.to.empty()) continue;
+    const std::string fault = "cloth " + in_quotes(cloth.name) + ": to = " + in_quotes(pin.to);
+    const auto held = std::find(names.begin(), names.end(), pin.to) - names.begin();
+    if (held == std::ssize(names))
+      faults.add(place, with_hint(fault + " names no cloth", contains(primaries, pin.to)
+                                                                 ? "a pin without to holds to the primary"
+                                                                 : suggestion(pin.to, names)));
+    else if (cloths[static_cast<std::size_t>(held)].on != cloth.on)
+      faults.add(place, fault + " is worn by another primary; only cloths on the same one can hold each other");
+    else if (pin.to == cloth.name && pin.select == PinSpec::Select::k_within)
+      faults.add(place,
+                 fault + " is the cloth itself, to which all of it is near: say which side by group, vertices or file");
+  }
+}
+
 }  // namespace
 
 std::optional<FrameRange> read_frames(const ValueReader& reader, const Value& value) {
@@ -90,12 +112,18 @@ void read_vertices(const ValueReader& reader, const Value& value, std::vector<in
 }
 
 void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin, FaultList& faults) {
-  const Member *until = value.find("until"), *fade = value.find("fade");
+  const Member *until = value.find("until"), *fade = value.find("fade"), *opens = value.find("opens");
   if (until && pin.from && pin.until && !(*pin.from < *pin.until))
     faults.add(until->place, owner + ": until = " + number_text(*pin.until) +
                                  " is not after from = " + number_text(*pin.from) + ": it would never hold");
   if (fade && !until && !value.find("from"))
     faults.add(fade->place, owner + ": fade needs until (or from), the frame at which it begins");
+  if (opens && !(pin.fade > 0))
+    faults.add(opens->place, owner + ": opens needs fade, the frames that it takes from one end to the other");
+  for (const char* key : {"stiffness", "max_pull"})
+    if (const Member* member = value.find(key); member && value.find("to"))
+      faults.add(member->place, owner + ": " + key + " does not go with to: a cloth is held as firmly as by a seam; " +
+                                    "weights below 1 (file, group) hold it less");
 }
 
 void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
@@ -112,6 +140,7 @@ void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
   std::vector<std::string> primaries;
   for (const PrimarySpec& primary : shot.primaries) primaries.push_back(primary.name);
   for (ClothSpec& cloth : shot.cloths) judge_wearer(root, cloth, primaries, faults);
+  for (const ClothSpec& cloth : shot.cloths) judge_attachments(root, cloth, shot.cloths, primaries, faults);
 }
 
 }  // namespace ft

@@ -28,7 +28,8 @@ struct ShotKey {
   Target target;
   double lowest = 0, highest = 0;  ///< of numbers, and of every component of vectors; both 0: no range
   std::string_view unit;
-  std::string_view choices;  ///< "y z": the words allowed; "@fabrics", "@formats", "@primaries": a list known later
+  std::string_view choices;  ///< "y z": the words allowed; "@fabrics", "@formats", "@primaries", "@cloths": a list
+                             ///< known later
   bool required = false;
   std::string_view also;  ///< other words people write for it: "material cloth_type"
   std::string_view meaning;

@@ -73,6 +73,8 @@ std::string pin_text(const PinSpec& pin, const std::filesystem::path& folder) {
   if (pin.from) out.append(", from = ").append(number_text(*pin.from));
   if (pin.until) out.append(", until = ").append(number_text(*pin.until));
   if (pin.fade > 0) out.append(", fade = ").append(number_text(pin.fade));
+  if (!pin.to.empty()) out.append(", to = ").append(in_quotes(pin.to));
+  if (!pin.opens.isZero()) out.append(", opens = ").append(vector_text(pin.opens));
   return out.append(" }");
 }
 
@@ -191,6 +193,8 @@ void append_reference(std::string& out, std::string_view heading, std::span<cons
       allowed = known_words(vocabulary.cache_formats, "cache formats");
     else if (key.choices == "@primaries")
       allowed = "name of a primary";
+    else if (key.choices == "@cloths")
+      allowed = "name of a cloth";
     else if (key.choices == "@maps")
       allowed = known_words(map_words(), "");
     else if (!key.choices.empty())

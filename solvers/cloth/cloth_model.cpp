@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/cloth/attach.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/energies/registry.h"
 
@@ -100,7 +101,9 @@ void place_and_pin(ClothModel& model) {
     for (Vec3& x : model.start) x = place * x;
   }
   for (std::size_t g = 0; g < setup.garments.size(); ++g)
-    for (const ClothPin& pin : setup.garments[g].pins)
+    for (const ClothPin& pin : setup.garments[g].pins) {
+      if (pin.to >= 0) continue;
+      const std::vector<HoldSpan> holds = hold_spans(pin, setup.garments[g].mesh.positions);
       for (std::size_t k = 0; k < pin.vertices.size(); ++k) {
         const int v = model.first_vertex[g] + pin.vertices[k];
         const double weight = pin.weights.empty() ? 1.0 : pin.weights[k];
@@ -109,9 +112,10 @@ void place_and_pin(ClothModel& model) {
         const double area = model.contact.area[at(v)];
         point.stiffness = weight * pin.stiffness * area;
         point.max_pull = weight * pin.max_pull * area;
-        point.hold = pin.hold;
+        point.hold = holds[k];
         model.pins.push_back(point);
       }
+    }
 }
 
 }  // namespace
@@ -157,6 +161,9 @@ Status check(const ClothSetup& setup) {
                              std::to_string(g.mesh.vertex_count()));
       if (!pin.weights.empty() && pin.weights.size() != pin.vertices.size())
         return input_error("cloth \"" + g.name + "\": a pin needs one weight per vertex");
+      if (pin.to >= static_cast<int>(setup.garments.size()))
+        return input_error("cloth \"" + g.name + "\": a pin holds to garment " + std::to_string(pin.to) + " of " +
+                           std::to_string(setup.garments.size()));
     }
   }
   if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps ||
@@ -173,6 +180,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   weigh(*model);
   place_and_pin(*model);
   sew(*model);
+  attach(*model);
   const ClothSetup& s = model->setup;
   AirSettings air;
   air.wind = s.wind;

@@ -210,8 +210,10 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
 /// Something lets go or takes hold at once. BDF2 is then started anew by a step of implicit Euler: the history knows
 /// nothing of the new force, and cloth that is let go would stay behind free fall by half a substep for good.
 bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
-  return std::any_of(model_->pins.begin(), model_->pins.end(),
-                     [&](const PinPoint& pin) { return pin.hold.jumps(time_t0, time_t1); });
+  const auto jumps = [&](const auto& point) { return point.hold.jumps(time_t0, time_t1); };
+  const auto& attachments = model_->topology->attachments;
+  return std::any_of(model_->pins.begin(), model_->pins.end(), jumps) ||
+         std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
 /// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of

@@ -13,19 +13,24 @@
 #include "baker/core/teleport.h"
 #include "baker/core/trajectory.h"
 #include "collision/feasible_collider.h"
-#include "solvers/cloth/hold_span.h"
 #include "solvers/energies/cloth_topology.h"
+#include "solvers/energies/hold_span.h"
 #include "solvers/solver.h"
 
 namespace ft {
 
-/// Vertices that are held to the body: each follows the nearest point of the body's bind pose.
+/// Vertices that are held to the body, each following the nearest point of the body's bind pose; or to a garment, each
+/// hanging on the nearest point of its surface by a cord, see attach.h.
 struct ClothPin {
   std::vector<int> vertices;    ///< garment's file order
   std::vector<double> weights;  ///< 0..1 each, scales the stiffness; empty: all 1
   double stiffness = 1e6;       ///< N/m3: spring per garment area and displacement
   double max_pull = 5e3;        ///< Pa: force limit per garment area; contact wins over pins
   HoldSpan hold{};              ///< when
+  int to = -1;  ///< garment of the setup, perhaps its own, which holds it as firmly as a seam would; -1: the body
+  /// Not zero: its vertices let go one after another in this direction, and take hold the other way round, the last of
+  /// them when hold.fade is over.
+  Vec3 opens = Vec3::Zero();
 };
 
 struct ClothGarment {

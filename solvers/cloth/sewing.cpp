@@ -15,10 +15,12 @@ constexpr double k_weight_back = 0.5, k_friction_back = 0.25;
 
 /// Seams that do not say how long they take are closed after this share of the pre-roll.
 constexpr double k_share_of_preroll = 0.5;
+/// A seam that holds degenerate triangles only is taken to be so long [m].
+constexpr double k_shortest = 1e-5;
 
-/// Rest length of every edge of the mesh at which a vertex lies on the border, halves added up: the seam that its
-/// stitches hold [m].
-std::vector<double> border_lengths(const ClothTopology& topology) {
+}  // namespace
+
+std::vector<double> seam_lengths(const ClothTopology& topology) {
   struct Side {
     Edge edge;
     double length;
@@ -42,11 +44,9 @@ std::vector<double> border_lengths(const ClothTopology& topology) {
     }
   }
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (out[i] == 0) out[i] = any[i];  // inside a panel: a dart, a pocket
+    out[i] = std::max(out[i] == 0 ? any[i] : out[i], k_shortest);  // 0: inside a panel, a dart or a pocket
   return out;
 }
-
-}  // namespace
 
 void sew(ClothModel& model) {
   const ClothSetup& setup = model.setup;
@@ -62,7 +62,7 @@ void sew(ClothModel& model) {
   std::sort(stitches.begin(), stitches.end());
   stitches.erase(std::unique(stitches.begin(), stitches.end()), stitches.end());
   model.sewn = SewnPairs(model.vertex_count(), stitches, model.triangles);
-  const std::vector<double> length = border_lengths(*model.topology);
+  const std::vector<double> length = seam_lengths(*model.topology);
   const double begin = -setup.preroll_frames / setup.fps;
   const auto closed_at = [&](const ClothGarment& garment) {
     return begin + (garment.sewing_time > 0 ? garment.sewing_time : -k_share_of_preroll * begin);
@@ -81,7 +81,7 @@ void sew(ClothModel& model) {
     point.start_gap = (x[at(s.vertex)] - (1 - s.place) * x[at(s.edge[0])] - s.place * x[at(s.edge[1])]).norm();
     point.opens_at = begin;
     point.closed_at = closed_at(garment);
-    const double held = std::max(length[at(s.vertex)], 1e-5) / count[at(s.vertex)];
+    const double held = length[at(s.vertex)] / count[at(s.vertex)];
     point.stiffness = settings.stiffness * held;
     point.pull = settings.pull * held;
     point.hold = settings.hold * held;

@@ -15,6 +15,9 @@ namespace ft {
 /// Fills topology->seams, sewn and sewn_until from the stitches of the garments, which are at `start`.
 void sew(ClothModel& model);
 
+/// Length of the seam that each vertex holds [m]: half of its edges at the border; inside a panel its longest edge.
+std::vector<double> seam_lengths(const ClothTopology& topology);
+
 /// Rest lengths of edges of pieces that are cut from a pattern [m]; others stay.
 void lengths_from_pattern(const ClothTopology& topology, RestEdges& edges);
 

@@ -11,6 +11,7 @@
 
 #include "baker/core/types.h"
 #include "solvers/energies/fabric.h"
+#include "solvers/energies/hold_span.h"
 
 namespace ft {
 
@@ -73,6 +74,17 @@ struct SeamPoint {
   double pull = 0, hold = 0;           ///< force limit while it closes, and afterwards [N]
 };
 
+/// A vertex that hangs on a point of a triangle by a cord; see attachments.h.
+struct AttachPoint {
+  int vertex = 0;
+  Triangle triangle{};
+  std::array<double, 3> weight{};  ///< barycentric
+  double length = 0;               ///< of the cord [m]
+  double stiffness = 0;            ///< N/m
+  double max_pull = 0;             ///< force limit [N]
+  HoldSpan hold{};                 ///< when
+};
+
 struct ClothTopology {
   int vertex_count = 0;
   std::vector<Vec3> rest;  ///< m
@@ -86,7 +98,8 @@ struct ClothTopology {
   std::vector<BendElement> bends;  ///< one per triangle that has a hinge and resists bending
   std::vector<double> mass;        ///< kg per vertex: a third of each triangle around it
   std::vector<ClothPiece> pieces;
-  std::vector<SeamPoint> seams;  ///< none unless something is sewn
+  std::vector<SeamPoint> seams;          ///< none unless something is sewn
+  std::vector<AttachPoint> attachments;  ///< none unless something is buttoned
 
   const Fabric& fabric_of_triangle(std::size_t t) const {
     return pieces[static_cast<std::size_t>(triangle_piece[t])].fabric;

@@ -1,5 +1,6 @@
 #include "solvers/energies/registry.h"
 
+#include "solvers/energies/attachments.h"
 #include "solvers/energies/bending.h"
 #include "solvers/energies/membrane.h"
 #include "solvers/energies/seams.h"
@@ -21,6 +22,7 @@ constexpr ClothEnergyKind k_kinds[] = {
     {"bending", make_plain<Bending>, true, false},
     {"air_drag", make_air_drag, false, true},
     {"seams", make_plain<Seams>, false, true},
+    {"attachments", make_plain<Attachments>, false, true},
 };
 
 }  // namespace

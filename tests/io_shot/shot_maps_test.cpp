@@ -100,6 +100,40 @@ TEST_F(ShotFile, Pins_say_from_when_until_when_and_how_gently_they_hold) {
   EXPECT_NE(fault("release = 1010").find("did you mean \"until\"?"), std::string::npos);
 }
 
+TEST_F(ShotFile, Pins_hold_to_a_cloth_of_the_same_primary_and_open_like_a_zip) {
+  const auto shot =
+      parse(k_good, {"cloth.cape.pins=[{within=0.01, to=\"dress\", until=1050, fade=24, opens=[0, -1, 0]}]"});
+  ASSERT_TRUE(shot.ok()) << shot.error().text();
+  const PinSpec& pin = shot->cloths[1].pins.back();
+  EXPECT_EQ(pin.to, "dress");
+  EXPECT_EQ(pin.opens, Vec3(0, -1, 0));
+  EXPECT_NE(canonical(*shot).find("until = 1050, fade = 24, to = \"dress\", opens = [0, -1, 0] }"), std::string::npos)
+      << canonical(*shot);
+  EXPECT_EQ(canonical(*parse(k_good)).find(" to = "), std::string::npos) << "a shot without them is what it was";
+  EXPECT_TRUE(parse(k_good, {"cloth.cape.pins=[{vertices=\"5\", to=\"cape\"}]"}).ok()) << "its own other side";
+  const auto fault = [&](const std::string& keys) {
+    return fault_with(k_pin_line, std::string("pins = [ { ").append(keys).append(" } ]"));
+  };
+  EXPECT_EQ(fault("group = \"neck\", to = \"dres\""),
+            "shot.toml:19:8: cloth \"cape\": to = \"dres\" names no cloth (did you mean \"dress\"?)");
+  EXPECT_EQ(
+      fault("group = \"neck\", to = \"mannequin\""),
+      "shot.toml:19:8: cloth \"cape\": to = \"mannequin\" names no cloth (a pin without to holds to the primary)");
+  EXPECT_NE(fault("within = 0.01, to = \"cape\"").find("say which side by group, vertices or file"), std::string::npos);
+  EXPECT_NE(fault("group = \"neck\", to = \"dress\", opens = [0, 1, 0]").find("opens needs fade"), std::string::npos);
+  EXPECT_NE(fault("group = \"neck\", to = \"dress\", max_pull = 5").find("max_pull does not go with to"),
+            std::string::npos);
+  EXPECT_NE(fault("group = \"neck\", button = \"dress\"").find("did you mean \"to\"?"), std::string::npos);
+  EXPECT_NE(fault("group = \"neck\", to = 1050").find("needs a text"), std::string::npos);
+  std::string two = k_good;
+  two.replace(two.find(k_pin_line), std::string(k_pin_line).size(),
+              "on = \"other\"\npins = [ { group = \"neck\", to = \"dress\" } ]");
+  two.append("\n[primary.other]\nfile = \"walk.fbx\"\n");
+  const auto faults = faults_of(two);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_NE(faults[0].find("to = \"dress\" is worn by another primary"), std::string::npos) << faults[0];
+}
+
 TEST_F(ShotFile, Every_kind_of_map_has_a_range_that_the_reference_prints) {
   const std::string reference = shot_file_reference(words());
   for (const MapKind& kind : map_kinds()) {

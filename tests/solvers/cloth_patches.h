@@ -43,7 +43,7 @@ inline std::vector<Vec3> jitter(std::vector<Vec3> x, double amplitude, std::uint
 }
 
 /// 10 cm x 12 cm of an irregular mesh, rolled to a radius of 8 cm, as two pieces of different, orthotropic, damped
-/// fabric that are sewn to each other at one border.
+/// fabric that are sewn and buttoned to each other at one border.
 inline ClothTopology curved_patch(int columns, int rows) {
   const auto place = [](double s, double t) {
     const double angle = 1.25 * s;
@@ -73,6 +73,15 @@ inline ClothTopology curved_patch(int columns, int rows) {
     seam.place = 0.3;
     seam.stiffness = 200, seam.pull = seam.hold = 1e9;
     out.seams.push_back(seam);
+  }
+  // Buttoned in the next row, by cords that are shorter than the way.
+  for (int i = 0; i < columns; ++i) {
+    AttachPoint button;
+    button.vertex = i + columns + 1;
+    button.triangle = triangles[first + at(2 * columns + i)];
+    button.weight = {0.2, 0.5, 0.3};
+    button.length = 0.06, button.stiffness = 200, button.max_pull = 1e9;
+    out.attachments.push_back(button);
   }
   return out;
 }

@@ -1,5 +1,5 @@
-// When a pin holds: from a time on, until a time, and how gently it comes and goes. A function of the time alone, so
-// that a resume, a rewind or other substeps find it as it was.
+// When a pin or an attachment holds: from a time on, until a time, and how gently it comes and goes. A function of the
+// time alone, so that a resume, a rewind or other substeps find it as it was.
 #pragma once
 
 #include <algorithm>
