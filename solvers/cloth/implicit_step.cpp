@@ -16,6 +16,11 @@ namespace {
 constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
+/// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still stretches or
+/// shortens the edges by more than a share of their lengths (root mean square): cloth that is pulled tight or has edges
+/// of all lengths needs it.
+constexpr double k_settled_strain = 5e-3;
+constexpr int k_most_times = 5;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -38,6 +43,20 @@ class Stopwatch {
 
 LimitedSpring pin_spring(const PinPoint& pin, double share, double stretch) {
   return limited_spring(stretch, share * pin.stiffness, share * pin.max_pull);
+}
+
+/// Root mean square, over all edges, of the change of length between two states by the length at rest.
+double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::span<const Vec3> to) {
+  const double squares = parallel_sum(rest.edges.size(), 1024, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto [a, b] = rest.edges[k];
+      const double change = ((to[at(a)] - to[at(b)]).norm() - (from[at(a)] - from[at(b)]).norm()) / rest.lengths[k];
+      sum += change * change;
+    }
+    return sum;
+  });
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
 }
 
 }  // namespace
@@ -127,7 +146,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.contact.update(s.all);
   result.seconds_contact += watch.lap();
 
-  for (int iteration = 0; iteration < in.newton_iterations; ++iteration) {
+  const int most_iterations = std::max(in.newton_iterations, k_most_times * model_.setup.newton_iterations);
+  bool settled = false;
+  for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     s.contact.lag_friction();
     const std::span<const Vec3> x(s.all.data(), n);
     parallel_for(n, 1024, [&](std::size_t begin, std::size_t end) {
@@ -203,6 +224,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       if (!accepted) ++result.backtracks;
       result.last_move = step;
     }
+    settled =
+        !finite || result.last_move < k_still * smallest_radius ||
+        (iteration + 1 >= in.newton_iterations && strain_change(model_.rest_edges, s.all, s.trial) < k_settled_strain);
     if (finite) {
       std::copy_n(s.trial.begin(), n, s.all.begin());
     } else {
@@ -210,7 +234,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.last_move = 0;
     }
     result.seconds_contact += watch.lap();
-    if (result.last_move < k_still * smallest_radius) break;
   }
   result.smallest_gap = s.contact.smallest_gap();
   const std::span<const Vec3> x = cloth(s.all);
