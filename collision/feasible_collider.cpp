@@ -1,11 +1,12 @@
-// See feasible_collider.h. The parts are walked from the largest to the smallest, each against all larger ones, which
-// are final by then. Nothing is remembered between calls.
+// See feasible_collider.h. Creases of joints open first. Then the parts are walked from the largest to the smallest,
+// each against all larger ones, which are final by then. Nothing is remembered between calls.
 #include "collision/feasible_collider.h"
 
 #include <algorithm>
 
 #include "baker/core/check.h"
 #include "collision/carver.h"
+#include "collision/creases.h"
 #include "collision/mesh_refine.h"
 
 namespace ft {
@@ -14,6 +15,7 @@ struct FeasibleCollider::Impl {
   RefinedMesh mesh;
   std::vector<int> part_of_vertex;
   Carver carver;  ///< without a surface when there is nothing to carve
+  Creases creases;
 };
 
 FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> bind_pose,
@@ -38,6 +40,7 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
   m.carver.surface =
       std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(drawn.parts.size()));
   m.carver.plan = make_carve_plan(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
+  m.creases = Creases(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
 }
 
 FeasibleCollider::~FeasibleCollider() = default;
@@ -67,6 +70,7 @@ CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Ve
   CarveReport report;
   if (impl_->carver.surface == nullptr) return report;
   const std::vector<Vec3> before(positions.begin(), positions.end());
+  impl_->creases.open(positions);
   const int part_count = impl_->carver.surface->part_count();
   Carver::Scratch scratch{positions, std::vector<TreeBox>(at(part_count)), std::vector<TriangleTree>(at(part_count))};
   for (int part = 0; part < part_count; ++part) scratch.boxes[at(part)] = impl_->carver.box_of(part, positions);

@@ -1,8 +1,8 @@
 // The feasible collider. Characters intersect themselves: forearm in hip, thigh in thigh. Cloth between overlapping
 // parts must cross one of them, so the guarantee is stated against a collider that leaves room: of two overlapping
 // parts the smaller gives way, each of its vertices inside the larger, or nearer than the gap, is moved onto the
-// larger's surface plus the gap. Long triangles near cloth are refined first (a 230 mm capsule triangle cannot give
-// way).
+// larger's surface plus the gap; jointed parts that fold into each other both give way (creases.h). Long triangles near
+// cloth are refined first (a 230 mm capsule triangle cannot give way).
 #pragma once
 
 #include <memory>
@@ -34,9 +34,9 @@ class FeasibleCollider {
   int vertex_count() const;
   std::span<const Triangle> triangles() const;
   std::span<const int> part_of_vertex() const;
-  /// True when the two parts are kept apart wherever they meet: not jointed, and neither overlapping nor nearer than
-  /// the gap in the bind pose. Parts that touch in the bind pose are kept as far apart as they are there, up to the
-  /// gap, vertex by vertex.
+  /// True when the two parts are kept apart wherever they meet: not jointed (those are beyond their crease), and
+  /// neither overlapping nor nearer than the gap in the bind pose. Parts that touch in the bind pose are kept as far
+  /// apart as they are there, up to the gap, vertex by vertex.
   bool kept_apart(int part_a, int part_b) const;
   /// Refined positions of the drawn pose, before anything gives way.
   void refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const;

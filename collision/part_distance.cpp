@@ -113,12 +113,11 @@ PartSurface::PartSurface(std::span<const Vec3> bind, std::span<const Triangle> t
   outward_.resize(at(part_count));
   for (int p = 0; p < part_count; ++p) outward_[at(p)] = volume[at(shell_[at(p)])] < 0 ? -1.0 : 1.0;
 
-  depth_limit_.resize(at(part_count));
+  half_thickness_.resize(at(part_count));
   const TriangleTree all(bind, triangles_, whole);
   for (int p = 0; p < part_count; ++p)
-    depth_limit_[at(p)] = members[at(p)].empty() ? 0
-                          : closed_[at(p)] != 0  ? std::numeric_limits<double>::infinity()
-                                                 : half_thickness(p, bind, all);
+    half_thickness_[at(p)] =
+        members[at(p)].empty() ? 0 : measure_half_thickness(p, bind, closed(p) ? trees_[at(p)] : all);
 }
 
 Vec3 PartSurface::face_normal(int triangle, std::span<const Vec3> x) const {
@@ -128,7 +127,7 @@ Vec3 PartSurface::face_normal(int triangle, std::span<const Vec3> x) const {
   return length > 0 ? (n * (outward_[at(part_of_triangle_[at(triangle)])] / length)).eval() : Vec3::Zero().eval();
 }
 
-double PartSurface::half_thickness(int part, std::span<const Vec3> bind, const TriangleTree& all) const {
+double PartSurface::measure_half_thickness(int part, std::span<const Vec3> bind, const TriangleTree& skin) const {
   // Median length of rays from the part's triangles inwards to the other side, of up to 200 of them.
   const auto& order = trees_[at(part)].order();
   const std::size_t stride = std::max<std::size_t>(1, order.size() / 200);
@@ -139,7 +138,7 @@ double PartSurface::half_thickness(int part, std::span<const Vec3> bind, const T
     const Vec3 n = -face_normal(i, bind);
     if (n.isZero()) continue;
     const Vec3 p = (bind[at(t[0])] + bind[at(t[1])] + bind[at(t[2])]) / 3;
-    const double hit = all.ray(p, n, 1.0, i, bind, triangles_);
+    const double hit = skin.ray(p, n, 1.0, i, bind, triangles_);
     if (hit < 1.0) found.push_back(hit);
   }
   if (found.empty()) return 0.02;
@@ -194,7 +193,7 @@ std::optional<PartSurface::Answer> PartSurface::judge(const Vec3& p, const Trian
   const Vec3 offset = p - answer.point;
   answer.distance = std::sqrt(hit.closest.squared_distance);
   if (offset.dot(answer.normal) < 0) answer.distance = -answer.distance;
-  if (answer.distance < -depth_limit_[at(answer.part)]) return std::nullopt;
+  if (answer.distance < -depth_limit(answer.part)) return std::nullopt;
   // Away from the surface the way out is the line to the closest point; the pseudo-normal only tells the side.
   if (std::abs(answer.distance) > 1e-7) answer.normal = offset / answer.distance;
   return answer;

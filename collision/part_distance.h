@@ -27,7 +27,11 @@ class PartSurface {
   int shell(int part) const { return shell_[static_cast<std::size_t>(part)]; }
   /// Deepest point that counts as inside [m]: infinite for closed parts, half the thickness in the bind pose for
   /// patches.
-  double depth_limit(int part) const { return depth_limit_[static_cast<std::size_t>(part)]; }
+  double depth_limit(int part) const {
+    return closed(part) ? std::numeric_limits<double>::infinity() : half_thickness(part);
+  }
+  /// Of the body where the part is, in the bind pose [m]; 0 for a part without triangles.
+  double half_thickness(int part) const { return half_thickness_[static_cast<std::size_t>(part)]; }
   /// One per vertex: the first vertex of those that count as one with it.
   std::span<const int> representative() const { return representative_; }
   std::span<const Triangle> triangles() const { return triangles_; }
@@ -55,7 +59,7 @@ class PartSurface {
 
  private:
   Vec3 face_normal(int triangle, std::span<const Vec3> positions) const;
-  double half_thickness(int part, std::span<const Vec3> bind, const TriangleTree& all) const;
+  double measure_half_thickness(int part, std::span<const Vec3> bind, const TriangleTree& skin) const;
 
   std::vector<Triangle> triangles_;  ///< in representatives
   std::vector<int> part_of_triangle_;
@@ -65,7 +69,7 @@ class PartSurface {
   std::vector<int> representative_;
   std::vector<char> closed_;
   std::vector<int> shell_;
-  std::vector<double> depth_limit_;
+  std::vector<double> half_thickness_;
   std::vector<double> outward_;  ///< per part: -1 where the shell's triangles face inwards
   std::vector<TriangleTree> trees_;
 };

@@ -1,7 +1,7 @@
 // Where a pose leaves no room for cloth: pairs of body parts that overlap or come nearer to each other than the gap
-// that the feasible collider keeps. For a look at the whole clip before the bake: there the cloth will lie on a
-// collider that is not the drawn body. Measured on the drawn pose, at the vertices that the feasible collider has to
-// move. Thread-safe; deterministic.
+// that the feasible collider keeps. Jointed parts, which fold into each other at every bent knee, are not counted. For
+// a look at the whole clip before the bake: there the cloth will lie on a collider that is not the drawn body. Measured
+// on the drawn pose, at the vertices that the feasible collider has to move. Thread-safe; deterministic.
 #pragma once
 
 #include <memory>

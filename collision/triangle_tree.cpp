@@ -11,6 +11,9 @@ namespace {
 
 constexpr int k_leaf_size = 4;
 constexpr double k_sliver = 1e-12;  ///< squared sine of an angle below which a triangle is answered as its edges
+/// Of a triangle's size: a ray may pass beside it by so much and hits it still, so that none slips through between two
+/// [1].
+constexpr double k_edge = 1e-9;
 
 float round_down(double v) {
   const auto f = static_cast<float>(v);
@@ -168,7 +171,7 @@ double TriangleTree::ray(const Vec3& origin, const Vec3& direction, double lengt
     const double u = s.dot(h) / determinant;
     const Vec3 q = s.cross(e);
     const double v = direction.dot(q) / determinant;
-    if (u < 0 || v < 0 || u + v > 1) return;
+    if (u < -k_edge || v < -k_edge || u + v > 1 + k_edge) return;
     const double along = f.dot(q) / determinant;
     if (along > 0 && along < nearest) nearest = along;
   });
