@@ -88,6 +88,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     s.candidates.grow(cloth, s.more, s.piece);
     report.seconds_candidates += seconds_since(clock);
   };
+  if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
   const StepResult result = s.step.solve(step, s.x, s.v);
   report.newton_iterations += result.newton_iterations;
   report.linear_iterations += result.linear_iterations;
@@ -128,6 +129,10 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     double free = plan(cloth, h);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
+      if (s.candidates.release_beside(cloth, piece) > 0) {
+        share = 1;
+        continue;
+      }
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
       if (shorter * (1 - done) * in.h >= in.shortest) {
         share = shorter;
@@ -137,9 +142,12 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       for (int round = 0; free < 1 && s.candidates.cloth_blocks_cloth() && round < k_last_rounds; ++round)
         free = s.candidates.join_blocked(cloth, s.piece);
       report.seconds_candidates += seconds_since(joining);
-      // No room: whatever blocks is let through until the part is clear of all cloth again. Should cloth still block
+      // No room: what blocks is let through until the part is clear of all cloth again. Should cloth still block
       // cloth then, these pairs pass this once, and the certificate says so.
-      if (free < 1 && s.candidates.release_blocked(cloth) > 0) continue;  // search again without them
+      if (free < 1 && s.candidates.release_blocked(cloth, piece) > 0) {
+        share = 1;
+        continue;  // search again without them
+      }
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
     solve(in, h, end, share < 1, cloth, report);

@@ -1,6 +1,7 @@
 // One substep: the body advances with the cloth carried along, as far as conservative CCD allows; the cloth is then
 // solved for with the body still; what is left of the substep follows in the same way. Where there is no room at all,
-// the cloth is let through the part that blocks it (released), so that the walk never stops.
+// the cloth is let through the part that blocks it, the smaller one of several (released), so that the walk never
+// stops.
 #pragma once
 
 #include <memory>

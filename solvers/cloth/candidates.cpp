@@ -65,7 +65,7 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
   for (std::size_t k = 0; k < 4; ++k) {
     const int v = stencil.v[k];
     if (v >= model_.vertex_count()) continue;
-    if (part >= 0 && cloth.released[at(v)] == part) return false;
+    if (part >= 0 && model_.may_pass(cloth.released[at(v)], part)) return false;
     if (part < 0 && !model_.self_collides[at(v)]) return false;
     if (cloth.tangled[at(v)] > 0) (k < split ? tangled_a : tangled_b) = true;
   }
@@ -198,12 +198,16 @@ double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
   return t;
 }
 
-double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
+void Candidates::join_zones(const PieceMotion& piece) {
   const auto join = [&](PairKind kind, const std::vector<Stencil>& pairs) {
     for (const Stencil& s : pairs) zones_.join(kind, s, gather(piece.start, s), gather(piece.all, s));
   };
   join(PairKind::k_vertex_face, blocked_.vertex_face);
   join(PairKind::k_edge_edge, blocked_.edge_edge);
+}
+
+double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
+  join_zones(piece);
   zones_.apply(piece.carry);
   changed_.assign(boxes_.size(), 0);
   for (std::size_t i = 0; i < piece.carry.size(); ++i) {
@@ -283,19 +287,6 @@ bool Candidates::cloth_blocks_cloth() const {
     return std::any_of(blocked.begin(), blocked.end(), [&](const Stencil& s) { return part_of(s) < 0; });
   };
   return any(blocked_.vertex_face) || any(blocked_.edge_edge);
-}
-
-int Candidates::release_blocked(ClothMotion& cloth) {
-  int freed = 0;
-  for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge})
-    for (const Stencil& stencil : *blocked) {
-      const int part = part_of(stencil);
-      for (const int v : stencil.v)
-        if (part >= 0 && v < model_.vertex_count() && cloth.released[at(v)] != part)
-          cloth.released[at(v)] = part, ++freed;
-    }
-  drop_blocked();
-  return freed;
 }
 
 void Candidates::drop_blocked() {

@@ -43,9 +43,13 @@ class Candidates {
   /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is
   /// carried already. What release_blocked() has dropped stays out.
   void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
-  /// Takes out the pairs that collect() or join_blocked() last saw touch: their cloth vertices are let through the
-  /// collider's part (noted in cloth.released; returns how many), pairs of cloth with cloth are only dropped.
-  int release_blocked(ClothMotion& cloth);
+  /// Takes out the pairs that collect() or join_blocked() last saw touch. Cloth that is joined between several of the
+  /// collider's parts stays with the largest and is let through the others; else the vertices of the pairs are let
+  /// through the part (noted in cloth.released; returns how many). Pairs of cloth with cloth are only dropped.
+  int release_blocked(ClothMotion& cloth, const PieceMotion& piece);
+  /// Of what release_blocked() would do only this: cloth between several parts, beside cloth that they have let through
+  /// already, follows it. Returns how many vertices.
+  int release_beside(ClothMotion& cloth, const PieceMotion& piece);
 
   const ContactPairs& pairs() const { return pairs_; }
 
@@ -56,6 +60,8 @@ class Candidates {
   void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
   void drop_blocked();
+  void join_zones(const PieceMotion& piece);
+  std::vector<int> pinched_through() const;
   double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
                 std::vector<Stencil>& kept, std::vector<Stencil>& blocked);
 

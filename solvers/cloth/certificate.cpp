@@ -36,8 +36,9 @@ void add_crossing(const ClothModel& model, const ClothMotion& m, int vertex, std
     add_incident(model, m, Incident::Kind::k_crossing, vertex, 0, std::move(text), report);
 }
 
-bool any_released_to(int part, std::span<const int> cloth_vertices, const ClothMotion& m) {
-  return std::any_of(cloth_vertices.begin(), cloth_vertices.end(), [&](int v) { return m.released[at(v)] == part; });
+bool any_released_to(const ClothModel& model, int part, std::span<const int> cloth_vertices, const ClothMotion& m) {
+  return std::any_of(cloth_vertices.begin(), cloth_vertices.end(),
+                     [&](int v) { return model.may_pass(m.released[at(v)], part); });
 }
 
 /// Crossings with the feasible collider; notes which of its parts cloth crosses. Returns those that could have been
@@ -52,7 +53,7 @@ int certify_body(const ClothModel& model, std::span<const Crossing> crossings, c
   for (const Crossing& c : crossings) {
     const int part = parts[at(c.edge_of_first ? c.triangle[0] : c.edge[0])];
     touched[at(part)] = 1;
-    if (!(c.edge_of_first ? any_released_to(part, c.edge, m) : any_released_to(part, c.triangle, m))) ++avoidable;
+    if (!any_released_to(model, part, c.edge_of_first ? std::span<const int>(c.edge) : c.triangle, m)) ++avoidable;
     add_crossing(model, m, c.edge_of_first ? c.edge[0] : c.triangle[0],
                  "cloth crosses the collider's part " + names[at(part)].name, report);
   }
@@ -71,7 +72,8 @@ int certify_cloths(const ClothModel& model, std::span<const Crossing> own, Cloth
   return avoidable;
 }
 
-/// A part holds the cloth again once none of the cloth that it let through crosses it or is inside it.
+/// A part holds the cloth again once none of the cloth that it let through crosses it or is inside it, or a smaller
+/// part, for those let it through too.
 void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<const char> touched, ClothMotion& m,
                 FrameReport& report) {
   if (std::all_of(m.released.begin(), m.released.end(), [](double part) { return part < 0; })) return;
@@ -83,9 +85,12 @@ void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<c
       if (m.released[i] == static_cast<double>(part)) through.push_back(m.x[i]), index.push_back(static_cast<int>(i));
     if (through.empty()) continue;
     report.released_vertices += static_cast<int>(through.size());
+    bool any_touched = false;
+    for (std::size_t p = 0; p < touched.size(); ++p)
+      any_touched = any_touched || (touched[p] && model.may_pass(static_cast<double>(part), static_cast<int>(p)));
     std::vector<Triangle> shell;
     for (const Triangle& t : model.collider->triangles())
-      if (parts[at(t[0])] == static_cast<int>(part)) shell.push_back(t);
+      if (model.may_pass(static_cast<double>(part), parts[at(t[0])])) shell.push_back(t);
     double deepest = 0;
     int worst = index[0];
     for (const Penetration& p : penetrations(through, body, shell))
@@ -94,7 +99,7 @@ void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<c
                  "no room: " + std::to_string(through.size()) + " vertices let through part " +
                      model.collider->trajectory().surface().parts[part].name,
                  report);
-    if (!touched[part] && deepest == 0)
+    if (!any_touched && deepest == 0)
       for (const int i : index) m.released[at(i)] = -1;
   }
 }

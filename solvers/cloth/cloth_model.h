@@ -12,6 +12,7 @@
 #include "collision/sewn_pairs.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
+#include "solvers/cloth/let_through.h"
 #include "solvers/cloth/moving_collider.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/energy.h"
@@ -43,13 +44,20 @@ struct ClothModel {
   std::vector<double> sewn_until;  ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
   std::vector<PinPoint> pins;
   std::vector<std::unique_ptr<Energy>> energies;
+  LetThroughDrag* let_through = nullptr;  ///< one of the energies; null without a collider
   BlockPattern pattern;
   std::unique_ptr<ClothTopology> topology;
   std::unique_ptr<MovingCollider> collider;  ///< null: cloth alone
+  std::vector<int> part_rank;                ///< of the collider's parts: 0 is the largest
   double start_depth = 0;                    ///< how deep the deepest vertex started inside the body [m]
 
   int vertex_count() const { return static_cast<int>(mass.size()); }
   int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
+  /// Whether cloth that is let through the part `released` (-1: none) may pass `part`: what passes a part passes all
+  /// smaller ones, so that cloth between two parts is not handed from one to the other.
+  bool may_pass(double released, int part) const {
+    return released >= 0 && part_rank[static_cast<std::size_t>(part)] >= part_rank[static_cast<std::size_t>(released)];
+  }
 };
 
 /// What is wrong with a setup, by garment and vertex.

@@ -33,9 +33,13 @@ void MotionZones::join(PairKind kind, const Stencil& stencil, const std::array<V
   const PairGeometry g = pair_geometry(kind, x);
   Vec3 motion = Vec3::Zero();
   double weight = 0;
-  for (std::size_t k = 0; k < 4; ++k)
-    if (stencil.v[k] >= n) motion += std::abs(g.weight[k]) * d[k], weight += std::abs(g.weight[k]);
-  if (weight > 0) body_.push_back({first, motion / weight});
+  int body_vertex = -1;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (stencil.v[k] < n) continue;
+    body_vertex = stencil.v[k];
+    motion += std::abs(g.weight[k]) * d[k], weight += std::abs(g.weight[k]);
+  }
+  if (weight > 0) body_.push_back({first, body_vertex, motion / weight});
 }
 
 void MotionZones::apply(std::span<Vec3> motion) const {

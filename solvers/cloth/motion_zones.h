@@ -21,13 +21,17 @@ class MotionZones {
   /// Gives every zone its motion: the mean of the body's where it was met, else of what its vertices had [m].
   void apply(std::span<Vec3> motion) const;
 
- private:
+  /// The zone of a cloth vertex, named by the smallest vertex in it.
   int root(int vertex) const;
-
+  /// A place where a zone met the body.
   struct BodyMotion {
-    int vertex;
-    Vec3 motion;
+    int vertex;       ///< of the cloth
+    int body_vertex;  ///< of the common numbering
+    Vec3 motion;      ///< m
   };
+  std::span<const BodyMotion> body_met() const { return body_; }
+
+ private:
   std::vector<int> parent_;
   std::vector<BodyMotion> body_;
 };

@@ -1,0 +1,75 @@
+// Cloth between parts that close until there is no room: it is let through the smaller one, named, and when they open
+// again it is where it was, between them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "solvers/cloth/cloth_solver.h"
+#include "tests/support/torture/shapes.h"
+
+namespace ft {
+namespace {
+
+constexpr double k_plate = 0.02, k_open = 0.07;
+
+/// Half the distance between the plates' inner faces [m]: they pass into each other by 2 mm and open again.
+double half_gap(double t) {
+  const double shut = torture::ease(t, 0.0, 0.5) - torture::ease(t, 0.6, 1.0);
+  return 0.5 * (k_open + (-2e-3 - k_open) * shut);
+}
+
+/// A tube between two plates, the first of which is the larger part; `first` is its side.
+ClothSetup tube_between_plates(double first) {
+  const auto motion = [](double side) {
+    return [side](double t) { return torture::shift({0, side * (half_gap(t) + 0.5 * k_plate), 0}); };
+  };
+  torture::RigidParts body;
+  body.add("large", torture::box({0.14, k_plate, 0.12}), motion(first));
+  body.add("small", torture::box({0.14, k_plate, 0.12}), motion(-first));
+  ClothGarment tube;
+  tube.name = "tube";
+  tube.mesh = torture::grid("tube", 20, 8, true, [](double s, double t) {
+    const double around = 2 * std::numbers::pi * s;
+    return Vec3(0.03 * std::cos(around), 0.03 * std::sin(around), 0.07 * (t - 0.5));
+  });
+  ClothSetup setup;
+  setup.primary = body.build();
+  setup.preroll_frames = 0;
+  setup.gravity.setZero();
+  setup.garments.push_back(std::move(tube));
+  setup.feasible.carve = false;
+  return setup;
+}
+
+class LetThrough : public testing::TestWithParam<double> {};
+
+TEST_P(LetThrough, Cloth_between_plates_without_room_comes_back_between_them) {
+  auto solver = make_cloth_solver(tube_between_plates(GetParam()));
+  ASSERT_TRUE(solver);
+  State state = (*solver)->initial_state();
+  bool was_let_through = false;
+  FrameReport last;
+  for (int f = 0; f < 28; ++f) {
+    last = (*solver)->advance_frame(state);
+    EXPECT_TRUE(last.finite) << last.frame;
+    EXPECT_LT(last.strain_p99, 0.1) << last.frame;
+    EXPECT_EQ(last.rewinds, 0) << last.frame;
+    EXPECT_LT(last.substeps, 64) << last.frame;
+    if (last.released_vertices == 0) continue;
+    was_let_through = true;
+    for (const Incident& i : last.incidents)
+      EXPECT_EQ(i.text.find("part large"), std::string::npos) << "the larger part holds it: " << i.text;
+  }
+  EXPECT_TRUE(was_let_through);
+  EXPECT_EQ(last.released_vertices, 0);
+  EXPECT_EQ(last.crossings_body, 0);
+  std::vector<Vec3> x(at((*solver)->system_mesh(0).vertex_count()));
+  (*solver)->system_positions(state, 0, x);
+  for (const Vec3& p : x) EXPECT_LT(std::abs(p.y()), half_gap(state.time));
+}
+
+INSTANTIATE_TEST_SUITE_P(side, LetThrough, testing::Values(-1.0, 1.0));
+
+}  // namespace
+}  // namespace ft
