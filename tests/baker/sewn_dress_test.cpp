@@ -45,8 +45,24 @@ std::vector<double> distances_after_alignment(std::span<const Vec3> a, std::span
   return out;
 }
 
-// Not in the default run: the hem hangs 50 mm too high today (area 1.8 % off, seams closed, no crossing).
-TEST(SewnDress, DISABLED_Comes_out_as_the_authors_of_the_pattern_draped_it_slow) {
+/// The fabric, friction and contact of the authors' script for this dress (95 % wool, 5 % lycra): 0.328 mm of 543.3
+/// kg/m3, E = 760 Pa, ten times that for bending, Poisson's ratio 0.071, and a barrier of 1 kPa against principal
+/// stretches of 13.4 %: hardly any resistance to compression, and 4.8 N/m at a stretch of 8 %. Our limits are those of
+/// yarns, not of principal stretches; they and the shear come near their tension at 8 %, as in the bodice.
+void make_as_the_authors_did(ClothGarment& dress) {
+  Fabric& f = dress.fabric;
+  f.mass_per_area = 0.1782;
+  f.stretch_warp = f.stretch_weft = 0.25;
+  f.poisson = 0.071;
+  f.shear = 15;
+  f.bend_warp = f.bend_weft = 2.2e-8;
+  f.limit_warp = f.limit_weft = 1e-4;
+  f.limit_stretch = 65;
+  dress.thickness = 1e-3;
+  dress.friction = dress.self_friction = 0.2;
+}
+
+TEST(SewnDress, Comes_out_as_the_authors_of_the_pattern_draped_it_slow) {
   const auto folder = test::assets_root() / "garments";
   FT_REQUIRE_FILE(folder / "cipc_dress_knife/stage.obj");
   FT_REQUIRE_FILE(folder / "cipc_mannequin_rumba/body_frame0_yup.obj");
@@ -55,7 +71,7 @@ TEST(SewnDress, DISABLED_Comes_out_as_the_authors_of_the_pattern_draped_it_slow)
   dress.mesh = read(folder / "cipc_dress_knife/stage.obj");
   for (Vec3& p : dress.mesh.positions) p = Vec3(p.x(), p.z() + k_body_height, -p.y());
   dress.pattern_scale = 1;
-  dress.fabric = *find_fabric("cotton");
+  make_as_the_authors_did(dress);
   const Mesh mesh = dress.mesh, drape = read(folder / "cipc_dress_knife/drape.obj");
   const Mesh body = read(folder / "cipc_mannequin_rumba/body_frame0_yup.obj");
   ASSERT_GE(drape.positions.size(), mesh.positions.size());
