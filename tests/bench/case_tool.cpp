@@ -2,7 +2,9 @@
 //   case_tool to-shot CASE FOLDER [--pins 0-199]     body.obj, body.pc2, cloth.obj and shot.toml from Blender's case
 //   case_tool from-bake CASE BAKE OUT drawn|feasible our cloth beside the drawn body or the feasible collider
 //   case_tool obj CACHE FRAME OUT.obj                one frame of any cache that knows its faces, to look at
+//   case_tool to-judge BAKE CLOTH BODY FLAT.obj OUT  a bake without a peer: CLOTH beside the feasible collider of BODY
 //   case_tool result ...                             the table and the RESULT line, see result_line()
+//   case_tool result-alone ...                       the RESULT line of a bake without a peer, see result_alone()
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -84,6 +86,22 @@ Status from_bake(const fs::path& case_folder, const fs::path& bake, const fs::pa
   return write_case(out, *data);
 }
 
+/// Strain is judged against `flat`, whose positions are the pattern.
+Status to_judge(const fs::path& bake, const std::string& cloth, const std::string& body, const fs::path& flat,
+                const fs::path& out) {
+  const auto rest = read_obj(flat);
+  if (!rest) return rest.error();
+  Case data;
+  for (const Vec3& p : rest->positions) data.rest.push_back(p.cast<float>());
+  if (Status status = read_cache(bake / (cloth + ".abc"), data.cloth, &data.cloth_triangles); !status) return status;
+  if (Status status = read_cache(bake / (body + ".collider.abc"), data.body, &data.body_triangles); !status)
+    return status;
+  data.frame_count = static_cast<int>(std::min(data.cloth.size(), data.body.size()));
+  if (data.frame_count == 0 || data.cloth[0].size() != data.rest.size())
+    return input_error("is not the flat shape of what was baked", flat.string());
+  return write_case(out, data);
+}
+
 Status one_frame(const fs::path& cache, int frame, const fs::path& out) {
   auto reader = open_cache(cache);
   if (!reader) return reader.error();
@@ -136,18 +154,52 @@ void print_row(const std::string& who, double cpu, double wall, const Judged& j)
       100 * j.p99);
 }
 
-/// SCENE N REPORT_JSON OUR_CPU_SECONDS PEER_TIMING JUDGE_PEER JUDGE_DRAWN JUDGE_FEASIBLE
-Status result_line(const std::vector<std::string>& a) {
-  auto text = read_text(a[2]);
+/// What a bake cost, its pre-roll included.
+struct Cost {
+  std::vector<double> wall;  ///< of each frame [s]
+  double cpu = 0;            ///< mean of the whole run [s per frame]
+  double rss_mb = 0;
+};
+
+Result<Cost> read_cost(const std::string& report_file, const std::string& cpu_seconds) {
+  auto text = read_text(report_file);
   if (!text) return text.error();
   const auto report = nlohmann::json::parse(*text, nullptr, false);
-  if (report.is_discarded() || !report.contains("frames")) return input_error("is not a report of a bake", a[2]);
-  std::vector<double> ours, theirs;
+  if (report.is_discarded() || !report.contains("frames")) return input_error("is not a report of a bake", report_file);
+  Cost out;
   for (const auto& frame : report["frames"])
     if (const double milliseconds = frame.value("milliseconds", 0.0); milliseconds > 0)
-      ours.push_back(milliseconds / 1e3);  // the first is given
-  const double frame_count = static_cast<double>(ours.size());
-  const double our_cpu = std::atof(a[3].c_str()) / frame_count, rss = report.value("peak_memory_bytes", 0.0) / 1e6;
+      out.wall.push_back(milliseconds / 1e3);  // the first is given
+  out.cpu = std::atof(cpu_seconds.c_str()) / static_cast<double>(out.wall.size());
+  out.rss_mb = report.value("peak_memory_bytes", 0.0) / 1e6;
+  return out;
+}
+
+/// SCENE N REPORT_JSON OUR_CPU_SECONDS JUDGE_FEASIBLE CHECK_JSON. Crossings of the cloth with itself are those of
+/// `check`: the judge takes what is sewn together for crossing.
+Status result_alone(const std::vector<std::string>& a) {
+  const auto cost = read_cost(a[2], a[3]);
+  if (!cost) return cost.error();
+  const auto text = read_text(a[5]);
+  if (!text) return text.error();
+  const auto check = nlohmann::json::parse(*text, nullptr, false);
+  if (check.is_discarded() || !check.contains("crossings_self")) return input_error("is not of `check`", a[5]);
+  const Judged judged = read_judge(a[4]);
+  fmt::print(
+      "RESULT scene={} n={} ours_cpu={:.4f} ours_wall={:.4f} crossings={:.0f} depth_mm={:.2f} "
+      "p99_strain={:.4f} rss_mb={:.0f}\n",
+      a[0], a[1], cost->cpu, median(cost->wall), judged.body_worst + check.value("crossings_self", 0.0),
+      judged.depth_mm, judged.p99, cost->rss_mb);
+  return {};
+}
+
+/// SCENE N REPORT_JSON OUR_CPU_SECONDS PEER_TIMING JUDGE_PEER JUDGE_DRAWN JUDGE_FEASIBLE
+Status result_line(const std::vector<std::string>& a) {
+  const auto cost = read_cost(a[2], a[3]);
+  if (!cost) return cost.error();
+  const std::vector<double>& ours = cost->wall;
+  const double our_cpu = cost->cpu, rss = cost->rss_mb;
+  std::vector<double> theirs;
   auto timing = read_text(a[4]);
   if (!timing) return timing.error();
   const double peer_cpu = number_after(*timing, "cpu/frame");
@@ -178,10 +230,12 @@ Status result_line(const std::vector<std::string>& a) {
 int run(const std::vector<std::string>& a) {
   Status status = usage_error(
       "case_tool to-shot CASE FOLDER [--pins LIST] | from-bake CASE BAKE OUT drawn|feasible | obj CACHE FRAME OUT | "
-      "result ...");
+      "to-judge BAKE CLOTH BODY FLAT OUT | result ... | result-alone ...");
   if (a.size() >= 3 && a[0] == "to-shot") status = to_shot(a[1], a[2], a.size() >= 5 && a[3] == "--pins" ? a[4] : "");
   if (a.size() == 5 && a[0] == "from-bake") status = from_bake(a[1], a[2], a[3], a[4]);
   if (a.size() == 4 && a[0] == "obj") status = one_frame(a[1], std::atoi(a[2].c_str()), a[3]);
+  if (a.size() == 6 && a[0] == "to-judge") status = to_judge(a[1], a[2], a[3], a[4], a[5]);
+  if (a.size() == 7 && a[0] == "result-alone") status = result_alone({a.begin() + 1, a.end()});
   if (a.size() == 9 && a[0] == "result") status = result_line({a.begin() + 1, a.end()});
   if (status) return 0;
   fmt::print(stderr, "case_tool: {}\n", status.error().text());

@@ -3,22 +3,24 @@
 #   tests/bench/run.sh SCENE [--n N] [--frames N] [--preset NAME] [--threads N] [--keep FOLDER] [--peer FOLDER] [-- BAKE ARGUMENTS]
 #   tests/bench/run.sh torture NAME|all [--frames N] [--obj FOLDER]
 #   tests/bench/run.sh size [--frames N] [CELLS ...]
+#   tests/bench/run.sh rumba_dress [--keep FOLDER] [-- BAKE ARGUMENTS]
 # SCENE     S1 (a square of N x N vertices on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
 # torture   the scenes of tests/support/torture, without a peer, each for at most FOLLOWTHROUGH_TORTURE_SECONDS (600)
 # size      what S1 costs as N grows, without a peer: 50, 100, 200 and 400
+# rumba_dress  samples/sewn_dress, sewn and danced, without a peer; then the dress in its authors' fabric beside their drape
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
 # Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,14s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
   size) shift ;;
   torture) [ $# -ge 2 ] || { usage >&2; exit 2; }; shift ;;
-  S1 | S2) shift ;;
+  S1 | S2 | rumba_dress) shift ;;
   *) usage >&2; exit 2 ;;
 esac
 
@@ -60,10 +62,12 @@ while [ $# -gt 0 ]; do
 done
 
 bench=${FOLLOWTHROUGH_BENCH:-$root/../shared/bench}
+tools=(followthrough case_tool)
+[ "$scene" != rumba_dress ] || tools+=(test_baker)
 [ -f "$bench/judge.cpp" ] || fail "the scenes and the judge are not at $bench; set FOLLOWTHROUGH_BENCH"
 # shellcheck disable=SC2086
 install_packages $packages_build $packages_tests $packages_bench
-build release followthrough case_tool
+build release "${tools[@]}"
 bin=$root/build/release/bin
 if [ ! -x "$bin/judge" ] || [ "$bench/judge.cpp" -nt "$bin/judge" ]; then
   g++ -O2 -o "$bin/judge" "$bench/judge.cpp"
@@ -74,6 +78,29 @@ if [ -n "$keep" ]; then
 else
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
+fi
+
+# bake SHOT: into $work/bake; its seconds of CPU are $our_cpu.
+bake() {
+  local TIMEFORMAT='%U %S'
+  rm -rf "$work/bake"
+  { time "$bin/followthrough" bake "$1" --out "$work/bake" --progress plain "${bake_arguments[@]}" >"$work/bake.log" 2>&1; } \
+    2>"$work/cpu.txt" || { tail -20 "$work/bake.log" >&2; fail "the bake failed (see above)"; }
+  our_cpu=$(awk '{ print $1 + $2 }' "$work/cpu.txt")
+}
+
+if [ "$scene" = rumba_dress ]; then
+  garment=${FOLLOWTHROUGH_ASSETS:-$root/../shared/assets}/garments/cipc_dress_knife failed=0
+  say "The dress is sewn and dances"
+  bake "$root/samples/sewn_dress/shot.toml"
+  say "The judge"
+  "$bin/followthrough" check "$work/bake" --json "$work/check.json" | tail -1 || failed=1
+  "$bin/case_tool" to-judge "$work/bake" dress mannequin "$garment/stage.obj" "$work/feasible"
+  "$bin/judge" "$work/feasible" >"$work/judge_feasible.txt"
+  say "The dress in its authors' fabric, beside their drape"
+  "$bin/test_baker" --gtest_filter='SewnDress.*' | grep -E '^[a-z_0-9]+ [0-9.-]+$|Failure|FAILED|PASSED|SKIPPED' || failed=1
+  "$bin/case_tool" result-alone "$scene" 15656 "$work/bake/report.json" "$our_cpu" "$work/judge_feasible.txt" "$work/check.json"
+  exit $failed
 fi
 
 case $scene in
@@ -89,12 +116,9 @@ if [ -z "$peer" ]; then
 fi
 
 say "Ours: the same character, garment and frames"
-rm -rf "$work/shot" "$work/bake"
+rm -rf "$work/shot"
 "$bin/case_tool" to-shot "$peer" "$work/shot" "${pins[@]}"
-TIMEFORMAT='%U %S'
-{ time "$bin/followthrough" bake "$work/shot/shot.toml" --out "$work/bake" --progress plain "${bake_arguments[@]}" >"$work/bake.log" 2>&1; } \
-  2>"$work/cpu.txt" || { tail -20 "$work/bake.log" >&2; fail "the bake failed (see above)"; }
-our_cpu=$(awk '{ print $1 + $2 }' "$work/cpu.txt")
+bake "$work/shot/shot.toml"
 
 say "The judge"
 "$bin/case_tool" from-bake "$peer" "$work/bake" "$work/drawn" drawn
