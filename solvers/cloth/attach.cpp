@@ -89,7 +89,7 @@ std::vector<HoldSpan> hold_spans(const ClothPin& pin, std::span<const Vec3> rest
 void attach(ClothModel& model) {
   const std::vector<double> length = seam_lengths(*model.topology);
   const std::vector<double>& radius = model.contact.self_radius;
-  const SeamSettings seam;
+  const AttachSettings settings;
   for (std::size_t g = 0; g < model.setup.garments.size(); ++g)
     for (const ClothPin& pin : model.setup.garments[g].pins) {
       if (pin.to < 0) continue;
@@ -109,8 +109,8 @@ void attach(ClothModel& model) {
         point.length = held[k].distance;
         // Contact keeps two garments so far apart; what is near at rest within one it leaves there.
         if (at(pin.to) != g) point.length = std::max(point.length, std::min(touching, radius[at(point.vertex)]));
-        point.stiffness = weight * seam.stiffness * length[at(point.vertex)];
-        point.max_pull = weight * seam.hold * length[at(point.vertex)];
+        point.stiffness = weight * settings.stiffness * length[at(point.vertex)];
+        point.max_pull = weight * settings.hold * length[at(point.vertex)];
         point.hold = holds[k];
         model.topology->attachments.push_back(point);
       }

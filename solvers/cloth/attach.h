@@ -12,6 +12,14 @@ namespace ft {
 
 struct ClothModel;
 
+/// How firmly, by the length of border that a vertex stands for (seam_lengths()).
+struct AttachSettings {
+  /// N/m2. What holds an opening gives more than a seam: 0.3 mm under the pull of a tight waist (30 N/m). As stiff as a
+  /// seam, its short cords go slack and taut within one step of Newton's method, and all cloth moves too slowly.
+  double stiffness = 1e5;
+  double hold = 2000;  ///< N/m: as a seam's
+};
+
 /// For each vertex of a pin of garment `own`: where it holds to garment `to`, in that one's numbering, as both lie at
 /// rest. In its own garment that is on the other side of an opening, if there is one: what is about as near along the
 /// cloth is not meant.

@@ -27,7 +27,7 @@ struct ClothPin {
   double stiffness = 1e6;       ///< N/m3: spring per garment area and displacement
   double max_pull = 5e3;        ///< Pa: force limit per garment area; contact wins over pins
   HoldSpan hold{};              ///< when
-  int to = -1;  ///< garment of the setup, perhaps its own, which holds it as firmly as a seam would; -1: the body
+  int to = -1;                  ///< garment of the setup, perhaps its own, which holds it; -1: the body
   /// Not zero: its vertices let go one after another in this direction, and take hold the other way round, the last of
   /// them when hold.fade is over.
   Vec3 opens = Vec3::Zero();

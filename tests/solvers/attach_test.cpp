@@ -19,7 +19,7 @@ ClothSetup two_strips() {
   return in_vacuum({upper, lower});
 }
 
-TEST(Attach, A_vertex_holds_to_the_nearest_point_of_the_other_garment_as_firmly_as_a_seam) {
+TEST(Attach, A_vertex_holds_to_the_nearest_point_of_the_other_garment) {
   ClothSetup setup = two_strips();
   const auto model = model_of(setup);
   ASSERT_EQ(model->topology->attachments.size(), 1u);
@@ -28,8 +28,8 @@ TEST(Attach, A_vertex_holds_to_the_nearest_point_of_the_other_garment_as_firmly_
   EXPECT_LT((cord(p, model->contact.rest) - Vec3(0, -4e-3, 0)).norm(), 1e-12);
   EXPECT_NEAR(p.length, 4e-3, 1e-12);
   const double border = 0.02;  // half of either edge at the corner
-  EXPECT_NEAR(p.stiffness, SeamSettings{}.stiffness * border, 1e-6);
-  EXPECT_NEAR(p.max_pull, SeamSettings{}.hold * border, 1e-9);
+  EXPECT_NEAR(p.stiffness, AttachSettings{}.stiffness * border, 1e-6);
+  EXPECT_NEAR(p.max_pull, AttachSettings{}.hold * border, 1e-9);
   EXPECT_EQ(model->pins.size(), 4u) << "the body holds only what is pinned to it";
   setup.garments[1].pins[0].weights = {0.25};
   EXPECT_NEAR(model_of(setup)->topology->attachments[0].max_pull, 0.25 * p.max_pull, 1e-12);
