@@ -236,6 +236,10 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
     s.direction = s.preconditioned;
     rz = dot(s.residual, s.preconditioned);
   }
+  const double first = rz;
+  // Without a positive diagonal a row is not seen by the preconditioner, and its residual not by the norm.
+  bool broken = false;
+  for (std::size_t i = 0; i < n; ++i) broken = broken || (!s.held[i] && !(s.fine().inverse[i].trace() > 0));
   while (!report.converged && report.iterations < s.settings.max_iterations && std::isfinite(rz) && rz > 0) {
     multiply(s.fine(), s.direction, s.product);
     s.add_extra(s.direction, s.product, 1.f);
@@ -249,13 +253,13 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
       }
     });
     ++report.iterations;
-    report.residual = std::sqrt(dot(s.residual, s.residual)) / start;
-    if (!std::isfinite(report.residual)) break;
-    if (report.residual < best_residual) best_residual = report.residual, s.best = s.solution;
-    report.converged = report.residual <= s.settings.tolerance;
-    if (report.converged) break;
     s.precondition(s.residual, s.preconditioned);
     const double next = dot(s.residual, s.preconditioned);
+    if (!(next >= 0) || !std::isfinite(next)) break;
+    report.residual = std::sqrt(next / first);
+    if (report.residual < best_residual) best_residual = report.residual, s.best = s.solution;
+    report.converged = report.residual <= s.settings.tolerance && !broken;
+    if (report.converged) break;
     const float beta = static_cast<float>(next / rz);
     rz = next;
     parallel_for(n, k_rows, [&](std::size_t begin, std::size_t end) {
