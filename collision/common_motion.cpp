@@ -29,12 +29,6 @@ struct CommonMotion::Problem {
   std::span<Vec3> common;
 
   bool movable(int v) const { return static_cast<std::size_t>(v) < movable_end; }
-  std::array<Vec3, 4> gather_common(const Stencil& s) const {
-    std::array<Vec3, 4> out;
-    for (std::size_t i = 0; i < 4; ++i)
-      out[i] = movable(s.v[i]) ? common[static_cast<std::size_t>(s.v[i])] : Vec3::Zero();
-    return out;
-  }
 };
 
 /// Finds the pairs that would come too near, of those with a vertex that has changed.
@@ -49,9 +43,7 @@ void CommonMotion::look(const Problem& problem, PairKind kind, std::span<const S
       if (std::none_of(s.v.begin(), s.v.end(),
                        [&](int v) { return problem.movable(v) && changed_[static_cast<std::size_t>(v)]; }))
         continue;
-      PairMove move;
-      move.common = problem.gather_common(s);
-      for (std::size_t i = 0; i < 4; ++i) move.x[i] = problem.x[static_cast<std::size_t>(s.v[i])];
+      const PairMove move = pair_move(s, problem.x, problem.dx, problem.common, problem.movable_end);
       const double motion = largest_relative_motion(kind, move.common);
       if (!(motion > 0)) continue;
       const double reach = problem.floor + motion / k_truncate_reach;
@@ -65,10 +57,6 @@ void CommonMotion::look(const Problem& problem, PairKind kind, std::span<const S
           too_much = excess(kind, flat, move.common, problem.floor);
           if (too_much <= 0) continue;
           room = flat;
-        }
-        for (std::size_t i = 0; i < 4; ++i) {
-          move.movable[i] = problem.movable(s.v[i]);
-          move.dx[i] = move.movable[i] ? problem.dx[static_cast<std::size_t>(s.v[i])] : Vec3::Zero();
         }
         if (slides_past(kind, move, std::max(problem.floor, (1 - k_truncate_reach) * room.gap))) continue;
       }
@@ -87,7 +75,8 @@ void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
       if (problem.movable(i)) problem.common[static_cast<std::size_t>(i)].setZero(), changing_[at(i)] = 1;
     return;
   }
-  const std::array<double, 4> advance = pair_advance(pair.kind, pair.room, problem.gather_common(pair.stencil));
+  const std::array<double, 4> advance = pair_advance(
+      pair.kind, pair.room, pair_move(pair.stencil, problem.x, problem.dx, problem.common, problem.movable_end).common);
   const PairApproach approach = pair_approach(pair.kind, advance);
   const double too_much = approach.sum() - k_left_in_common * may_use(pair.room, problem.floor);
   if (!(too_much > 0)) return;

@@ -13,6 +13,7 @@
 //      second     ------.----o---      highest vertex of the second feature
 #pragma once
 
+#include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
 
 namespace ft {
@@ -26,6 +27,20 @@ struct PairMove {
   std::array<Vec3, 4> common;  ///< the part of it that the vertex makes in any case, zero where not movable [m]
   std::array<bool, 4> movable;
 };
+
+/// Of a stencil; vertices at or past movable_end do not move, and dx and common need not hold them.
+inline PairMove pair_move(const Stencil& stencil, std::span<const Vec3> x, std::span<const Vec3> dx,
+                          std::span<const Vec3> common, std::size_t movable_end) {
+  PairMove move;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t v = at(stencil.v[i]);
+    move.x[i] = x[v];
+    move.movable[i] = v < movable_end;
+    move.dx[i] = move.movable[i] ? dx[v] : Vec3::Zero();
+    move.common[i] = move.movable[i] ? common[v] : Vec3::Zero();
+  }
+  return move;
+}
 
 struct PairRoom {
   Vec3 normal;                   ///< from the second feature to the first

@@ -101,16 +101,9 @@ void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, s
 
   const auto run = [&](PairKind kind, std::span<const Stencil> stencils) {
     parallel_for(stencils.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      PairMove move;
       for (std::size_t k = begin; k < end; ++k) {
         const Stencil& stencil = stencils[k];
-        for (std::size_t i = 0; i < 4; ++i) {
-          const auto v = static_cast<std::size_t>(stencil.v[i]);
-          move.x[i] = x[v];
-          move.movable[i] = v < movable_end;
-          move.dx[i] = move.movable[i] ? dx[v] : Vec3::Zero();
-          move.common[i] = move.movable[i] ? common[v] : Vec3::Zero();
-        }
+        const PairMove move = pair_move(stencil, x, dx, common, movable_end);
         if (!may_be_cut(kind, move, floor)) continue;
         const std::array<double, 4> own = truncate_pair(kind, move, floor);
         for (std::size_t i = 0; i < 4; ++i) {

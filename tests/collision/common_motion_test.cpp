@@ -194,6 +194,29 @@ TEST(CommonMotion, Features_that_touch_do_not_move) {
   for (const Vec3& d : move(cloth, all_pairs(cloth), true).displacement) EXPECT_EQ(d, Vec3::Zero());
 }
 
+TEST(CommonMotion, The_early_way_out_of_truncation_changes_nothing) {
+  int cut = 0;
+  for (const std::uint64_t seed : {21, 22, 23, 24, 25}) {
+    const Cloth cloth = hostile_sheets(seed);
+    const ContactPairs pairs = all_pairs(cloth);
+    const Moved moved = move(cloth, pairs, true);
+    const std::size_t n = at(cloth.movable_count);
+    std::vector<double> share(n, 1.0);
+    for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge})
+      for (const Stencil& s : kind == PairKind::k_vertex_face ? pairs.vertex_face : pairs.edge_edge) {
+        const auto own = truncate_pair(kind, pair_move(s, cloth.x, cloth.dx, moved.common, n), k_floor);
+        for (std::size_t i = 0; i < 4; ++i)
+          if (at(s.v[i]) < n) share[at(s.v[i])] = std::min(share[at(s.v[i])], own[i]);
+      }
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_EQ(moved.displacement[i], moved.common[i] + share[i] * (cloth.dx[i] - moved.common[i]))
+          << seed << " " << i;
+      cut += share[i] < 1;
+    }
+  }
+  EXPECT_GT(cut, 20);
+}
+
 TEST(CommonMotion, Is_the_same_bits_for_any_thread_count) {
   Cloth cloth = hostile_sheets(11);
   const ContactPairs pairs = all_pairs(cloth);
