@@ -8,7 +8,6 @@
 #include "baker/core/parallel.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/sewing.h"
-#include "solvers/energies/seams.h"
 
 namespace ft {
 namespace {

@@ -33,7 +33,7 @@ struct StepInput {
   std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
   double friction_share = 1;            ///< of all friction [1]
   const ContactPairs* pairs = nullptr;  ///< complete within the slack
-  int newton_iterations = 3;
+  int newton_iterations = 3;            ///< at least, unless nothing moves; more where the cloth is still strained
   /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m].
   /// It may give more: slack and pairs are looked at again. May be empty.
   std::function<void(std::span<const double> missing)> more_room;

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "solvers/energies/attachments.h"
-#include "solvers/energies/seams.h"
 #include "tests/solvers/strips.h"
 
 namespace ft {
