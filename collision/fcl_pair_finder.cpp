@@ -20,30 +20,35 @@ namespace ft {
 namespace {
 
 using FclBox = fcl::AABB<float>;
-using FclNode = fcl::BVNode<FclBox>;
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
 
-static_assert(sizeof(FclBox) == 6 * sizeof(float));
-inline bool overlap(const FclBox& a, const FclBox& b) {
-  return boxes_overlap(a.min_.data(), b.min_.data());
-}
-
-// BVNodeBase::isLeaf and its like are calls into FCL's library; the fields are public.
-inline bool is_leaf(const FclNode& node) {
+/// A node of FCL's tree without what only its own queries need. Children lie next to each other, behind their parents.
+struct alignas(32) Node {
+  VertexBox box;
+  int first_child;  ///< negative: a leaf, of element -1 - first_child
+};
+inline bool is_leaf(const Node& node) {
   return node.first_child < 0;
 }
-inline std::size_t leaf_element(const FclNode& node) {
-  return static_cast<std::size_t>(-(node.first_child + 1));
+inline std::size_t leaf_element(const Node& node) {
+  return static_cast<std::size_t>(-1 - node.first_child);
+}
+inline BoxLanes lanes(const Node& node) {
+  return BoxLanes::load(node.box);
+}
+inline bool overlap(const Node& a, const Node& b) {
+  return lanes(a).overlaps(lanes(b));
 }
 
 /// The tree of one surface; leaves are its elements.
 class Tree {
  public:
   bool built() const { return !nodes_.empty(); }
-  const FclNode* nodes() const { return nodes_.data(); }
-  /// Per node: whether an element below it was among those of mark().
+  const Node* nodes() const { return nodes_.data(); }
+  const PairElement* elements() const { return elements_.data(); }
+  /// Per node: whether an element below it changed in the last refit() of some.
   const char* marks() const { return marks_.data(); }
 
   void build(std::span<const PairElement> elements, std::span<const VertexBox> vertex_boxes) {
@@ -62,45 +67,52 @@ class Tree {
       }
       faces.emplace_back(first, first + 1, first + 2);
     }
-    CHECK(model_.beginModel(static_cast<int>(faces.size()), static_cast<int>(points.size())) == fcl::BVH_OK);
-    CHECK(model_.addSubModel(points, faces) == fcl::BVH_OK);
-    CHECK(model_.endModel() == fcl::BVH_OK);
-    nodes_ = {&model_.getBV(0), at(model_.getNumBVs())};
-  }
-
-  void mark(std::span<const PairElement> elements, std::span<const char> changed) {
-    marks_.resize(nodes_.size());
-    for (std::size_t k = nodes_.size(); k-- > 0;) {
-      const FclNode& node = nodes_[k];
-      const auto of_element = [&](const Triangle& v) {
-        return changed[at(v[0])] | changed[at(v[1])] | changed[at(v[2])];
-      };
-      marks_[k] = static_cast<char>(is_leaf(node) ? of_element(elements[leaf_element(node)].v)
-                                                  : marks_[at(node.first_child)] | marks_[at(node.first_child + 1)]);
+    fcl::BVHModel<FclBox> model;
+    CHECK(model.beginModel(static_cast<int>(faces.size()), static_cast<int>(points.size())) == fcl::BVH_OK);
+    CHECK(model.addSubModel(points, faces) == fcl::BVH_OK);
+    CHECK(model.endModel() == fcl::BVH_OK);
+    elements_.clear();
+    nodes_.clear();
+    for (int k = 0; k < model.getNumBVs(); ++k) {
+      const auto& node = model.getBV(k);
+      nodes_.push_back({{}, node.first_child});
+      if (node.first_child >= 0) continue;
+      nodes_.back().first_child = -1 - static_cast<int>(elements_.size());
+      elements_.push_back(elements[at(-(node.first_child + 1))]);
     }
   }
 
-  /// Children lie behind their parents, so one pass backwards sees them first.
-  void refit(std::span<const VertexBox> element_boxes) {
+  /// changed (per vertex) not empty: all other boxes are those of the last refit. One pass backwards sees children
+  /// first.
+  void refit(const PairFeatures& features, std::span<const char> changed) {
+    const bool some = !changed.empty();
+    const auto is_changed = [&](const PairElement& e) {
+      return static_cast<char>(changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]);
+    };
+    if (some) {
+      const bool was_marked = any_mark_ || marks_.size() != nodes_.size();
+      any_mark_ = std::any_of(elements_.begin(), elements_.end(), is_changed);
+      if (was_marked) marks_.assign(nodes_.size(), 0);
+      if (!any_mark_) return;
+    }
     for (std::size_t k = nodes_.size(); k-- > 0;) {
-      FclNode& node = nodes_[k];
-      if (is_leaf(node)) {
-        const VertexBox& b = element_boxes[leaf_element(node)];
-        node.bv.min_ = {b.lo[0], b.lo[1], b.lo[2]};
-        node.bv.max_ = {b.hi[0], b.hi[1], b.hi[2]};
-      } else {
-        const FclBox& l = nodes_[at(node.first_child)].bv;
-        const FclBox& r = nodes_[at(node.first_child + 1)].bv;
-        node.bv.min_ = l.min_.cwiseMin(r.min_);
-        node.bv.max_ = l.max_.cwiseMax(r.max_);
+      Node& node = nodes_[k];
+      const bool leaf = is_leaf(node);
+      const std::size_t below = leaf ? leaf_element(node) : at(node.first_child);
+      if (some) {
+        marks_[k] = leaf ? is_changed(elements_[below]) : static_cast<char>(marks_[below] | marks_[below + 1]);
+        if (marks_[k] == 0) continue;
       }
+      const BoxLanes box = leaf ? features.box(elements_[below]) : lanes(nodes_[below]).join(lanes(nodes_[below + 1]));
+      box.store(node.box);
     }
   }
 
  private:
-  fcl::BVHModel<FclBox> model_;
-  std::span<FclNode> nodes_;
+  std::vector<Node> nodes_;
+  std::vector<PairElement> elements_;  ///< in the order of their leaves
   std::vector<char> marks_;
+  bool any_mark_ = false;
 };
 
 /// Keys of feature pairs (pair_sort.h), by rank.
@@ -113,7 +125,7 @@ struct Found {
 template <bool k_some>
 struct Walk {
   const PairFeatures& features;
-  const FclNode *ta, *tb;
+  const Node *ta, *tb;
   const char *ma, *mb;  ///< marks of the trees
   const char* changed;  ///< per vertex
   const PairElement *ea, *eb;
@@ -122,7 +134,7 @@ struct Walk {
 
   bool meets(int a, int b) const {
     if (k_some && !(ma[a] | mb[b])) return false;
-    return overlap(ta[a].bv, tb[b].bv);
+    return overlap(ta[a], tb[b]);
   }
 
   /// All pairs below node n of ta, which is tb.
@@ -136,11 +148,11 @@ struct Walk {
 
   /// a and b overlap. Both sides descend together: four tests in a row cost less than two visits.
   void between(int a, int b) const {
-    const FclNode& na = ta[a];
-    const FclNode& nb = tb[b];
+    const Node& na = ta[a];
+    const Node& nb = tb[b];
     const int i = na.first_child, j = nb.first_child;
     if (i < 0 && j < 0) {
-      meet(ea[leaf_element(na)], eb[leaf_element(nb)]);
+      meet(ea[leaf_element(na)], lanes(na), eb[leaf_element(nb)], lanes(nb));
     } else if (j < 0) {
       if (meets(i, b)) between(i, b);
       if (meets(i + 1, b)) between(i + 1, b);
@@ -156,30 +168,33 @@ struct Walk {
   }
 
   /// The feature pairs that a pair of triangles is responsible for.
-  void meet(const PairElement& a, const PairElement& b) const {
-    vertices_against_face(a, b);
-    vertices_against_face(b, a);
-    if (!want_edges) return;
-    for (int i = 0; i < a.owned_edge_count; ++i) {
-      const int ra = a.owned_edge[at(i)];
-      const VertexBox& box = features.edge_boxes[at(ra)];
-      for (int j = 0; j < b.owned_edge_count; ++j) {
-        const int rb = b.owned_edge[at(j)];
-        if (!overlap(box, features.edge_boxes[at(rb)])) continue;
-        const Edge &va = features.edges[at(ra)], &vb = features.edges[at(rb)];
+  void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b, const BoxLanes& box_b) const {
+    vertices_against_face(a, b, box_b);
+    vertices_against_face(b, a, box_a);
+    if (!want_edges || a.owned_edge_count == 0) return;
+    for (int j = 0; j < b.owned_edge_count; ++j) {
+      const int rb = b.owned_edge[at(j)];
+      const Edge& vb = features.edges[at(rb)];
+      const BoxLanes box = features.box(vb[0]).join(features.box(vb[1]));
+      if (!box.overlaps(box_a) || !features.present(vb[0]) || !features.present(vb[1])) continue;
+      for (int i = 0; i < a.owned_edge_count; ++i) {
+        const int ra = a.owned_edge[at(i)];
+        const Edge& va = features.edges[at(ra)];
+        if (!box.overlaps(features.box(va[0]).join(features.box(va[1])))) continue;
         if (va[0] == vb[0] || va[0] == vb[1] || va[1] == vb[0] || va[1] == vb[1]) continue;
+        if (!features.present(va[0]) || !features.present(va[1])) continue;
         if (k_some && !(changed[va[0]] | changed[va[1]] | changed[vb[0]] | changed[vb[1]])) continue;
         out.edge_edge.push_back(ra < rb ? pair_key(ra, rb) : pair_key(rb, ra));
       }
     }
   }
 
-  void vertices_against_face(const PairElement& p, const PairElement& f) const {
+  void vertices_against_face(const PairElement& p, const PairElement& f, const BoxLanes& face_box) const {
     if (f.face < 0) return;
-    const VertexBox& face_box = features.face_boxes[at(f.face)];
     for (int i = 0; i < p.owned_vertex_count; ++i) {
       const int v = p.owned_vertex[at(i)];
-      if (!overlap(features.vertex_boxes[at(v)], face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
+      if (!features.box(v).overlaps(face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
+      if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) continue;
       if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) continue;
       out.vertex_face.push_back(pair_key(v, f.face));
     }
@@ -215,8 +230,8 @@ struct PairFinder::Impl {
 void PairFinder::Impl::split_tasks(bool self) {
   tasks.clear();
   if (!cloth.built()) return;
-  const FclNode* ta = cloth.nodes();
-  if (collider.built() && overlap(ta[0].bv, collider.nodes()[0].bv)) tasks.push_back({0, 0, false});
+  const Node* ta = cloth.nodes();
+  if (collider.built() && overlap(ta[0], collider.nodes()[0])) tasks.push_back({0, 0, false});
   if (self) tasks.push_back({0, -1, true});
   for (bool more = true; more && tasks.size() < k_task_goal;) {
     more = false;
@@ -227,11 +242,11 @@ void PairFinder::Impl::split_tasks(bool self) {
         if (i < 0) continue;
         next_tasks.push_back({i, -1, true});
         next_tasks.push_back({i + 1, -1, true});
-        if (overlap(ta[i].bv, ta[i + 1].bv)) next_tasks.push_back({i, i + 1, true});
+        if (overlap(ta[i], ta[i + 1])) next_tasks.push_back({i, i + 1, true});
         more = true;
         continue;
       }
-      const FclNode* tb = task.self ? ta : collider.nodes();
+      const Node* tb = task.self ? ta : collider.nodes();
       const int j = tb[task.b].first_child;
       if (i < 0 || j < 0) {
         next_tasks.push_back(task);
@@ -239,7 +254,7 @@ void PairFinder::Impl::split_tasks(bool self) {
       }
       for (const int a : {i, i + 1})
         for (const int b : {j, j + 1})
-          if (overlap(ta[a].bv, tb[b].bv)) next_tasks.push_back({a, b, task.self});
+          if (overlap(ta[a], tb[b])) next_tasks.push_back({a, b, task.self});
       more = true;
     }
     tasks.swap(next_tasks);
@@ -251,9 +266,8 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& ou
   out.vertex_face.clear();
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
-  const PairElement* other_elements = task.self ? features.cloth.data() : features.collider.data();
-  const Walk<k_some> walk{features, cloth.nodes(),         other.nodes(),  cloth.marks(), other.marks(),
-                          changed,  features.cloth.data(), other_elements, want_edges,    out};
+  const Walk<k_some> walk{features, cloth.nodes(),    other.nodes(),    cloth.marks(), other.marks(),
+                          changed,  cloth.elements(), other.elements(), want_edges,    out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
 
@@ -277,19 +291,18 @@ void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::
   search(boxes, self, true, changed, out);
 }
 
-/// changed empty: all pairs.
+/// changed empty: all pairs. Not empty: the boxes of all others are those of the last search.
 void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
                         ContactPairs& out) {
   Impl& m = *impl_;
   m.want_edges = edges;
   const PairFeatures& features = m.features;
-  m.features.set_boxes(boxes);
+  m.features.set_boxes(boxes, changed);
   if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes);
   if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes);
   parallel_tasks(2, [&](std::size_t task) {
     Tree& tree = task == 0 ? m.cloth : m.collider;
-    tree.refit(task == 0 ? features.cloth_boxes : features.collider_boxes);
-    if (!changed.empty()) tree.mark(task == 0 ? features.cloth : features.collider, changed);
+    tree.refit(features, changed);
   });
 
   m.split_tasks(self);

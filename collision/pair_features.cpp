@@ -18,16 +18,6 @@ inline bool valid(const VertexBox& b) {
   return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
 }
 
-inline VertexBox join(const VertexBox& a, const VertexBox& b) {
-  return {{std::min(a.lo[0], b.lo[0]), std::min(a.lo[1], b.lo[1]), std::min(a.lo[2], b.lo[2])},
-          {std::max(a.hi[0], b.hi[0]), std::max(a.hi[1], b.hi[1]), std::max(a.hi[2], b.hi[2])}};
-}
-
-/// A feature with a vertex that is nowhere is nowhere.
-inline VertexBox join_present(const VertexBox& a, const VertexBox& b) {
-  return valid(a) && valid(b) ? join(a, b) : k_nowhere;
-}
-
 template <class T>
 std::size_t rank(const std::vector<T>& sorted, const T& value) {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
@@ -82,34 +72,26 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
   }
 }
 
-void PairFeatures::set_boxes(std::span<const VertexBox> boxes) {
+void PairFeatures::set_boxes(std::span<const VertexBox> boxes, std::span<const char> changed) {
   CHECK(boxes.size() == at(vertex_count));
+  CHECK(changed.empty() || (changed.size() == boxes.size() && vertex_boxes.size() == boxes.size()));
   vertex_boxes.resize(boxes.size());
-  edge_boxes.resize(edges.size());
-  face_boxes.resize(faces.size());
-  parallel_for(boxes.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) vertex_boxes[i] = valid(boxes[i]) ? boxes[i] : k_nowhere;
-  });
-  const auto of = [&](int v) -> const VertexBox& { return vertex_boxes[at(v)]; };
-  parallel_for(edges.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) edge_boxes[i] = join_present(of(edges[i][0]), of(edges[i][1]));
-  });
-  parallel_for(faces.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      face_boxes[i] = join_present(join_present(of(faces[i][0]), of(faces[i][1])), of(faces[i][2]));
-  });
-  // An element without its third vertex may still own an edge: its box joins the vertices that are somewhere.
-  const auto of_elements = [&](const std::vector<PairElement>& elements, std::vector<VertexBox>& out) {
-    out.resize(elements.size());
-    parallel_for(out.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Triangle& v = elements[i].v;
-        out[i] = join(join(of(v[0]), of(v[1])), of(v[2]));
-      }
-    });
+  const auto set = [&](std::size_t i) {
+    const bool is_there = valid(boxes[i]);
+    vertex_boxes[i] = is_there ? boxes[i] : k_nowhere;
+    return is_there;
   };
-  of_elements(cloth, cloth_boxes);
-  of_elements(collider, collider_boxes);
+  all_present = parallel_sum(boxes.size(), k_block, 0,
+                             [&](std::size_t begin, std::size_t end) {
+                               int nowhere = 0;
+                               if (changed.empty())
+                                 for (std::size_t i = begin; i < end; ++i) nowhere += !set(i);
+                               else
+                                 for (std::size_t i = begin; i < end; ++i)
+                                   if (changed[i] != 0) nowhere += !set(i);
+                               return nowhere;
+                             }) == 0 &&
+                (changed.empty() || all_present);
 }
 
 }  // namespace ft
