@@ -11,8 +11,9 @@ namespace {
 /// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
-/// Newton iterations of a shortened piece: a gap that an unconverged solve leaves closed blocks the next advance.
-constexpr int k_shortened_newton = 4;
+/// What Newton may still strain the edges by at the end of a shortened piece [1]: a gap that an unconverged solve
+/// leaves closed blocks the next advance.
+constexpr double k_shortened_settled = 1e-3;
 /// Cloth that wants to leave its slack by more than k_negligible gets more, with some to spare: what is held back loses
 /// momentum [m].
 constexpr double k_negligible = 2e-5;
@@ -77,7 +78,8 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.friction_share = in.friction_share;
   step.slack = s.piece.slack;
   step.pairs = &s.candidates.pairs();
-  step.newton_iterations = model_.setup.newton_iterations * (shortened ? k_shortened_newton : 1);
+  step.newton_iterations = model_.setup.newton_iterations;
+  if (shortened) step.settled_strain = k_shortened_settled;
   s.x.resize(cloth.x.size());
   s.v.resize(cloth.x.size());
   step.enough_room = k_negligible;

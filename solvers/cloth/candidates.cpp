@@ -16,9 +16,9 @@ constexpr double k_farthest_range = 0.05;  ///< body motion that the search for 
 // Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity
 // and the acceleration of the last step. Too small a ball holds cloth back (it then asks for more), too large a one
 // costs candidates.
-constexpr double k_slack_way = 0.6;           ///< of the way between the two; half of it reaches both
-constexpr double k_slack_acceleration = 0.6;  ///< of what the last step's acceleration makes in this one, on top
-constexpr double k_slack_gravity = 0.6;       ///< of h2 g
+constexpr double k_slack_way = 0.5;           ///< of the way between the two: both are in the ball
+constexpr double k_slack_acceleration = 0.3;  ///< of what the last step's acceleration makes in this one, on top
+constexpr double k_slack_gravity = 0.3;       ///< of h2 g
 constexpr double k_most_acceleration =
     2e-3;                              ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
 constexpr double k_slack_body = 0.03;  ///< of the body's motion near the cloth: rubbing and the carry's own error
@@ -130,7 +130,7 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
   Vec3 acceleration = gained * (cloth.v[i] - cloth.v_previous[i]);
   const double pull = acceleration.norm();
   if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
-  const Vec3 way = h_ * cloth.v[i] + 0.5 * acceleration - piece.carry[i];
+  const Vec3 way = h_ * cloth.v[i] + acceleration - piece.carry[i];
   piece.centre[i] = piece.carry[i] + 0.5 * way;
   piece.slack[i] = k_slack_way * way.norm() + k_slack_acceleration * std::min(pull, k_most_acceleration) +
                    k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() +
@@ -259,7 +259,8 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
       const double reach =
           std::max(relative, largest_relative_motion(kind, gather(piece.centre, found[p])) + slack_a + slack_b) +
           radius;
-      if (box_gap_squared(kind, x) >= reach * reach || !counts(cloth, kind, found[p])) continue;
+      if (apart_between_centres(kind, x, reach) || box_gap_squared(kind, x) >= reach * reach) continue;
+      if (!counts(cloth, kind, found[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;

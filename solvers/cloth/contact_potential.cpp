@@ -8,7 +8,7 @@
 namespace ft {
 namespace {
 
-constexpr std::size_t k_block = 2048;
+constexpr std::size_t k_block = 512;
 constexpr float k_rounding = 1.0001f;  ///< of float sums of ways
 constexpr float k_no_way = 1e30f;
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
@@ -164,15 +164,26 @@ void ContactPotential::lag_friction() {
 }
 
 double ContactPotential::value(std::span<const Vec3> x) const {
-  double energy = 0;
-  for (const Contact& c : contacts_) energy += contact_law(c.geometry.distance, c.radius, c.stiffness).energy;
+  double energy = parallel_sum(contacts_.size(), k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Contact& c = contacts_[i];
+      sum += contact_law(c.geometry.distance, c.radius, c.stiffness).energy;
+    }
+    return sum;
+  });
   const double eps = model_.sliding_speed * h_;
-  for (const Lagged& f : lagged_) {
-    Vec3 u = slip(f.vertex, f.weight, x, x_start_);
-    u -= f.normal * f.normal.dot(u);
-    const double s = u.norm();
-    energy += f.friction * f.normal_force * (s > eps ? s - 0.5 * eps : 0.5 * s * s / eps);
-  }
+  energy += parallel_sum(lagged_.size(), k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Lagged& f = lagged_[i];
+      Vec3 u = slip(f.vertex, f.weight, x, x_start_);
+      u -= f.normal * f.normal.dot(u);
+      const double s = u.norm();
+      sum += f.friction * f.normal_force * (s > eps ? s - 0.5 * eps : 0.5 * s * s / eps);
+    }
+    return sum;
+  });
   return energy;
 }
 
@@ -218,19 +229,28 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
   }
 }
 
-void ContactPotential::near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) const {
+void ContactPotential::near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) {
   const int n = model_.cloth_vertex_count;
+  reach_.resize(at(n));
+  for (std::size_t i = 0; i < reach_.size(); ++i)
+    reach_[i] = static_cast<float>(k_truncation_reach * dx[i].norm() + floor) + 1e-6f;
   const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, bool vertex_face,
                         std::vector<Stencil>& to) {
+    const std::size_t blocks = block_count(list.size(), k_block);
+    if (block_pairs_.size() < blocks) block_pairs_.resize(blocks);
+    parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      std::vector<Stencil>& mine = block_pairs_[begin / k_block];
+      mine.clear();
+      for (std::size_t p = begin; p < end; ++p) {
+        float reach = 0;
+        for (const int i : list[p].v)
+          if (i < n) reach = std::max(reach, reach_[at(i)]);
+        if (state[p].distance - k_rounding * (way_of(list[p].v, vertex_face, true) - state[p].way) < reach)
+          mine.push_back(list[p]);
+      }
+    });
     to.clear();
-    for (std::size_t p = 0; p < list.size(); ++p) {
-      double largest = 0;
-      for (const int i : list[p].v)
-        if (i < n) largest = std::max(largest, dx[at(i)].squaredNorm());
-      const auto reach = static_cast<float>(k_truncation_reach * std::sqrt(largest) + floor) + 1e-6f;
-      if (state[p].distance - k_rounding * (way_of(list[p].v, vertex_face, true) - state[p].way) < reach)
-        to.push_back(list[p]);
-    }
+    for (std::size_t b = 0; b < blocks; ++b) to.insert(to.end(), block_pairs_[b].begin(), block_pairs_[b].end());
   };
   take(pairs_->vertex_face, state_vf_, true, out.vertex_face);
   take(pairs_->edge_edge, state_ee_, false, out.edge_edge);

@@ -60,7 +60,7 @@ class ContactPotential {
   void add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const;
 
   /// Pairs that displacements dx [m] of the cloth can bring nearer than floor [m], for truncation.
-  void near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) const;
+  void near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out);
   std::span<const Contact> contacts() const { return contacts_; }
   double smallest_gap() const;  ///< m, over the contacts of the last update; infinite without any
 
@@ -91,6 +91,8 @@ class ContactPotential {
   std::vector<Contact> contacts_;
   std::vector<Lagged> lagged_;
   std::vector<std::vector<Contact>> block_contacts_;
+  std::vector<std::vector<Stencil>> block_pairs_;
+  std::vector<float> reach_;  ///< per cloth vertex: pairs nearer than this may have to be truncated [m]
 };
 
 /// E, -dE/dd and d2E/dd2 of the contact law above.

@@ -16,10 +16,8 @@ namespace {
 constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
-/// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still stretches or
-/// shortens the edges by more than a share of their lengths (root mean square): cloth that is pulled tight or has edges
-/// of all lengths needs it.
-constexpr double k_settled_strain = 5e-3;
+/// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still strains the edges
+/// by more than StepInput::settled_strain: cloth that is pulled tight or has edges of all lengths needs it.
 constexpr int k_most_times = 5;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
@@ -124,8 +122,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   for (std::size_t p = 0; p < s.pin_share.size(); ++p) s.pin_share[p] = model_.pins[p].hold.share(in.time);
 
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
-  const auto potential = [&](std::vector<Vec3>& all) {
-    const std::span<const Vec3> x(all.data(), n);
+  /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
+  const auto potential_of_cloth = [&](std::span<const Vec3> x) {
     double e = parallel_sum(n, 1024, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i) sum += model_.mass[i] * (x[i] - s.y[i]).squaredNorm();
@@ -137,7 +135,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       if (s.pin_share[p] > 0)
         e +=
             pin_spring(model_.pins[p], s.pin_share[p], (x[at(model_.pins[p].vertex)] - in.pin_target[p]).norm()).energy;
-    return e + s.contact.value(all);
+    return e;
   };
 
   double smallest_radius = 1e-3;
@@ -146,7 +144,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.contact.update(s.all);
   result.seconds_contact += watch.lap();
 
-  const int most_iterations = std::max(in.newton_iterations, k_most_times * model_.setup.newton_iterations);
+  double of_cloth = potential_of_cloth(cloth(s.all));
+  const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     s.contact.lag_friction();
@@ -178,7 +177,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     s.contact.add_terms(s.all, s.terms);
     s.system.add_pair_terms(s.terms);
     for (Vec3& g : s.gradient) g = -g;
-    const double before = potential(s.all);
+    const double before = of_cloth + s.contact.value(s.all);
     result.seconds_assembly += watch.lap();
     const LinearReport linear = s.system.solve(s.gradient, model_.unused, s.direction);
     result.linear_iterations += linear.iterations;
@@ -208,7 +207,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
     for (std::size_t i = 0; i < n; ++i) s.direction[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
 
-    double factor = 1;
+    double factor = 1, of_trial = 0;
     bool accepted = false, finite = true;
     for (int halving = 0; halving <= k_most_halvings && !accepted; ++halving, factor *= 0.5) {
       double step = 0;
@@ -218,7 +217,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
         step = std::max(step, d.norm());
       }
       s.contact.update(s.trial);
-      const double after = potential(s.trial);
+      of_trial = potential_of_cloth(cloth(s.trial));
+      const double after = of_trial + s.contact.value(s.trial);
       finite = std::isfinite(after);
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
       if (!accepted) ++result.backtracks;
@@ -226,9 +226,10 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     }
     settled =
         !finite || result.last_move < k_still * smallest_radius ||
-        (iteration + 1 >= in.newton_iterations && strain_change(model_.rest_edges, s.all, s.trial) < k_settled_strain);
+        (iteration + 1 >= in.newton_iterations && strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain);
     if (finite) {
       std::copy_n(s.trial.begin(), n, s.all.begin());
+      of_cloth = of_trial;
     } else {
       s.contact.update(s.all);
       result.last_move = 0;

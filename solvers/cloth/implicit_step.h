@@ -34,6 +34,8 @@ struct StepInput {
   double friction_share = 1;            ///< of all friction [1]
   const ContactPairs* pairs = nullptr;  ///< complete within the slack
   int newton_iterations = 3;            ///< at least, unless nothing moves; more where the cloth is still strained
+  /// Root mean square of what an iteration may still change the edges' lengths by at the end, over their rest lengths.
+  double settled_strain = 5e-3;
   /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m].
   /// It may give more: slack and pairs are looked at again. May be empty.
   std::function<void(std::span<const double> missing)> more_room;
