@@ -9,6 +9,7 @@
 #include "baker/bake_folder.h"
 #include "baker/cache_set.h"
 #include "baker/core/file.h"
+#include "baker/interaction.h"
 #include "baker/lock_file.h"
 #include "baker/plan_text.h"
 #include "baker/signals.h"
@@ -161,7 +162,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   if (status) status = judge(result.manifest, {plan->shot().gate_p99_strain, plan->shot().gate_crossings});
   BakeResult out;
   if (!status) out = failed(status.error());
-  progress.end({out.exit_code, status ? closing(result.manifest, folder) : status.error().text(), result.seconds});
+  progress.end({out.exit_code, status ? closing(result.manifest, folder) : status.error().text(),
+                interaction_lines(interactions(result.manifest, plan->primaries), plan->primaries), result.seconds});
   return out;
 }
 

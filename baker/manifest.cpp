@@ -50,6 +50,7 @@ Json certificate(const Manifest& manifest) {
     FrameReport same = frame;
     same.frame = 0;
     same.incidents.clear();
+    same.forces.clear();
     worst.frame = 0;
     worst = any ? merge(worst, same) : same;
     any = true;
@@ -80,7 +81,7 @@ std::string to_text(const Manifest& m) {
                   {"first_written", m.first_written},
                   {"fps", m.fps},
                   {"preroll", m.preroll}};
-  out["units"] = {{"length", "m"}, {"time", "s"}, {"mass", "kg"}, {"up", "y"}, {"strain", "1"}};
+  out["units"] = {{"length", "m"}, {"time", "s"}, {"mass", "kg"}, {"force", "N"}, {"up", "y"}, {"strain", "1"}};
   Json inputs = Json::array();
   for (const ManifestInput& i : m.inputs)
     inputs.push_back({{"role", i.role}, {"name", i.name}, {"content", i.content}});

@@ -251,7 +251,9 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     for (const std::string& note : imported->info.notes) plan.notes.push_back("primary \"" + spec.name + "\": " + note);
     TeleportScan scan = scan_of(shot, spec, *imported->trajectory);
     for (std::string& note : teleport_notes(scan, spec.name)) plan.notes.push_back(std::move(note));
-    plan.primaries.push_back({spec.name, std::move(imported->trajectory), std::move(imported->info), std::move(scan)});
+    const PrimaryMass mass = primary_mass(spec, *imported->trajectory);
+    plan.primaries.push_back(
+        {spec.name, std::move(imported->trajectory), std::move(imported->info), std::move(scan), mass});
   }
   if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "baker/inputs.h"
+#include "baker/primary_mass.h"
 #include "io/import/import.h"
 #include "io/import/teleport_scan.h"
 #include "solvers/cloth/cloth_solver.h"
@@ -20,6 +21,7 @@ struct PrimaryPlan {
   std::shared_ptr<const Trajectory> trajectory;
   CharacterInfo info;
   TeleportScan scan;
+  PrimaryMass mass;
 };
 
 /// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation.

@@ -22,6 +22,9 @@ class TextProgress : public Progress {
     std::fputs((text + "\n").c_str(), out_);
     std::fflush(out_);
   }
+  void lines(const std::vector<std::string>& all) {
+    for (const std::string& text : all) line(text);
+  }
   std::FILE* out_;
 };
 
@@ -47,7 +50,10 @@ class Plain final : public TextProgress {
                      f.preroll ? " (pre-roll)" : "", f.done, f.total, 1e3 * f.seconds, clock_text(f.seconds_left),
                      100 * f.report.strain_p99, health(f.report)));
   }
-  void end(const ProgressEnd& e) override { line(fmt::format("{} ({})", e.text, clock_text(e.seconds))); }
+  void end(const ProgressEnd& e) override {
+    line(fmt::format("{} ({})", e.text, clock_text(e.seconds)));
+    lines(e.details);
+  }
 };
 
 class Bar final : public TextProgress {
@@ -74,6 +80,7 @@ class Bar final : public TextProgress {
   void end(const ProgressEnd& e) override {
     clear();
     line(fmt::format("{} ({})", e.text, clock_text(e.seconds)));
+    lines(e.details);
   }
 
  private:
@@ -93,7 +100,10 @@ class Tractor final : public TextProgress {
   void frame(const ProgressFrame& f) override {
     line(fmt::format("TR_PROGRESS {:03d}%", static_cast<int>(percent(f))));
   }
-  void end(const ProgressEnd& e) override { line(e.text); }
+  void end(const ProgressEnd& e) override {
+    line(e.text);
+    lines(e.details);
+  }
 };
 
 class Deadline final : public TextProgress {
@@ -101,7 +111,10 @@ class Deadline final : public TextProgress {
   using TextProgress::TextProgress;
   void note(const std::string& text) override { line("note: " + text); }
   void frame(const ProgressFrame& f) override { line(fmt::format("Progress: {}%", static_cast<int>(percent(f)))); }
-  void end(const ProgressEnd& e) override { line(e.exit_code == 0 ? e.text : "Error: " + e.text); }
+  void end(const ProgressEnd& e) override {
+    line(e.exit_code == 0 ? e.text : "Error: " + e.text);
+    lines(e.details);
+  }
 };
 
 class OpenJd final : public TextProgress {
@@ -114,7 +127,10 @@ class OpenJd final : public TextProgress {
     line(fmt::format("openjd_status: frame {}, {} left, {}", f.report.frame, clock_text(f.seconds_left),
                      health(f.report)));
   }
-  void end(const ProgressEnd& e) override { line((e.exit_code == 0 ? "openjd_status: " : "openjd_fail: ") + e.text); }
+  void end(const ProgressEnd& e) override {
+    line((e.exit_code == 0 ? "openjd_status: " : "openjd_fail: ") + e.text);
+    lines(e.details);
+  }
 };
 
 /// Progress mode json and the log file: the same objects; the log adds the time of day.
@@ -149,7 +165,7 @@ class JsonLines final : public TextProgress {
                     {"profile", to_json(f.report.profile)}});
   }
   void end(const ProgressEnd& e) override {
-    write("end", {{"exit_code", e.exit_code}, {"text", e.text}, {"seconds", e.seconds}});
+    write("end", {{"exit_code", e.exit_code}, {"text", e.text}, {"seconds", e.seconds}, {"details", e.details}});
   }
 
  private:

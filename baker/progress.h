@@ -39,8 +39,9 @@ struct ProgressFrame {
 
 struct ProgressEnd {
   int exit_code = 0;
-  std::string text;    ///< one sentence
-  double seconds = 0;  ///< wall, whole bake
+  std::string text;                  ///< one sentence
+  std::vector<std::string> details;  ///< lines of a table
+  double seconds = 0;                ///< wall, whole bake
 };
 
 class Progress {

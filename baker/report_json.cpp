@@ -42,6 +42,9 @@ void for_each_time(Profile& p, Visit&& visit) {
 Json value_of(double v) {
   return std::isfinite(v) ? Json(v) : Json(nullptr);
 }
+Json value_of(const Vec3& v) {
+  return Json::array({value_of(v.x()), value_of(v.y()), value_of(v.z())});
+}
 Json value_of(int v) {
   return v;
 }
@@ -83,6 +86,15 @@ void take_field(const Json& from, const char* name, T& out) {
   take(*it, name, out);
 }
 
+/// Three numbers; null is taken for 0.
+void take_vector(const Json& from, const char* name, Vec3& out) {
+  const auto it = from.find(name);
+  if (it == from.end()) return;
+  if (!it->is_array() || it->size() != 3) throw Faulty{name};
+  for (int k = 0; k < 3; ++k)
+    if (const Json& v = (*it)[static_cast<std::size_t>(k)]; !v.is_null()) take(v, name, out[k]);
+}
+
 Incident incident_from(const Json& json) {
   Incident out;
   if (!json.is_object()) throw Faulty{"incidents"};
@@ -93,14 +105,20 @@ Incident incident_from(const Json& json) {
   take_field(json, "frame", out.frame);
   take_field(json, "system", out.system);
   take_field(json, "vertex", out.vertex);
-  if (const auto place = json.find("place"); place != json.end()) {
-    if (!place->is_array() || place->size() != 3) throw Faulty{"place"};
-    for (int k = 0; k < 3; ++k)
-      if (!(*place)[static_cast<std::size_t>(k)].is_null())
-        take((*place)[static_cast<std::size_t>(k)], "place", out.place[k]);
-  }
+  take_vector(json, "place", out.place);
   take_field(json, "depth", out.depth);
   take_field(json, "text", out.text);
+  return out;
+}
+
+InteractionForce force_from(const Json& json) {
+  InteractionForce out;
+  if (!json.is_object()) throw Faulty{"forces"};
+  take_field(json, "system", out.system);
+  take_vector(json, "force", out.mean.force);
+  take_vector(json, "torque", out.mean.torque);
+  take_field(json, "peak", out.peak);
+  take_field(json, "contact", out.contact_share);
   return out;
 }
 
@@ -127,18 +145,26 @@ void write_value(std::string& out, const Json& json, int depth) {
 }  // namespace
 
 Json to_json(const Incident& i) {
-  return Json{{"kind", name(i.kind)},
-              {"frame", i.frame},
-              {"system", i.system},
-              {"vertex", i.vertex},
-              {"place", Json::array({value_of(i.place.x()), value_of(i.place.y()), value_of(i.place.z())})},
-              {"depth", value_of(i.depth)},
-              {"text", i.text}};
+  return Json{{"kind", name(i.kind)},       {"frame", i.frame},           {"system", i.system}, {"vertex", i.vertex},
+              {"place", value_of(i.place)}, {"depth", value_of(i.depth)}, {"text", i.text}};
+}
+
+Json to_json(const InteractionForce& f) {
+  return Json{{"system", f.system},
+              {"force", value_of(f.mean.force)},
+              {"torque", value_of(f.mean.torque)},
+              {"peak", value_of(f.peak)},
+              {"contact", value_of(f.contact_share)}};
 }
 
 Json to_json(const FrameReport& report) {
   Json out = Json::object();
   for_each_field(report, [&](const char* name, const auto& value) { out[name] = value_of(value); });
+  if (!report.forces.empty()) {
+    Json list = Json::array();
+    for (const InteractionForce& f : report.forces) list.push_back(to_json(f));
+    out["forces"] = std::move(list);
+  }
   if (!report.incidents.empty()) {
     Json list = Json::array();
     for (const Incident& i : report.incidents) list.push_back(to_json(i));
@@ -158,6 +184,10 @@ Result<FrameReport> frame_report_from_json(const Json& json) {
   try {
     if (!json.is_object()) return input_error("a frame's report is not an object");
     for_each_field(out, [&](const char* name, auto& value) { take_field(json, name, value); });
+    if (const auto list = json.find("forces"); list != json.end()) {
+      if (!list->is_array()) throw Faulty{"forces"};
+      for (const Json& f : *list) out.forces.push_back(force_from(f));
+    }
     if (const auto list = json.find("incidents"); list != json.end()) {
       if (!list->is_array()) throw Faulty{"incidents"};
       for (const Json& i : *list) out.incidents.push_back(incident_from(i));
@@ -209,6 +239,7 @@ FrameReport merge(const FrameReport& a, const FrameReport& b) {
   out.kinetic_energy += b.kinetic_energy;
   out.released_vertices += b.released_vertices;
   out.finite = a.finite && b.finite;
+  out.forces.insert(out.forces.end(), b.forces.begin(), b.forces.end());
   out.incidents.insert(out.incidents.end(), b.incidents.begin(), b.incidents.end());
   out.profile += b.profile;
   return out;

@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 /// Certificate and incidents; no times.
 Json to_json(const FrameReport& report);
 Json to_json(const Incident& incident);
+Json to_json(const InteractionForce& force);
 /// Wall times [s].
 Json to_json(const FrameProfile& profile);
 

@@ -9,6 +9,7 @@
 
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
+#include "baker/interaction.h"
 #include "baker/report_json.h"
 #include "baker/signals.h"
 #include "baker/writer_thread.h"
@@ -261,6 +262,7 @@ Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomRe
   out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   out["profile"] = to_json(sum);
   out["room"] = to_json(room);
+  out["interaction"] = to_json(interactions(result.manifest, plan.primaries), plan.primaries);
   out["frames"] = std::move(frames);
   return write_text_durably(folder.report(), to_text(out));
 }

@@ -9,6 +9,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/state.h"
+#include "baker/core/wrench.h"
 
 namespace ft {
 
@@ -44,6 +45,15 @@ struct ProfilePhase {
 /// The one list of the phases; the total is not among them.
 std::span<const ProfilePhase> profile_phases();
 
+/// What one secondary did to its primary in one frame: contact, friction and pins. The paper's measure of what a
+/// coupling has to carry.
+struct InteractionForce {
+  std::string system;        ///< name of the garment
+  Wrench mean;               ///< over the frame; the torque about the primary's centre of volume at the frame's end
+  double peak = 0;           ///< largest force of a piece of a substep [N]
+  double contact_share = 0;  ///< of the frame, during which there was any force [1]
+};
+
 /// The certificate of one frame, and what it took.
 struct FrameReport {
   int frame = 0;
@@ -57,7 +67,8 @@ struct FrameReport {
   double kinetic_energy = 0;                               ///< J
   int released_vertices = 0;  ///< vertices that were let through a part this frame because there was no room
   bool finite = true;
-  std::vector<Incident> incidents;  ///< worst first, at most 16 a frame
+  std::vector<InteractionForce> forces;  ///< one of each garment
+  std::vector<Incident> incidents;       ///< worst first, at most 16 a frame
   FrameProfile profile;
 };
 

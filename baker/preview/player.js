@@ -336,6 +336,14 @@
   plot('strain', ' %', [{ name: 'p99', values: column('strain_p99', 100) }, { name: 'max', values: column('strain_max', 100) }]);
   plot('smallest gap', ' mm', [{ name: '', values: column('smallest_gap', 1000) }]);
   plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'cloth', values: column('crossings_self', 1) }], true);
+  for (const [title, unit, of] of [['force on the body', ' N', (f) => f.force], ['torque on the body', ' N m', (f) => f.torque]]) {
+    const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map((f) => f.system)))];
+    if (names.length === 0) continue;
+    plot(title, unit, names.map((name) => ({ name: names.length > 1 ? name : '', values: bake.frames.map((row) => {
+      const force = (row.forces ?? []).find((f) => f.system === name);
+      return force ? Math.hypot(...of(force)) : null;
+    }) })));
+  }
   plot('time', ' ms', [{ name: '', values: column('milliseconds', 1) }]);
   if (wish.has('colour')) $('colour').value = wish.get('colour');
   legend();

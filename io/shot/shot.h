@@ -35,6 +35,7 @@ struct PrimarySpec {
   std::optional<double> source_fps;  ///< geometry caches: frames per second of the samples; default the shot's fps
   std::string body;                  ///< BVH: "blended" (default) or "capsules"
   std::optional<double> height;      ///< BVH and others: scale so that the bind pose is this tall [m]
+  std::optional<double> mass;        ///< kg; without it from the body's volume
   std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all
   Teleports teleports = Teleports::k_detect;
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending

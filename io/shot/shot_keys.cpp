@@ -42,6 +42,8 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "BVH, which has no body: how one is built around the skeleton"},
       {"height", &PrimarySpec::height, 0.05, 50, "m", "", false, "size",
        "Scales the character so that its bind pose is this tall"},
+      {"mass", &PrimarySpec::mass, 1e-3, 1e6, "kg", "", false, "weight",
+       "Mass, for the accelerations that its secondaries' forces would cause; without it from the body's volume"},
       {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects",
        "Names of the meshes that make the collider; without it all"},
       {"teleports", TeleportsKey{}, 0, 9'999'999, "", "", false, "teleport cuts jumps",

@@ -100,6 +100,13 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   report.smallest_gap = std::min(report.smallest_gap, result.smallest_gap);
   report.finite = report.finite && result.finite;
   ++report.pieces;
+  for (std::size_t g = 0; g < result.on_body.size(); ++g) {
+    AdvanceReport::OnBody& sum = report.on_body[g];
+    const double force = result.on_body[g].force.norm();
+    sum.impulse += h * result.on_body[g];
+    sum.peak = std::max(sum.peak, force);
+    if (force > 0) sum.contact_time += h;
+  }
   cloth.x_previous.swap(cloth.x);
   cloth.v_previous.swap(cloth.v);
   cloth.x.swap(s.x);
@@ -113,6 +120,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   const std::size_t nc = cloth.x.size(), nb = in.body_t0.size();
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
+  report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
   while (done < 1) {
     const auto clock = std::chrono::steady_clock::now();

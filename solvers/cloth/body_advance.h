@@ -24,10 +24,17 @@ struct SubstepInput {
   double shortest = 0;                     ///< pieces shorter than this [s] make the walk release
 };
 
+/// What the pieces of a substep add up to.
 struct AdvanceReport {
   int pieces = 0, newton_iterations = 0, linear_iterations = 0;
   double smallest_gap = 0;
   bool finite = true;
+  struct OnBody {
+    Wrench impulse;           ///< about the origin [N s]
+    double peak = 0;          ///< largest force of a piece [N]
+    double contact_time = 0;  ///< s
+  };
+  std::vector<OnBody> on_body;  ///< per garment
   double seconds_candidates = 0, seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
 

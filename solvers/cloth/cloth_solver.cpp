@@ -12,6 +12,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "baker/core/volume.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/body_ahead.h"
 #include "solvers/cloth/certificate.h"
@@ -69,6 +70,7 @@ class ClothSolver final : public Solver {
 
  private:
   struct Frame;
+  void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   void walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
@@ -171,6 +173,18 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
   return std::clamp(static_cast<int>(std::ceil(fastest / travel)), setup.min_substeps, setup.max_substeps);
 }
 
+/// Adds what a substep did to the body; torques are about the origin until the frame is over.
+void ClothSolver::add_forces(const AdvanceReport& step, double duration, FrameReport& report) const {
+  report.forces.resize(step.on_body.size());
+  for (std::size_t g = 0; g < step.on_body.size(); ++g) {
+    InteractionForce& sum = report.forces[g];
+    sum.system = model_->setup.garments[g].name;
+    sum.mean += (1 / duration) * step.on_body[g].impulse;
+    sum.peak = std::max(sum.peak, step.on_body[g].peak);
+    sum.contact_share = std::min(1.0, sum.contact_share + step.on_body[g].contact_time / duration);
+  }
+}
+
 void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
@@ -198,6 +212,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     report.linear_iterations += step.linear_iterations;
     report.smallest_gap = std::min(report.smallest_gap, step.smallest_gap);
     report.finite = report.finite && step.finite;
+    add_forces(step, frame.t1 - frame.t0, report);
     report.profile.candidates += step.seconds_candidates;
     report.profile.assembly += step.seconds_assembly;
     report.profile.linear += step.seconds_linear;
@@ -277,6 +292,8 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   report = std::move(best_report);
   motion = std::move(best);
   report.profile = spent;
+  const Vec3 centre = volume_centre(body_.end().feasible, collider_triangles());
+  for (InteractionForce& force : report.forces) force.mean = force.mean.moved(centre);
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();

@@ -187,6 +187,13 @@ double ContactPotential::value(std::span<const Vec3> x) const {
   return energy;
 }
 
+/// By the relative motion at the contact, which below eps is viscous [N].
+Vec3 ContactPotential::friction_gradient(const Lagged& f, std::span<const Vec3> x, double eps) const {
+  Vec3 u = slip(f.vertex, f.weight, x, x_start_);
+  u -= f.normal * f.normal.dot(u);
+  return (f.friction * f.normal_force / std::max(u.norm(), eps)) * u;
+}
+
 void ContactPotential::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   const int n = model_.cloth_vertex_count;
   for (const Contact& c : contacts_) {
@@ -197,12 +204,27 @@ void ContactPotential::add_gradient(std::span<const Vec3> x, std::span<Vec3> gra
   }
   const double eps = model_.sliding_speed * h_;
   for (const Lagged& f : lagged_) {
-    Vec3 u = slip(f.vertex, f.weight, x, x_start_);
-    u -= f.normal * f.normal.dot(u);
-    const Vec3 g = (f.friction * f.normal_force / std::max(u.norm(), eps)) * u;
+    const Vec3 g = friction_gradient(f, x, eps);
     for (std::size_t k = 0; k < 4; ++k)
       if (f.vertex[k] < n) gradient[at(f.vertex[k])] += f.weight[k] * g;
   }
+}
+
+void ContactPotential::add_body_wrenches(std::span<const Vec3> x, std::span<Wrench> of_garment) const {
+  const int n = model_.cloth_vertex_count;
+  const auto add = [&](const std::array<int, 4>& v, const std::array<double, 4>& weight, const Vec3& force) {
+    const bool first_cloth = v[0] < n, second_cloth = v[3] < n;
+    if (first_cloth == second_cloth) return;
+    Wrench& wrench = of_garment[at(model_.garment[at(first_cloth ? v[0] : v[3])])];
+    for (std::size_t k = 0; k < 4; ++k)
+      if (v[k] >= n) wrench.add(x[at(v[k])], weight[k] * force);
+  };
+  for (const Contact& c : contacts_) {
+    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
+    add(c.vertex, c.geometry.weight, law.force * c.geometry.normal);
+  }
+  const double eps = model_.sliding_speed * h_;
+  for (const Lagged& f : lagged_) add(f.vertex, f.weight, -friction_gradient(f, x, eps));
 }
 
 void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/wrench.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
 #include "solvers/linear/block_matrix.h"
@@ -59,6 +60,10 @@ class ContactPotential {
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const;  ///< N, cloth vertices only
   void add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const;
 
+  /// What contact and friction with the body do to it at the positions of the last update, by the cloth's garment,
+  /// about the origin.
+  void add_body_wrenches(std::span<const Vec3> x, std::span<Wrench> of_garment) const;
+
   /// Pairs that displacements dx [m] of the cloth can bring nearer than floor [m], for truncation.
   void near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out);
   std::span<const Contact> contacts() const { return contacts_; }
@@ -72,6 +77,7 @@ class ContactPotential {
     std::array<int, 4> vertex;
     double friction;
   };
+  Vec3 friction_gradient(const Lagged& lagged, std::span<const Vec3> x, double eps) const;
   double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction,
                      double* area) const;
   void update_kind(bool vertex_face, std::span<const Vec3> x);

@@ -237,6 +237,15 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = s.contact.smallest_gap();
+  result.on_body.resize(model_.setup.garments.size());
+  s.contact.add_body_wrenches(s.all, result.on_body);
+  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+    const PinPoint& pin = model_.pins[p];
+    if (s.pin_share[p] == 0) continue;
+    const Vec3 d = s.all[at(pin.vertex)] - in.pin_target[p];
+    result.on_body[at(model_.garment_of(pin.vertex))].add(in.pin_target[p],
+                                                          pin_spring(pin, s.pin_share[p], d.norm()).secant * d);
+  }
   const std::span<const Vec3> x = cloth(s.all);
   for (std::size_t i = 0; i < n; ++i) {
     x_out[i] = x[i];

@@ -47,6 +47,8 @@ struct StepResult {
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
   bool finite = true;
+  /// Per garment: what it does to the body at the end of the step, by contact, friction and pins; about the origin.
+  std::vector<Wrench> on_body;
   double seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
 

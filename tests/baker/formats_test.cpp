@@ -31,6 +31,12 @@ FrameReport example_report(int frame) {
   i.depth = 4e-3;
   i.text = "no room: \"elbow\"";
   r.incidents = {i, i};
+  InteractionForce f;
+  f.system = "dress";
+  f.mean = {Vec3(1.0 / 3, -5, 0), Vec3(0, 1e-17, 2)};
+  f.peak = 6;
+  f.contact_share = 0.75;
+  r.forces = {f};
   return r;
 }
 

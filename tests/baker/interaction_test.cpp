@@ -1,0 +1,112 @@
+// The table of forces: what it takes together, with which mass, and who is told.
+#include "baker/interaction.h"
+
+#include <gtest/gtest.h>
+
+#include "baker/core/file.h"
+#include "tests/baker/fake_bake.h"
+
+namespace ft {
+namespace {
+
+InteractionForce force_of(const char* system, const Vec3& force, double peak, double share = 1) {
+  InteractionForce out;
+  out.system = system;
+  out.mean = {force, Vec3(0, 0, 0.1 * force.norm())};
+  out.peak = peak;
+  out.contact_share = share;
+  return out;
+}
+
+/// Two garments on one primary: in frame 1 neither touches, in 2 only the vest, in 3 both; frame 0 is pre-roll.
+Manifest manifest_of_two() {
+  Manifest m;
+  m.fps = 10;
+  m.first_written = 1;
+  for (const char* name : {"vest", "belt"}) m.systems.push_back({name, "cloth", "runner", 4, 2, "", {}});
+  m.frames.resize(4);
+  for (int f = 0; f < 4; ++f) m.frames[at(f)].frame = f;
+  m.frames[0].forces = {force_of("vest", {0, -1000, 0}, 1000), force_of("belt", {0, -1000, 0}, 1000)};
+  m.frames[1].forces = {force_of("vest", {0, 0, 0}, 0, 0), force_of("belt", {0, 0, 0}, 0, 0)};
+  m.frames[2].forces = {force_of("vest", {0, -4, 0}, 5), force_of("belt", {0, 0, 0}, 0, 0)};
+  m.frames[3].forces = {force_of("vest", {0, -6, 0}, 9), force_of("belt", {8, 0, 0}, 8)};
+  return m;
+}
+
+std::vector<PrimaryPlan> runner(double kilograms) {
+  PrimaryPlan plan;
+  plan.name = "runner";
+  plan.mass = {kilograms, true, 0};
+  return {plan};
+}
+
+TEST(Interaction, Takes_the_frames_with_contact_of_each_secondary_and_of_all_together) {
+  const auto rows = interactions(manifest_of_two(), runner(50));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].secondary, "vest");
+  EXPECT_EQ(rows[0].frames, 2);
+  EXPECT_DOUBLE_EQ(rows[0].force.min, 4);
+  EXPECT_DOUBLE_EQ(rows[0].force.mean, 5);
+  EXPECT_DOUBLE_EQ(rows[0].force.max, 6);
+  EXPECT_DOUBLE_EQ(rows[0].torque.max, 0.6);
+  EXPECT_DOUBLE_EQ(rows[0].acceleration.mean, 0.1);
+  EXPECT_DOUBLE_EQ(rows[0].peak, 9);
+  EXPECT_NEAR(rows[0].impulse.y(), -1, 1e-12);
+  EXPECT_EQ(rows[1].secondary, "belt");
+  EXPECT_EQ(rows[1].frames, 1);
+  EXPECT_EQ(rows[2].secondary, "");
+  EXPECT_EQ(rows[2].frames, 2);
+  EXPECT_DOUBLE_EQ(rows[2].force.max, 10);  // of the sum, not the sum of sizes
+  EXPECT_DOUBLE_EQ(rows[2].peak, 17);
+}
+
+TEST(Interaction, Lines_name_the_mass_and_leave_out_what_never_touched) {
+  Manifest m = manifest_of_two();
+  m.frames.resize(3);
+  std::string all;
+  for (const std::string& line : interaction_lines(interactions(m, runner(50)), runner(50))) all += line + "\n";
+  EXPECT_NE(all.find("forces on \"runner\" (50 kg, as given)"), std::string::npos) << all;
+  EXPECT_NE(all.find("a = 0.08 / 0.08 / 0.08 m/s2"), std::string::npos) << all;
+  EXPECT_EQ(all.find("belt"), std::string::npos) << all;
+  m.frames.resize(2);
+  EXPECT_TRUE(interaction_lines(interactions(m, runner(50)), runner(50)).empty());
+}
+
+TEST(Interaction, Without_a_mass_there_is_no_acceleration_and_a_word_about_it) {
+  const auto rows = interactions(manifest_of_two(), runner(0));
+  EXPECT_EQ(rows[0].acceleration.max, 0);
+  std::string all;
+  for (const std::string& line : interaction_lines(rows, runner(0))) all += line + "\n";
+  EXPECT_NE(all.find("mass unknown"), std::string::npos) << all;
+  EXPECT_EQ(all.find("a ="), std::string::npos) << all;
+  EXPECT_TRUE(to_json(rows, runner(0)).at("masses").at("runner").at("kilograms").is_null());
+}
+
+TEST(Interaction, Is_in_the_report_of_a_bake_and_in_what_is_said_at_its_end) {
+  test::FakeScene scene;
+  scene.write_shot(10);
+  test::FakeBehaviour behaviour;
+  behaviour.after_frame = [](int frame, FrameReport& report, State&) {
+    report.forces = {force_of("sheet", {0, frame > 4 ? -3.0 : 0.0, 0}, 4, frame > 4 ? 1 : 0)};
+  };
+  test::RecordedProgress progress;
+  BakeOptions options = scene.options();
+  ASSERT_EQ(bake(options, scene.services(behaviour), progress).exit_code, 0);
+  ASSERT_EQ(progress.last.details.size(), 2u);
+  EXPECT_NE(progress.last.details[0].find("1010 kg, from its volume of 1"), std::string::npos)
+      << progress.last.details[0];
+  const auto report = parse_json(read_text(scene.folder().report()).value(), "report");
+  ASSERT_TRUE(report);
+  const Json& row = report->at("interaction").at("rows").at(0);
+  EXPECT_EQ(row.at("secondary"), "sheet");
+  EXPECT_EQ(row.at("frames"), 6);
+  EXPECT_EQ(row.at("force").at("mean"), 3);
+  EXPECT_NEAR(row.at("effective_acceleration").at("mean").get<double>(), 3 / 1010.0, 1e-5);
+  options.force = true;
+  options.overrides.push_back("primary.box.mass=60");
+  ASSERT_EQ(bake(options, scene.services(behaviour), progress).exit_code, 0);
+  EXPECT_NE(progress.last.details[0].find("(60 kg, as given)"), std::string::npos) << progress.last.details[0];
+}
+
+}  // namespace
+}  // namespace ft
