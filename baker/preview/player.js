@@ -336,7 +336,7 @@
   plot('strain', ' %', [{ name: 'p99', values: column('strain_p99', 100) }, { name: 'max', values: column('strain_max', 100) }]);
   plot('smallest gap', ' mm', [{ name: '', values: column('smallest_gap', 1000) }]);
   plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'cloth', values: column('crossings_self', 1) }], true);
-  for (const [title, unit, of] of [['force on the body', ' N', (f) => f.force], ['torque on the body', ' N m', (f) => f.torque]]) {
+  for (const [title, unit, of] of [['force', ' N', (f) => f.force], ['torque', ' N m', (f) => f.torque]]) {
     const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map((f) => f.system)))];
     if (names.length === 0) continue;
     plot(title, unit, names.map((name) => ({ name: names.length > 1 ? name : '', values: bake.frames.map((row) => {

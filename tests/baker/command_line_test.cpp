@@ -127,7 +127,7 @@ TEST_F(CommandLine, Help_and_version_are_exit_code_0) {
   EXPECT_EQ(run({"--version"}).out.rfind("followthrough 0.", 0), 0u);
   const Answer help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"bake", "info", "compare", "check", "preview", "validate"})
+  for (const char* command : {"bake", "info", "compare", "check", "preview", "validate", "advise"})
     EXPECT_NE(help.out.find(command), std::string::npos) << command;
   EXPECT_EQ(run({"bake", "--help"}).exit_code, 0);
 }
