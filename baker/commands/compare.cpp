@@ -198,9 +198,11 @@ int run_compare(const CompareOptions& options) {
     return exit_code(ErrorKind::k_usage);
   }
   const auto reports = compare_paths(options.a, options.b, options.tolerance);
-  fmt::print("{}", compare_text(reports));
+  std::vector<ForceComparison> forces;  // of folders that are bakes
+  if (const auto a = read_manifest(options.a), b = read_manifest(options.b); a && b) forces = compare_forces(*a, *b);
+  fmt::print("{}{}", compare_text(reports), to_text(forces));
   Status status;
-  if (!options.json.empty()) status = write_text_durably(options.json, compare_json(reports));
+  if (!options.json.empty()) status = write_text_durably(options.json, compare_json(reports, forces));
   if (status && !options.html.empty()) status = write_text_durably(options.html, compare_html(reports));
   if (status && !options.junit.empty()) status = write_text_durably(options.junit, compare_junit(reports));
   if (!status) {

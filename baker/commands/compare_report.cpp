@@ -96,12 +96,11 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
   return out;
 }
 
-std::string compare_json(const std::vector<CompareReport>& reports) {
-  using Json = nlohmann::ordered_json;
+std::string compare_json(const std::vector<CompareReport>& reports, const std::vector<ForceComparison>& forces) {
   const CompareVerdict verdict = overall_verdict(reports);
   Json all = {{"verdict", verdict_name(verdict)},
               {"exit_code", exit_code(verdict)},
-              {"units", "m, m/s"},
+              {"units", "m, m/s, N"},
               {"caches", Json::array()}};
   for (const CompareReport& r : reports) {
     Json j = {
@@ -119,6 +118,7 @@ std::string compare_json(const std::vector<CompareReport>& reports) {
     }
     all["caches"].push_back(std::move(j));
   }
+  if (!forces.empty()) all["forces"] = to_json(forces);
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/commands/compare_forces.h"
 #include "baker/core/file.h"
 #include "tests/baker/fake_bake.h"
 
@@ -80,6 +81,29 @@ TEST(Interaction, Without_a_mass_there_is_no_acceleration_and_a_word_about_it) {
   EXPECT_NE(all.find("mass unknown"), std::string::npos) << all;
   EXPECT_EQ(all.find("a ="), std::string::npos) << all;
   EXPECT_TRUE(to_json(rows, runner(0)).at("masses").at("runner").at("kilograms").is_null());
+}
+
+TEST(ForceComparison, Takes_the_frames_that_both_bakes_have) {
+  const Manifest a = manifest_of_two();
+  Manifest b = a;
+  b.frames[3].forces[0].mean.force = Vec3(0, -6, 2);
+  b.frames[3].forces[1].mean.force = Vec3(-8, 0, 0);
+  b.systems.pop_back();
+  auto forces = compare_forces(a, b);
+  ASSERT_EQ(forces.size(), 2u);
+  EXPECT_EQ(forces[0].system, "vest");
+  ASSERT_EQ(forces[0].frames.size(), 2u);
+  EXPECT_EQ(forces[0].frames[0].frame, 2);
+  EXPECT_EQ(forces[0].frames[0].apart, 0);
+  EXPECT_EQ(forces[0].worst, 1);
+  EXPECT_DOUBLE_EQ(forces[0].frames[1].apart, 2);
+  EXPECT_DOUBLE_EQ(forces[0].mean_a, 5);
+  EXPECT_DOUBLE_EQ(forces[0].max_b, std::sqrt(40.0));
+  EXPECT_DOUBLE_EQ(forces[1].frames[0].apart, 16);  // of the forces, not of their sizes
+  EXPECT_NE(to_text(forces).find("force of vest: mean 5 N in a"), std::string::npos) << to_text(forces);
+  EXPECT_EQ(to_json(forces).at(0).at("worst_frame"), 3);
+  for (FrameReport& frame : b.frames) frame.forces.clear();
+  EXPECT_TRUE(compare_forces(a, b).empty());
 }
 
 TEST(Interaction, Is_in_the_report_of_a_bake_and_in_what_is_said_at_its_end) {
