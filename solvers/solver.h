@@ -45,8 +45,8 @@ struct ProfilePhase {
 /// The one list of the phases; the total is not among them.
 std::span<const ProfilePhase> profile_phases();
 
-/// What one secondary did to its primary in one frame: contact, friction and pins. The paper's measure of what a
-/// coupling has to carry.
+/// What one secondary did to its primary in one frame by contact, friction and pins, from its change of momentum. The
+/// paper's measure of what a coupling has to carry.
 struct InteractionForce {
   std::string system;        ///< name of the garment
   Wrench mean;               ///< over the frame; the torque about the primary's centre of volume at the frame's end

@@ -194,37 +194,40 @@ Vec3 ContactPotential::friction_gradient(const Lagged& f, std::span<const Vec3> 
   return (f.friction * f.normal_force / std::max(u.norm(), eps)) * u;
 }
 
-void ContactPotential::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
+/// Of the contacts whose vertices count.
+template <class Counts>
+void ContactPotential::add_gradient_where(std::span<const Vec3> x, std::span<Vec3> gradient, Counts&& counts) const {
   const int n = model_.cloth_vertex_count;
-  for (const Contact& c : contacts_) {
-    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
-    const Vec3 g = -law.force * c.geometry.normal;
+  const auto add = [&](const std::array<int, 4>& v, const std::array<double, 4>& weight, const Vec3& g) {
     for (std::size_t k = 0; k < 4; ++k)
-      if (c.vertex[k] < n) gradient[at(c.vertex[k])] += c.geometry.weight[k] * g;
-  }
-  const double eps = model_.sliding_speed * h_;
-  for (const Lagged& f : lagged_) {
-    const Vec3 g = friction_gradient(f, x, eps);
-    for (std::size_t k = 0; k < 4; ++k)
-      if (f.vertex[k] < n) gradient[at(f.vertex[k])] += f.weight[k] * g;
-  }
-}
-
-void ContactPotential::add_body_wrenches(std::span<const Vec3> x, std::span<Wrench> of_garment) const {
-  const int n = model_.cloth_vertex_count;
-  const auto add = [&](const std::array<int, 4>& v, const std::array<double, 4>& weight, const Vec3& force) {
-    const bool first_cloth = v[0] < n, second_cloth = v[3] < n;
-    if (first_cloth == second_cloth) return;
-    Wrench& wrench = of_garment[at(model_.garment[at(first_cloth ? v[0] : v[3])])];
-    for (std::size_t k = 0; k < 4; ++k)
-      if (v[k] >= n) wrench.add(x[at(v[k])], weight[k] * force);
+      if (v[k] < n) gradient[at(v[k])] += weight[k] * g;
   };
   for (const Contact& c : contacts_) {
+    if (!counts(c.vertex)) continue;
     const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
-    add(c.vertex, c.geometry.weight, law.force * c.geometry.normal);
+    add(c.vertex, c.geometry.weight, -law.force * c.geometry.normal);
   }
   const double eps = model_.sliding_speed * h_;
-  for (const Lagged& f : lagged_) add(f.vertex, f.weight, -friction_gradient(f, x, eps));
+  for (const Lagged& f : lagged_)
+    if (counts(f.vertex)) add(f.vertex, f.weight, friction_gradient(f, x, eps));
+}
+
+void ContactPotential::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
+  add_gradient_where(x, gradient, [](const std::array<int, 4>&) { return true; });
+}
+
+void ContactPotential::add_gradient_between_garments(std::span<const Vec3> x, std::span<Vec3> gradient) const {
+  const int n = model_.cloth_vertex_count;
+  add_gradient_where(x, gradient, [&](const std::array<int, 4>& v) {
+    return v[0] < n && v[3] < n && model_.garment[at(v[0])] != model_.garment[at(v[3])];
+  });
+}
+
+void ContactPotential::mark_touching(std::span<char> of_garment) const {
+  const int n = model_.cloth_vertex_count;
+  for (const Contact& c : contacts_)
+    if ((c.vertex[0] < n) != (c.vertex[3] < n))
+      of_garment[at(model_.garment[at(c.vertex[0] < n ? c.vertex[0] : c.vertex[3])])] = 1;
 }
 
 void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const {

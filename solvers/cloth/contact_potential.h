@@ -11,7 +11,6 @@
 #include <span>
 #include <vector>
 
-#include "baker/core/wrench.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
 #include "solvers/linear/block_matrix.h"
@@ -60,9 +59,10 @@ class ContactPotential {
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const;  ///< N, cloth vertices only
   void add_terms(std::span<const Vec3> x, std::vector<PairTerm>& terms) const;
 
-  /// What contact and friction with the body do to it at the positions of the last update, by the cloth's garment,
-  /// about the origin.
-  void add_body_wrenches(std::span<const Vec3> x, std::span<Wrench> of_garment) const;
+  /// Of add_gradient() what garments do to each other alone.
+  void add_gradient_between_garments(std::span<const Vec3> x, std::span<Vec3> gradient) const;
+  /// Marks the garments that touched the body at the last update.
+  void mark_touching(std::span<char> of_garment) const;
 
   /// Pairs that displacements dx [m] of the cloth can bring nearer than floor [m], for truncation.
   void near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out);
@@ -77,6 +77,8 @@ class ContactPotential {
     std::array<int, 4> vertex;
     double friction;
   };
+  template <class Counts>
+  void add_gradient_where(std::span<const Vec3> x, std::span<Vec3> gradient, Counts&& counts) const;
   Vec3 friction_gradient(const Lagged& lagged, std::span<const Vec3> x, double eps) const;
   double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction,
                      double* area) const;

@@ -74,6 +74,7 @@ struct ImplicitStep::Scratch {
   std::vector<Vec3> y, gradient, direction, common, all, trial;
   std::vector<double> share, missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
+  std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
   std::vector<PairTerm> terms;
   ContactPairs near;
 };
@@ -121,6 +122,10 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.pin_share.resize(model_.pins.size());
   for (std::size_t p = 0; p < s.pin_share.size(); ++p) s.pin_share[p] = model_.pins[p].hold.share(in.time);
 
+  s.touches.assign(model_.setup.garments.size(), 0);
+  for (std::size_t p = 0; p < model_.pins.size(); ++p)
+    if (s.pin_share[p] > 0) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
+
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
   const auto potential_of_cloth = [&](std::span<const Vec3> x) {
@@ -149,6 +154,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   bool settled = false;
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     s.contact.lag_friction();
+    s.contact.mark_touching(s.touches);
     const std::span<const Vec3> x(s.all.data(), n);
     parallel_for(n, 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) s.gradient[i] = (model_.mass[i] * inertia) * (x[i] - s.y[i]);
@@ -237,15 +243,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = s.contact.smallest_gap();
-  result.on_body.resize(model_.setup.garments.size());
-  s.contact.add_body_wrenches(s.all, result.on_body);
-  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
-    const PinPoint& pin = model_.pins[p];
-    if (s.pin_share[p] == 0) continue;
-    const Vec3 d = s.all[at(pin.vertex)] - in.pin_target[p];
-    result.on_body[at(model_.garment_of(pin.vertex))].add(in.pin_target[p],
-                                                          pin_spring(pin, s.pin_share[p], d.norm()).secant * d);
-  }
+  measure_on_body(inertia, result);
   const std::span<const Vec3> x = cloth(s.all);
   for (std::size_t i = 0; i < n; ++i) {
     x_out[i] = x[i];
@@ -253,6 +251,25 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   }
   result.finite = result.finite && all_finite(x_out);
   return result;
+}
+
+/// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has
+/// settled the cloth gets less of them. What is left of a garment's change of momentum after gravity, air and other
+/// garments came from the body.
+void ImplicitStep::measure_on_body(double inertia, StepResult& result) {
+  Scratch& s = *scratch_;
+  const std::size_t garments = model_.setup.garments.size(), n = s.y.size();
+  result.on_body.resize(garments);
+  if (std::none_of(s.touches.begin(), s.touches.end(), [](char c) { return c != 0; })) return;
+  const std::span<const Vec3> x(s.all.data(), n);
+  std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
+  for (const auto& energy : model_.energies)
+    if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
+  if (garments > 1) s.contact.add_gradient_between_garments(s.all, s.gradient);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t g = at(model_.contact.garment[i]);
+    if (s.touches[g] != 0) result.on_body[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));
+  }
 }
 
 }  // namespace ft

@@ -23,6 +23,7 @@ class AirDrag final : public Energy {
  public:
   AirDrag(const ClothTopology& topology, const AirSettings& air);
   std::string_view name() const override { return "air_drag"; }
+  bool is_internal() const override { return false; }
   std::vector<std::array<int, 4>> stencils() const override { return {}; }
   void begin_step(const StepContext& context) override;
   double value(std::span<const Vec3> x) const override;

@@ -14,6 +14,7 @@ class Attachments final : public Cords {
  public:
   explicit Attachments(const ClothTopology& topology);
   std::string_view name() const override { return "attachments"; }
+  bool is_internal() const override { return false; }
   void begin_step(const StepContext& context) override;
 
  private:

@@ -37,6 +37,8 @@ class Energy {
   virtual std::string_view name() const = 0;
   /// Vertices coupled by each element; builds the pattern. -1 marks an unused slot.
   virtual std::vector<std::array<int, 4>> stencils() const = 0;
+  /// Whether its forces on one garment add up to nothing, and their torques: elasticity and its damping.
+  virtual bool is_internal() const { return true; }
   /// Forgets the last step, takes over this one's context.
   virtual void begin_step(const StepContext&) {}
   virtual double value(std::span<const Vec3> x) const = 0;                                 ///< J

@@ -86,11 +86,10 @@ TEST(InteractionForce, Cloth_that_rests_on_a_ball_presses_on_it_with_its_weight)
 
 /// Frames in which a ball strikes a sheet from below and carries it; the largest part of a frame's impulse on the ball
 /// that the sheet does not lose.
-double unbalanced_share(double friction) {
+double unbalanced_share(double friction, int newton) {
   ClothSetup setup = sheet_over(ball([](double t) { return Vec3(0, 2 * t - 0.4, 0.5 * t); }), 0);
   setup.bdf2 = false;  // one step's forces make one step's change of momentum
-  setup.newton_iterations = 30;
-  setup.linear_tolerance = 1e-6;
+  setup.newton_iterations = newton;
   setup.garments[0].friction = setup.garments[0].self_friction = friction;
   auto solver = solver_of(setup);
   State state = solver->initial_state();
@@ -109,8 +108,11 @@ double unbalanced_share(double friction) {
 }
 
 TEST(InteractionForce, What_the_ball_is_given_is_what_the_cloth_loses) {
-  EXPECT_LT(unbalanced_share(0), 1e-5);    // Newton stops when nothing moves by a ten-thousandth of the contact radius
-  EXPECT_LT(unbalanced_share(0.4), 1e-2);  // and settles more slowly with friction, which is lagged
+  // The rest is what the linear solver leaves in steps in which the ball has no hold on the sheet.
+  for (const double friction : {0.0, 0.4}) {
+    EXPECT_LT(unbalanced_share(friction, 3), 1e-3) << friction;
+    EXPECT_LT(unbalanced_share(friction, 30), 1e-6) << friction;
+  }
 }
 
 TEST(InteractionForce, Pins_carry_the_weight_of_cloth_that_hangs) {
