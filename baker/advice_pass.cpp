@@ -103,11 +103,13 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
   const Shot& shot = plan->shot();
   AdvicePass out;
   out.shot_frames = shot.last_frame - shot.first_frame + (shot.preroll > 0 ? 1 : 0);  // the very first is not walked to
+  out.frames = out.shot_frames;
   double frame_seconds = 0;
   std::vector<FrameReport> reports;
-  for (GroupPlan& group : plan->groups) {
+  auto left = static_cast<double>(plan->groups.size());  // groups that share what is left of the time
+  for (const GroupPlan& group : plan->groups) {
     const PrimaryPlan& primary = plan->primaries[group.primary];
-    const double share = (options.seconds - since(clock)) / static_cast<double>(&plan->groups.back() - &group + 1);
+    const double share = (options.seconds - since(clock)) / left--;
     const auto begin = Clock::now();
     auto solver = services.make_solver(group.setup);
     if (!solver) return solver.error();
@@ -126,7 +128,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     }
     if (walked > 0) frame_seconds += since(walk_clock) / walked;
     const int measured = static_cast<int>(reports.size());
-    out.frames = out.frames == 0 ? measured : std::min(out.frames, measured);
+    out.frames = std::min(out.frames, measured);
     if (measured < out.shot_frames)
       out.notes.push_back(fmt::format("\"{}\": {} of {} frames were measured in the time given; --seconds gives more",
                                       primary.name, measured, out.shot_frames));
