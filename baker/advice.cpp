@@ -46,8 +46,8 @@ Significance judge_significance(const Evidence& e, Context context, const Advice
     return Significance::k_none;
   }
   if (e.displacement && *e.displacement < t.displacement) {
-    say(fmt::format("insignificant: {:.3g} m/s2 (p95) would move the primary by only {:.2g} mm", a,
-                    1e3 * *e.displacement));
+    say(fmt::format("insignificant: {:.3g} m/s2 (p95) last too short to move the primary by {:g} mm", a,
+                    1e3 * t.displacement));
     return Significance::k_none;
   }
   if (a < t.significant) {
@@ -124,6 +124,12 @@ std::optional<Context> context_from(const std::string& name) {
   for (const ContextName& c : k_contexts)
     if (name == c.name) return c.context;
   return {};
+}
+
+std::vector<std::string> context_names() {
+  std::vector<std::string> out;
+  for (const ContextName& c : k_contexts) out.emplace_back(c.name);
+  return out;
 }
 
 Advice advise(const Evidence& e, Context context, const AdviceThresholds& t) {

@@ -23,6 +23,7 @@ const char* name(Coupling coupling);
 /// Whether anybody looks at it.
 enum class Context { k_none, k_background, k_far, k_occluded, k_hero };
 std::optional<Context> context_from(const std::string& name);
+std::vector<std::string> context_names();
 
 struct AdviceThresholds {
   double insignificant = 1;    ///< effective acceleration below it is not noticed [m/s2] (O'Brien et al. 2000)

@@ -51,7 +51,8 @@ class PairFinder {
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
   /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when
-  /// only their boxes have grown or moved since the last search. Costs little where few have.
+  /// only their boxes have grown or moved. All other boxes must be those of the last search. Costs little where few
+  /// have changed.
   void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out);
 
  private:

@@ -76,7 +76,7 @@ void add_advise_command(CLI::App& app, int& exit_code) {
       ->add_option("--context", a->context,
                    "How it is seen: background, far and occluded need no answer of the primary; hero does")
       ->type_name("CONTEXT")
-      ->check(CLI::IsMember({"background", "far", "occluded", "hero"}));
+      ->check(CLI::IsMember(context_names()));
   command->add_option("--json", a->json, "Write advice, evidence and thresholds to this file")->type_name("FILE");
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }

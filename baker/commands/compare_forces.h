@@ -2,7 +2,6 @@
 // beside the caches and of no effect on the verdict: forces follow from positions.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

@@ -8,8 +8,9 @@
 
 namespace ft {
 
-/// Volume of all points with a positive winding number [m3], from columns through the surface `spacing` [m] apart; the
-/// error is about the area times a tenth of the spacing. None for a surface that is open or turned inside out.
+/// Volume of all points with a positive winding number [m3], from columns through the surface `spacing` [m] apart: the
+/// error is at most the area times the spacing, and much less where the surface is curved. None for a surface that is
+/// open or turned inside out.
 std::optional<double> enclosed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                       double spacing);
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/wrench.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/linear/linear_system.h"
 

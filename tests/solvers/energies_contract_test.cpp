@@ -274,6 +274,21 @@ Eigen::MatrixXd true_hessian(const Energy& energy, std::vector<Vec3> x) {
   return 0.5 * (out + out.transpose());
 }
 
+TEST_P(EnergyContract, What_is_internal_pulls_at_nothing_outside) {
+  if (!energy_->is_internal()) GTEST_SKIP() << "not internal";
+  const Scene s = make_scene(*energy_, topology_, 5, 2e-3);
+  energy_->begin_step(s.context());
+  const Eigen::VectorXd g = gradient_of(*energy_, s.x);
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    const Vec3 f = g.segment<3>(static_cast<Eigen::Index>(3 * i));
+    force += f, moment += s.x[i].cross(f);
+  }
+  EXPECT_GT(g.norm(), 0);
+  EXPECT_LT(force.norm(), 1e-12 * g.norm());
+  EXPECT_LT(moment.norm(), 1e-12 * g.norm());
+}
+
 TEST_P(EnergyContract, Hessian_is_the_true_one_or_more_than_half_of_it) {
   // Where nothing is clamped or dropped for definiteness. Membrane: stretched, all stress positive. Bending: at the
   // rest shape, where the moment is zero. Drag: quadratic.
