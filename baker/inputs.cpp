@@ -53,6 +53,15 @@ bool shapes_the_bake(const std::string& key) {
   return true;
 }
 
+/// The feasible collider of a primary has a cache of its own.
+Status judge_cache_name(const Shot& shot, const std::string& kind, const std::string& name) {
+  for (const PrimarySpec& primary : shot.primaries)
+    if (primary.name + ".collider" == name)
+      return usage_error(kind + " \"" + name + "\" has the name of a cache of primary \"" + primary.name + "\"",
+                         shot.file.string(), "give it another name");
+  return {};
+}
+
 }  // namespace
 
 ShotVocabulary shot_vocabulary() {
@@ -100,11 +109,16 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
       if (const Status added = add_values("maps", i, cloth.maps[i].file); !added) return added.error();
     for (std::size_t i = 0; i < cloth.pins.size(); ++i)
       if (const Status added = add_values("pins", i, cloth.pins[i].file); !added) return added.error();
-    for (const PrimarySpec& primary : s.primaries)
-      if (primary.name + ".collider" == cloth.name)
-        return usage_error("cloth \"" + cloth.name + "\" has the name of a cache of primary \"" + primary.name + "\"",
-                           shot_file.string(), "give it another name");
+    if (const Status free = judge_cache_name(s, "cloth", cloth.name); !free) return free.error();
   }
+  for (const CordsSpec& cords : s.cords) {
+    if (const Status added = add_file(inputs, "cords." + cords.name + ".mesh", cords.mesh); !added)
+      return added.error();
+    if (const Status free = judge_cache_name(s, "cords", cords.name); !free) return free.error();
+  }
+  for (const StandInKeys& standin : s.standins)
+    if (const Status added = add_file(inputs, "standin." + standin.name + ".mesh", standin.mesh); !added)
+      return added.error();
   for (auto& [key, value] : settings(s))
     if (shapes_the_bake(key)) inputs.settings.emplace_back(key, value);
   inputs.fingerprint = fingerprint(inputs);

@@ -19,7 +19,10 @@ namespace ft {
 /// What is done about a primary that jumps to another place between two frames.
 enum class Teleports { k_detect, k_ignore, k_frames };
 
-/// [primary.NAME]: what drives.
+/// When a prop begins to move by itself.
+enum class Release { k_start, k_frame, k_contact };
+
+/// [primary.NAME]: what drives: a character or cache from a file, or a prop of a plain shape.
 struct PrimarySpec {
   std::string name;
   std::filesystem::path file;  ///< character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (PC2; MDD, OBJ sequence)
@@ -39,6 +42,18 @@ struct PrimarySpec {
   std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all
   Teleports teleports = Teleports::k_detect;
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
+  std::string shape;                 ///< "sphere", "box", "capsule" instead of `file`; empty: from the file
+  std::optional<double> radius;      ///< sphere, capsule [m]
+  Vec3 size = Vec3::Zero();          ///< box [m]
+  std::optional<double> length;      ///< capsule: between the centres of its ends, along y [m]
+  Vec3 position = Vec3::Zero();      ///< of a shape's centre at the first frame [m]
+  Vec3 rotation_deg = Vec3::Zero();  ///< of a shape at the first frame: about x, then y, then z of the world
+  Vec3 velocity = Vec3::Zero();      ///< of a shape, constant until it is released [m/s]
+  Vec3 spin = Vec3::Zero();          ///< of a shape, world axes, constant until it is released [rad/s]
+  bool hollow = false;               ///< its mass lies in its surface
+  Vec3 inertia = Vec3::Zero();       ///< principal moments about its centre [kg m2]; zero: from shape and mass
+  Release release = Release::k_start;
+  double release_frame = 0;  ///< k_frame: from here on only forces move it
 };
 
 /// One way to hold a garment to its primary, or to a garment.
@@ -88,6 +103,65 @@ struct ClothSpec {
   double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
   double self_friction = 0.3;  ///< among cloths
   bool self_collision = true;
+  std::string coupling = "one-way";  ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
+};
+
+/// [cords.NAME]: what follows, of cords: a net, a rope, a chain of knots, the edges of a mesh.
+struct CordsSpec {
+  std::string name;
+  std::string shape;                           ///< "net", "rope", "knots", "mesh"
+  int columns = 12, rows = 6;                  ///< net: loops at the rim, rings of knots below it
+  double radius_top = 0.225;                   ///< net: of the rim [m]
+  double radius_bottom = 0.12, length = 0.42;  ///< net [m]
+  int points = 0;                              ///< pieces a side, a rope, between two knots, an edge; 0: 2, 32, 4, 1
+  Vec3 position = Vec3::Zero();                ///< centre of the rim, start of a rope, offset of a mesh [m]
+  Vec3 to = Vec3::Zero();                      ///< rope, knots: its other end [m]
+  int knots = 1;                               ///< knots: how many, evenly spaced, the last at the end
+  double knot_mass = 0;                        ///< kg each, of `mass`
+  std::filesystem::path mesh;                  ///< OBJ whose edges are cords
+  double unit_scale = 1;                       ///< m per mesh unit
+  std::string up = "y";                        ///< of the mesh
+  std::string held;                            ///< rope, knots: "start" (default), "end", "both", "none"; mesh: a group
+  double mass = 0;                             ///< kg, all of it
+  double stretch = 3000;                       ///< EA: force at a strain of 1 [N]
+  double bend = 0;                             ///< EI [N m2]
+  double damping = 1e-4;                       ///< of stretch and bend, in units of their stiffness [s]
+  double radius = 1.5e-3;                      ///< of a cord, drawn and in contact [m]
+  double friction = 0.4;                       ///< Coulomb coefficient
+  bool self_collision = false;
+  double hold_stiffness = 2e4;  ///< of the springs that hold points [N/m]
+  std::string on;               ///< name of the primary
+  std::string coupling = "one-way";
+};
+
+/// [standin.NAME]: what a primary meets in the place of a hybrid secondary. Members have the names of their keys.
+struct StandInKeys {
+  std::string name;
+  std::string kind;                          ///< "damping", "mat", "water", "spring", "weight", "fitted"
+  std::string stands_for;                    ///< key `for`: name of the secondary
+  std::string shape;                         ///< of a volume: "box", "cone", "mesh"
+  Vec3 position = Vec3::Zero();              ///< m: centre of a box, of a cone's top; offset of a mesh; level
+  Vec3 size = Vec3::Zero();                  ///< box [m]
+  double radius_top = 0, radius_bottom = 0;  ///< cone [m]
+  double height = 0;                         ///< cone, from its top down [m]
+  std::filesystem::path mesh;                ///< closed OBJ
+  double soft_edge = 0;                      ///< m inwards from its surface until it acts in full
+  double damping = 0;                        ///< force per velocity [N s/m]
+  double damping_quadratic = 0;              ///< force per velocity squared [N s2/m2]
+  double damping_spin = 0;                   ///< torque per angular velocity [N m s]
+  double stiffness = 0;                      ///< N/m
+  double stiffness_cubic = 0;                ///< N/m3
+  std::optional<double> damping_ratio;       ///< of the critical damping of the primary's mass on it
+  double density = 1000;                     ///< water [kg/m3]
+  double drag = 1;                           ///< water: drag coefficient
+  double slam = 0;                           ///< water: slamming coefficient at entry
+  double length = 0;                         ///< spring: it pulls when it is longer [m]
+  Vec3 anchor = Vec3::Zero();                ///< spring: its end in the world [m]
+  double mass = 0;                           ///< weight that is carried [kg]
+  std::string support = "add";               ///< "add": beside what the clip holds; "replace": instead of it
+  double gain = 1;                           ///< of all its forces
+  std::optional<double> from, until;         ///< frames at which it begins and ends to act
+  std::optional<double> limit_force;         ///< N
 };
 
 struct WindSpec {
@@ -113,12 +187,15 @@ struct Shot {
   std::string quality = "final";  ///< "final" or "preview"
   std::vector<PrimarySpec> primaries;
   std::vector<ClothSpec> cloths;
+  std::vector<CordsSpec> cords;
+  std::vector<StandInKeys> standins;
   WindSpec wind;
   SolverSpec solver;
   std::vector<std::string> cache_formats = {"abc", "pc2"};
-  bool cache_collider = true;   ///< the feasible collider, beside the cloth
-  double gate_p99_strain = 0;   ///< quality gate: exit code 4 above it; 0 off
-  bool gate_crossings = false;  ///< exit code 4 when any frame has crossings
+  bool cache_collider = true;      ///< the feasible collider, beside the cloth
+  double gate_p99_strain = 0;      ///< quality gate: exit code 4 above it; 0 off
+  bool gate_crossings = false;     ///< exit code 4 when any frame has crossings
+  std::vector<std::string> notes;  ///< what is allowed and may be a mistake: a stand-in that is not used
 };
 
 /// A fabric's key that a cloth may override. Made from a bare name it has no range.

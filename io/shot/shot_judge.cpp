@@ -1,7 +1,6 @@
 #include "io/shot/shot_judge.h"
 
 #include <algorithm>
-#include <initializer_list>
 
 #include "io/shot/words.h"
 
@@ -10,37 +9,26 @@ namespace {
 
 constexpr int k_most_frames = 100'000;
 
-/// Where a path of keys stands; as far as it exists.
-Place place_of(const Value& root, std::initializer_list<std::string_view> path) {
-  const Value* value = &root;
-  Place place;
-  for (const std::string_view key : path) {
-    const Member* member = value->find(key);
-    if (member == nullptr) break;
-    place = member->place;
-    value = &member->value;
-    if (value->kind != Value::Kind::k_table) return value->place;
-  }
-  return place;
-}
-
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-void judge_wearer(const Value& root, ClothSpec& cloth, const std::vector<std::string>& primaries, FaultList& faults) {
-  const std::string owner = "cloth " + in_quotes(cloth.name);
-  if (contains(primaries, cloth.name))
-    faults.add(place_of(root, {"cloth", cloth.name}),
+/// kind: "cloth" or "cords".
+template <class Spec>
+void judge_wearer(const Value& root, std::string_view kind, Spec& spec, const std::vector<std::string>& primaries,
+                  FaultList& faults) {
+  const std::string owner = std::string(kind) + " " + in_quotes(spec.name);
+  if (contains(primaries, spec.name))
+    faults.add(place_of(root, {kind, spec.name}),
                owner + ": a primary has the same name, their caches would overwrite each other");
-  if (cloth.on.empty() && primaries.size() == 1) cloth.on = primaries.front();
-  if (primaries.empty() || contains(primaries, cloth.on)) return;
-  const Place place = place_of(root, {"cloth", cloth.name, "on"});
-  if (cloth.on.empty())
+  if (spec.on.empty() && primaries.size() == 1) spec.on = primaries.front();
+  if (primaries.empty() || contains(primaries, spec.on)) return;
+  const Place place = place_of(root, {kind, spec.name, "on"});
+  if (spec.on.empty())
     faults.add(place, owner + ": on is missing; it says who wears it (one of: " + joined(primaries) + ")");
   else
-    faults.add(place, with_hint(owner + ": on = " + in_quotes(cloth.on) + " names no primary",
-                                suggestion(cloth.on, primaries)));
+    faults.add(place,
+               with_hint(owner + ": on = " + in_quotes(spec.on) + " names no primary", suggestion(spec.on, primaries)));
 }
 
 /// Pins that hold to a cloth: only what one primary wears is solved together.
@@ -66,6 +54,19 @@ void judge_attachments(const Value& root, const ClothSpec& cloth, const std::vec
 }
 
 }  // namespace
+
+Place place_of(const Value& root, std::initializer_list<std::string_view> path) {
+  const Value* value = &root;
+  Place place;
+  for (const std::string_view key : path) {
+    const Member* member = value->find(key);
+    if (member == nullptr) break;
+    place = member->place;
+    value = &member->value;
+    if (value->kind != Value::Kind::k_table) return value->place;
+  }
+  return place;
+}
 
 std::optional<FrameRange> read_frames(const ValueReader& reader, const Value& value) {
   std::string shown, fault;
@@ -111,6 +112,34 @@ void read_vertices(const ValueReader& reader, const Value& value, std::vector<in
     reader.fault(value, fault);
 }
 
+void read_teleports(const ValueReader& reader, const Value& value, const Allowed& frames, PrimarySpec& spec) {
+  const bool number = value.kind == Value::Kind::k_integer || value.kind == Value::Kind::k_number;
+  if (value.kind == Value::Kind::k_text) {
+    if (!reader.is_one_of(value, value.text, std::vector<std::string>{"detect", "ignore"})) return;
+    spec.teleports = value.text == "detect" ? Teleports::k_detect : Teleports::k_ignore;
+  } else if (value.kind == Value::Kind::k_list || number) {
+    spec.teleports = Teleports::k_frames;
+    for (const Value& item : number ? std::vector<Value>{value} : value.items)
+      if (const auto frame = reader.number(item, frames)) spec.teleport_frames.push_back(static_cast<int>(*frame));
+    auto& all = spec.teleport_frames;
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+  } else {
+    reader.fault(value, "needs \"detect\", \"ignore\" or a list of frames like [1041], not " + describe(value));
+  }
+}
+
+void read_release(const ValueReader& reader, const Value& value, const Allowed& frames, PrimarySpec& spec) {
+  if (value.kind == Value::Kind::k_integer || value.kind == Value::Kind::k_number) {
+    const auto frame = reader.number(value, frames);
+    if (frame) spec.release = Release::k_frame, spec.release_frame = *frame;
+  } else if (value.kind == Value::Kind::k_text && value.text == "contact") {
+    spec.release = Release::k_contact;
+  } else {
+    reader.fault(value, "needs a frame or \"contact\", not " + describe(value));
+  }
+}
+
 void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin, FaultList& faults) {
   const Member *until = value.find("until"), *fade = value.find("fade"), *opens = value.find("opens");
   if (until && pin.from && pin.until && !(*pin.from < *pin.until))
@@ -129,7 +158,8 @@ void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin
 void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
   if (root.find("shot") == nullptr) faults.add({}, "has no [shot] section: frames = \"1-100\" is needed");
   if (shot.primaries.empty()) faults.add({}, "has no [primary.NAME] section: the character that the cloth is worn by");
-  if (shot.cloths.empty()) faults.add({}, "has no [cloth.NAME] section: there is nothing to bake");
+  if (shot.cloths.empty() && shot.cords.empty())
+    faults.add({}, "has no [cloth.NAME] or [cords.NAME] section: there is nothing to bake");
   const int low = shot.solver.min_substeps, high = shot.solver.max_substeps;
   if (low > high) {
     const Member* solver = root.find("solver");
@@ -139,8 +169,16 @@ void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
   }
   std::vector<std::string> primaries;
   for (const PrimarySpec& primary : shot.primaries) primaries.push_back(primary.name);
-  for (ClothSpec& cloth : shot.cloths) judge_wearer(root, cloth, primaries, faults);
+  for (ClothSpec& cloth : shot.cloths) judge_wearer(root, "cloth", cloth, primaries, faults);
+  for (CordsSpec& cords : shot.cords) {
+    judge_wearer(root, "cords", cords, primaries, faults);
+    if (std::any_of(shot.cloths.begin(), shot.cloths.end(), [&](const auto& c) { return c.name == cords.name; }))
+      faults.add(place_of(root, {"cords", cords.name}), "cords " + in_quotes(cords.name) +
+                                                            ": a cloth has the same name, their caches would overwrite "
+                                                            "each other");
+  }
   for (const ClothSpec& cloth : shot.cloths) judge_attachments(root, cloth, shot.cloths, primaries, faults);
+  judge_couplings(root, shot, faults);
 }
 
 }  // namespace ft

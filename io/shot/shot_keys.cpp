@@ -22,8 +22,8 @@ std::span<const ShotKey<Shot>> shot_keys() {
 
 std::span<const ShotKey<PrimarySpec>> primary_keys() {
   static const ShotKey<PrimarySpec> keys[] = {
-      {"file", &PrimarySpec::file, 0, 0, "", "", true, "mesh path model character",
-       "Character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (PC2, MDD, OBJ sequence)"},
+      {"file", &PrimarySpec::file, 0, 0, "", "", false, "mesh path model character",
+       "Character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (PC2, MDD, OBJ sequence); or `shape`, below"},
       {"animation", &PrimarySpec::animation, 0, 0, "", "", false, "motion anim",
        "Second file with the motion for the skeleton in `file`, matched by node name"},
       {"topology", &PrimarySpec::topology, 0, 0, "", "", false, "faces mesh",
@@ -43,7 +43,8 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
       {"height", &PrimarySpec::height, 0.05, 50, "m", "", false, "size",
        "Scales the character so that its bind pose is this tall"},
       {"mass", &PrimarySpec::mass, 1e-3, 1e6, "kg", "", false, "weight",
-       "Mass, for the accelerations that its secondaries' forces would cause; without it from the body's volume"},
+       "Mass, for the accelerations that its secondaries' forces cause; without it from the body's volume. Two-way "
+       "coupling needs it"},
       {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects",
        "Names of the meshes that make the collider; without it all"},
       {"teleports", TeleportsKey{}, 0, 9'999'999, "", "", false, "teleport cuts jumps",
@@ -87,6 +88,10 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"self_friction", &ClothSpec::self_friction, 0, 2, "1", "", false, "", "Coulomb coefficient among cloths"},
       {"self_collision", &ClothSpec::self_collision, 0, 0, "", "", false, "self_contact",
        "Cloth meets itself and other cloths"},
+      {"coupling", &ClothSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",
+       "Who feels whom: `one-way`, it feels the primary; `hybrid`, the primary yields to its stand-ins first; "
+       "`two-way` "
+       "is for cords"},
   };
   return keys;
 }
@@ -196,7 +201,13 @@ std::vector<std::string> split_words(std::string_view words) {
 }
 
 std::vector<std::string> section_names() {
-  return {"shot", "primary", "cloth", "wind", "solver", "cache", "gate"};
+  return {"shot", "primary", "cloth", "cords", "standin", "wind", "solver", "cache", "gate"};
+}
+
+bool is_named_section(std::string_view section) {
+  bool named = false;
+  for_each_named_section([&](std::string_view name, auto) { named = named || name == section; });
+  return named;
 }
 
 std::string home_of(std::string_view key) {
@@ -205,10 +216,10 @@ std::string home_of(std::string_view key) {
     for (const auto& k : keys)
       if (k.name == key && home.empty()) home = std::string("[").append(section).append("]");
   });
-  for (const auto& k : primary_keys())
-    if (k.name == key && home.empty()) home = "[primary.NAME]";
-  for (const auto& k : cloth_keys())
-    if (k.name == key && home.empty()) home = "[cloth.NAME]";
+  for_each_named_section([&](std::string_view section, auto keys) {
+    for (const auto& k : keys)
+      if (k.name == key && home.empty()) home = std::string("[").append(section).append(".NAME]");
+  });
   return home;
 }
 

@@ -16,6 +16,13 @@ namespace {
 
 constexpr std::uint64_t k_max_shot_bytes = 16 << 20;
 
+/// Of a character and of a prop; judge_couplings says which go together.
+std::vector<ShotKey<PrimarySpec>> every_primary_key() {
+  std::vector<ShotKey<PrimarySpec>> out(primary_keys().begin(), primary_keys().end());
+  out.insert(out.end(), prop_keys().begin(), prop_keys().end());
+  return out;
+}
+
 class ShotReader {
  public:
   ShotReader(const std::filesystem::path& file, const ShotVocabulary& vocabulary, FaultList& faults)
@@ -37,9 +44,13 @@ class ShotReader {
       else if (member.key == "gate")
         section(shot_, gate_keys());
       else if (member.key == "primary")
-        read_named(member, shot_.primaries);
+        read_named(member, shot_.primaries, std::span<const ShotKey<PrimarySpec>>(primary_keys_));
       else if (member.key == "cloth")
-        read_named(member, shot_.cloths);
+        read_named(member, shot_.cloths, cloth_keys());
+      else if (member.key == "cords")
+        read_named(member, shot_.cords, cords_keys());
+      else if (member.key == "standin")
+        read_named(member, shot_.standins, standin_keys());
       else
         refuse_section(member);
     }
@@ -72,9 +83,9 @@ class ShotReader {
     read_keys("[" + member.key + "]", member.value, spec, keys);
   }
 
-  /// [primary.NAME], [cloth.NAME].
+  /// [primary.NAME], [cloth.NAME], ...
   template <class Spec>
-  void read_named(const Member& member, std::vector<Spec>& specs) {
+  void read_named(const Member& member, std::vector<Spec>& specs, std::span<const ShotKey<Spec>> keys) {
     const std::string& kind = member.key;
     const std::string form = "write [" + kind + ".NAME], one section for each";
     if (member.value.kind != Value::Kind::k_table) {
@@ -93,10 +104,7 @@ class ShotReader {
       spec.name = named.key;
       const std::string owner = kind + " " + in_quotes(named.key);
       judge_name(named, owner);
-      if constexpr (std::is_same_v<Spec, PrimarySpec>)
-        read_keys(owner, named.value, spec, primary_keys());
-      else
-        read_keys(owner, named.value, spec, cloth_keys());
+      read_keys(owner, named.value, spec, keys);
     }
   }
 
@@ -258,26 +266,18 @@ class ShotReader {
 
   template <class Spec>
   void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, TeleportsKey) {
-    if constexpr (std::is_same_v<Spec, PrimarySpec>) {
-      const Value& value = member.value;
-      const bool number = value.kind == Value::Kind::k_integer || value.kind == Value::Kind::k_number;
-      if (value.kind == Value::Kind::k_text) {
-        if (!reader.is_one_of(value, value.text, std::vector<std::string>{"detect", "ignore"})) return;
-        spec.teleports = value.text == "detect" ? Teleports::k_detect : Teleports::k_ignore;
-      } else if (value.kind == Value::Kind::k_list || number) {
-        spec.teleports = Teleports::k_frames;
-        for (const Value& item : number ? std::vector<Value>{value} : value.items)
-          if (const auto frame = reader.number(item, allowed(key, true)))
-            spec.teleport_frames.push_back(static_cast<int>(*frame));
-        auto& frames = spec.teleport_frames;
-        std::sort(frames.begin(), frames.end());
-        frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
-      } else {
-        reader.fault(value, "needs \"detect\", \"ignore\" or a list of frames like [1041], not " + describe(value));
-      }
-    } else {
+    if constexpr (std::is_same_v<Spec, PrimarySpec>)
+      read_teleports(reader, member.value, allowed(key, true), spec);
+    else
       CHECK(false);
-    }
+  }
+
+  template <class Spec>
+  void set(const ValueReader& reader, const Member& member, const ShotKey<Spec>& key, Spec& spec, ReleaseKey) {
+    if constexpr (std::is_same_v<Spec, PrimarySpec>)
+      read_release(reader, member.value, allowed(key), spec);
+    else
+      CHECK(false);
   }
 
   template <class Spec>
@@ -337,6 +337,7 @@ class ShotReader {
     cloth.pins.push_back(std::move(pin));
   }
 
+  const std::vector<ShotKey<PrimarySpec>> primary_keys_ = every_primary_key();
   std::filesystem::path folder_;
   const ShotVocabulary& vocabulary_;
   FaultList& faults_;

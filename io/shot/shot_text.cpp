@@ -124,6 +124,13 @@ struct ValueText {
     }
     return {};
   }
+  std::string operator()(ReleaseKey) const {
+    if constexpr (std::is_same_v<Spec, PrimarySpec>) {
+      if (spec.release == Release::k_contact) return in_quotes("contact");
+      if (spec.release == Release::k_frame) return number_text(spec.release_frame);
+    }
+    return "none";
+  }
   std::string operator()(MapsKey) const {
     std::string out;
     if constexpr (std::is_same_v<Spec, ClothSpec>)
@@ -158,6 +165,7 @@ std::string type_text(const ShotKey<Spec>& key) {
     std::string operator()(PinsKey) const { return std::is_same_v<Spec, PinSpec> ? "vertices" : "list of pins"; }
     std::string operator()(SinglePinKey) const { return "text"; }
     std::string operator()(TeleportsKey) const { return "text or list of frames"; }
+    std::string operator()(ReleaseKey) const { return "frame or text"; }
     std::string operator()(MapsKey) const { return "list of maps"; }
   };
   return std::visit(Names{}, key.target);
@@ -195,13 +203,18 @@ void append_reference(std::string& out, std::string_view heading, std::span<cons
       allowed = "name of a primary";
     else if (key.choices == "@cloths")
       allowed = "name of a cloth";
+    else if (key.choices == "@secondaries")
+      allowed = "name of a cloth or of cords";
     else if (key.choices == "@maps")
       allowed = known_words(map_words(), "");
     else if (!key.choices.empty())
       allowed = known_words(split_words(key.choices), "");
     std::string fallback = key.required ? "**required**" : std::visit(ValueText<Spec>{defaults, nowhere}, key.target);
-    // One of the first keys says which vertices, or where values come from.
-    const std::ptrdiff_t choosing = std::is_same_v<Spec, PinSpec> ? 4 : std::is_same_v<Spec, MapSpec> ? 2 : 0;
+    // One of the first keys says which vertices, where values come from, what a primary is.
+    const std::ptrdiff_t choosing = std::is_same_v<Spec, PinSpec>       ? 4
+                                    : std::is_same_v<Spec, MapSpec>     ? 2
+                                    : std::is_same_v<Spec, PrimarySpec> ? 1
+                                                                        : 0;
     const bool chooses = &key < keys.data() + choosing;
     if (chooses)
       fallback = "one of these";
@@ -227,14 +240,20 @@ Settings settings(const Shot& shot) {
   Settings out;
   const std::filesystem::path folder = shot.file.parent_path();
   append_section(out, "shot", shot_keys(), shot, folder);
-  for (const PrimarySpec& primary : shot.primaries)
+  for (const PrimarySpec& primary : shot.primaries) {
     append_section(out, "primary." + key_word(primary.name), primary_keys(), primary, folder);
+    append_section(out, "primary." + key_word(primary.name), prop_keys(), primary, folder);
+  }
   for (const ClothSpec& cloth : shot.cloths) {
     const std::string section = "cloth." + key_word(cloth.name);
     append_section(out, section, cloth_keys(), cloth, folder);
     for (const auto& [key, value] : cloth.fabric_overrides)
       out.emplace_back(std::string(section).append(".").append(key), number_text(value));
   }
+  for (const CordsSpec& cords : shot.cords)
+    append_section(out, "cords." + key_word(cords.name), cords_keys(), cords, folder);
+  for (const StandInKeys& standin : shot.standins)
+    append_section(out, "standin." + key_word(standin.name), standin_keys(), standin, folder);
   append_section(out, "wind", wind_keys(), shot.wind, folder);
   append_section(out, "solver", solver_keys(), shot.solver, folder);
   append_section(out, "cache", cache_keys(), shot, folder);
@@ -268,6 +287,7 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
   std::string out;
   append_reference(out, "[shot]", shot_keys(), vocabulary);
   append_reference(out, "[primary.NAME]", primary_keys(), vocabulary);
+  append_reference(out, "[primary.NAME], a rigid prop", prop_keys(), vocabulary);
   append_reference(out, "[cloth.NAME]", cloth_keys(), vocabulary);
   out.append("A cloth may also override numbers of its fabric:\n\n| key | allowed |\n|---|---|\n");
   for (const FabricKeyWord& key : vocabulary.fabric_keys)
@@ -279,6 +299,8 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
   out.append("\n");
   append_reference(out, "pins = [ { ... } ]", pin_keys(), vocabulary);
   append_reference(out, "maps = [ { ... } ]", map_keys(), vocabulary);
+  append_reference(out, "[cords.NAME]", cords_keys(), vocabulary);
+  append_reference(out, "[standin.NAME]", standin_keys(), vocabulary);
   append_reference(out, "[wind]", wind_keys(), vocabulary);
   append_reference(out, "[solver]", solver_keys(), vocabulary);
   append_reference(out, "[cache]", cache_keys(), vocabulary);
