@@ -25,7 +25,8 @@ void judge_wearer(const Value& root, std::string_view kind, Spec& spec, const st
   if (primaries.empty() || contains(primaries, spec.on)) return;
   const Place place = place_of(root, {kind, spec.name, "on"});
   if (spec.on.empty())
-    faults.add(place, owner + ": on is missing; it says who wears it (one of: " + joined(primaries) + ")");
+    faults.add(place, owner + ": on is missing; it says " + (kind == "cloth" ? "who wears it" : "whom they meet") +
+                          " (one of: " + joined(primaries) + ")");
   else
     faults.add(place,
                with_hint(owner + ": on = " + in_quotes(spec.on) + " names no primary", suggestion(spec.on, primaries)));
