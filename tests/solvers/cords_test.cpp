@@ -13,23 +13,6 @@
 namespace ft {
 namespace {
 
-double cosine_of_turn(const CordGraph& graph, const std::vector<int>& strand, std::size_t i) {
-  const Vec3 before = graph.points[at(strand[i])] - graph.points[at(strand[i - 1])];
-  const Vec3 after = graph.points[at(strand[i + 1])] - graph.points[at(strand[i])];
-  return before.normalized().dot(after.normalized());
-}
-
-/// Every cord lies in one strand, once.
-void expect_strands_hold_every_cord(const CordGraph& graph) {
-  std::multiset<Edge> drawn;
-  for (const auto& strand : graph.strands)
-    for (std::size_t i = 0; i + 1 < strand.size(); ++i)
-      drawn.insert({std::min(strand[i], strand[i + 1]), std::max(strand[i], strand[i + 1])});
-  EXPECT_EQ(drawn, std::multiset<Edge>(graph.cords.begin(), graph.cords.end()));
-  EXPECT_EQ(std::set<Edge>(graph.cords.begin(), graph.cords.end()).size(), graph.cords.size());
-  for (const Edge& cord : graph.cords) EXPECT_LT(cord[0], cord[1]);
-}
-
 TEST(Cords, A_basketball_net_has_its_loops_sides_and_measures) {
   const CordGraph net = diamond_net({});
   EXPECT_EQ(net.points.size(), 7u * 12 + 6 * 24) << "knots, and a point within each side";
@@ -71,12 +54,12 @@ TEST(Cords, A_net_looks_the_same_turned_by_one_loop_and_in_its_mirror) {
 
 TEST(Cords, A_nets_twines_run_from_the_rim_to_the_last_loops_on_smooth_diagonals) {
   const CordGraph net = diamond_net({});
-  expect_strands_hold_every_cord(net);
+  test::expect_strands_hold_every_cord(net);
   ASSERT_EQ(net.strands.size(), 24u) << "two from every loop";
   for (const auto& strand : net.strands) {
     EXPECT_EQ(strand.size(), 13u);
     EXPECT_LT(strand.front(), 12) << "a strand begins where it is held";
-    for (std::size_t i = 1; i + 1 < strand.size(); ++i) EXPECT_GT(cosine_of_turn(net, strand, i), 0.9);
+    for (std::size_t i = 1; i + 1 < strand.size(); ++i) EXPECT_GT(test::cosine_of_turn(net, strand, i), 0.9);
   }
 }
 
@@ -87,7 +70,7 @@ TEST(Cords, A_rope_is_one_strand_that_begins_where_it_is_held) {
   for (const auto& [from, to] : {std::pair{true, false}, {false, true}, {true, true}, {false, false}}) {
     measures.hold_from = from, measures.hold_to = to;
     const CordGraph cord = rope(measures);
-    expect_strands_hold_every_cord(cord);
+    test::expect_strands_hold_every_cord(cord);
     ASSERT_EQ(cord.strands.size(), 1u);
     EXPECT_EQ(cord.strands[0].front(), to && !from ? 8 : 0);
     EXPECT_EQ(cord.held.size(), std::size_t{from} + std::size_t{to});
@@ -118,7 +101,7 @@ TEST(Cords, Edges_of_a_mesh_are_cords_along_its_rows_and_columns_without_diagona
     const auto net = cords_of_mesh(mesh, "top", pieces);
     ASSERT_TRUE(net.ok()) << net.error().text();
     EXPECT_EQ(net->cords.size(), at(pieces * (4 * 4 + 5 * 3)));
-    expect_strands_hold_every_cord(*net);
+    test::expect_strands_hold_every_cord(*net);
     EXPECT_EQ(net->strands.size(), 4u + 5u) << "four rows and five columns";
     EXPECT_EQ(net->held, (std::vector<int>{0, 1, 2, 3, 4}));
     for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(net->points[i], mesh.positions[i]);
@@ -131,7 +114,7 @@ TEST(Cords, A_ring_is_one_strand_that_ends_where_it_begins) {
     ring.points.push_back(Vec3(std::cos(i * std::numbers::pi / 6), 0, std::sin(i * std::numbers::pi / 6)));
   for (int i = 0; i < 12; ++i) ring.cords.push_back({std::min(i, (i + 1) % 12), std::max(i, (i + 1) % 12)});
   join_strands(ring);
-  expect_strands_hold_every_cord(ring);
+  test::expect_strands_hold_every_cord(ring);
   ASSERT_EQ(ring.strands.size(), 1u);
   EXPECT_EQ(ring.strands[0].front(), ring.strands[0].back());
 }
