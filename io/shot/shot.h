@@ -121,13 +121,13 @@ struct CordsSpec {
   std::filesystem::path mesh;                  ///< OBJ whose edges are cords
   double unit_scale = 1;                       ///< m per mesh unit
   std::string up = "y";                        ///< of the mesh
-  std::string held;                            ///< rope, knots: "start" (default), "end", "both", "none"; mesh: a group
-  double mass = 0;                             ///< kg, all of it
-  double stretch = 3000;                       ///< EA: force at a strain of 1 [N]
-  double bend = 0;                             ///< EI [N m2]
-  double damping = 1e-4;                       ///< of stretch and bend, in units of their stiffness [s]
-  double radius = 1.5e-3;                      ///< of a cord, drawn and in contact [m]
-  double friction = 0.4;                       ///< Coulomb coefficient
+  std::string held;        ///< rope, knots: "start", "end", "both", "none"; mesh: a vertex group or none
+  double mass = 0;         ///< kg, all of it
+  double stretch = 3000;   ///< EA: force at a strain of 1 [N]
+  double bend = 0;         ///< EI [N m2]
+  double damping = 1e-4;   ///< of stretch and bend, in units of their stiffness [s]
+  double radius = 1.5e-3;  ///< of a cord, drawn and in contact [m]
+  double friction = 0.4;   ///< Coulomb coefficient
   bool self_collision = false;
   double hold_stiffness = 2e4;  ///< of the springs that hold points [N/m]
   std::string on;               ///< name of the primary

@@ -104,7 +104,8 @@ void judge_primary(const Value& table, const Shot& shot, const PrimarySpec& prim
                                    "together");
 }
 
-void judge_cords(const Value& table, const CordsSpec& cords, FaultList& faults) {
+/// Fills in what depends on its shape: where it is held, and in how many pieces.
+void judge_cords(const Value& table, CordsSpec& cords, FaultList& faults) {
   const std::string owner = "cords " + in_quotes(cords.name);
   judge_choice(owner, table, "shape", cords.shape, k_cords_shapes, faults);
   const bool line = cords.shape == "rope" || cords.shape == "knots";
@@ -112,6 +113,8 @@ void judge_cords(const Value& table, const CordsSpec& cords, FaultList& faults) 
   if (line && held && held->value.kind == Value::Kind::k_text)
     ValueReader{faults, owner, "held"}.is_one_of(held->value, cords.held,
                                                  std::vector<std::string>{"start", "end", "both", "none"});
+  if (line && !held) cords.held = "start";
+  if (cords.points == 0) cords.points = cords.shape == "net" ? 2 : cords.shape == "rope" ? 32 : line ? 4 : 1;
   if (line && to && cords.to == cords.position)
     faults.add(to->place, owner + ": to is where it starts; its length would be 0");
   if (cords.shape == "knots" && knot_mass && table.find("mass") && cords.knots * cords.knot_mass >= cords.mass)
@@ -124,11 +127,25 @@ struct Secondary {
   std::string owner() const { return kind + " " + in_quotes(name); }
 };
 
+/// What a stand-in lacks to do anything; empty: nothing.
+std::string_view lacks(const StandInKeys& s, const Value& table) {
+  if (s.shape == "cone" && table.find("height") && !(s.height > 0 && s.radius_top + s.radius_bottom > 0))
+    return "a cone with height and radius";
+  if (s.kind == "damping" && !(s.damping + s.damping_quadratic + s.damping_spin > 0))
+    return "damping, damping_quadratic or damping_spin";
+  if ((s.kind == "mat" || s.kind == "spring") && table.find("stiffness") && !(s.stiffness + s.stiffness_cubic > 0))
+    return "a stiffness";
+  if (s.kind == "weight" && table.find("mass") && !(s.mass > 0)) return "a mass";
+  return {};
+}
+
 void judge_standin(const Value& root, const Value& table, std::span<const Secondary> secondaries, StandInKeys& standin,
                    Shot& shot, FaultList& faults) {
   const std::string owner = "standin " + in_quotes(standin.name);
   judge_choice(owner, table, "kind", standin.kind, k_standin_kinds, faults);
   judge_choice(owner, table, "shape", standin.shape, k_volume_shapes, faults);
+  if (const std::string_view what = lacks(standin, table); !what.empty())
+    faults.add(table.place, owner + ": does nothing without " + std::string(what) + " above 0");
   if (const Member* until = table.find("until");
       until && standin.from && standin.until && !(*standin.from < *standin.until))
     faults.add(until->place, owner + ": until = " + number_text(*standin.until) +
@@ -175,7 +192,7 @@ void judge_couplings(const Value& root, Shot& shot, FaultList& faults) {
     if (const Value* table = section(root, "primary", primary.name)) judge_primary(*table, shot, primary, faults);
   std::vector<Secondary> secondaries;
   for (const ClothSpec& cloth : shot.cloths) secondaries.push_back({"cloth", cloth.name, cloth.on, cloth.coupling});
-  for (const CordsSpec& cords : shot.cords) {
+  for (CordsSpec& cords : shot.cords) {
     secondaries.push_back({"cords", cords.name, cords.on, cords.coupling});
     if (const Value* table = section(root, "cords", cords.name)) judge_cords(*table, cords, faults);
   }

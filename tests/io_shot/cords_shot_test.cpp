@@ -1,8 +1,7 @@
 // Props, cords, stand-ins and couplings in the shot file.
-#include <set>
-
 #include "io/shot/shot_keys.h"
 #include "tests/io_shot/shot_fixture.h"
+#include "tests/support/damage.h"
 
 namespace ft {
 namespace {
@@ -58,6 +57,7 @@ TEST_F(CordsShot, A_ball_and_a_net_are_read_with_their_defaults) {
   const CordsSpec& net = shot->cords[0];
   EXPECT_EQ(net.on, "ball") << "the only primary";
   EXPECT_EQ(net.columns, 12);
+  EXPECT_EQ(net.points, 2) << "of a net's side";
   EXPECT_EQ(net.coupling, "two-way");
   EXPECT_FALSE(net.self_collision);
   const PrimarySpec& ball = shot->primaries[0];
@@ -148,8 +148,8 @@ TEST_F(CordsShot, Hybrid_needs_a_stand_in_of_its_own) {
         ""}},
       "shot.toml:16:12: cords \"net\": coupling = \"hybrid\" needs what the primary yields to: a [standin.NAME] "
       "with for = \"net\"");
-  expect_fault({{"damping = 3.9", "for = \"nett\""}},
-               "shot.toml:24:7: standin \"air\": for = \"nett\" names no cloth or cords (did you mean \"net\"?)");
+  expect_fault({{"damping = 3.9", "damping = 3.9\nfor = \"nett\""}},
+               "shot.toml:25:7: standin \"air\": for = \"nett\" names no cloth or cords (did you mean \"net\"?)");
   expect_fault({{"", "[cloth.cape]\nmesh = \"dress.obj\"\n"}},
                "shot.toml:18:1: standin \"air\": for is missing; it says what it stands for (one of: cape, net)");
 }
@@ -171,8 +171,42 @@ TEST_F(CordsShot, Shapes_and_kinds_say_which_keys_they_need_and_which_are_anothe
                "shot.toml:20:1: standin \"air\": density goes with kind = \"water\", not with kind = \"damping\"");
   expect_fault({{"height = 0.42\n", ""}},
                "shot.toml:18:1: standin \"air\": height is missing; shape = \"cone\" needs it");
-  expect_fault({{"damping = 3.9", "from = 20\nuntil = 10"}},
-               "shot.toml:25:1: standin \"air\": until = 10 is not after from = 20: it would never act");
+  expect_fault({{"damping = 3.9", "damping = 3.9\nfrom = 20\nuntil = 10"}},
+               "shot.toml:26:1: standin \"air\": until = 10 is not after from = 20: it would never act");
+}
+
+TEST_F(CordsShot, Stand_ins_that_do_nothing_are_refused) {
+  const std::string nothing = "shot.toml:18:1: standin \"air\": does nothing without ";
+  expect_fault({{"damping = 3.9", ""}}, nothing + "damping, damping_quadratic or damping_spin above 0");
+  expect_fault({{"height = 0.42", "height = 0"}}, nothing + "a cone with height and radius above 0");
+}
+
+TEST_F(CordsShot, A_rope_is_held_at_its_start_unless_it_says_otherwise) {
+  std::string text = k_basketball;
+  text.replace(text.find("shape = \"net\""), 13, "shape = \"rope\"\nto = [0, 9, 0]");
+  const auto rope = parse(text);
+  ASSERT_TRUE(rope.ok()) << rope.error().text();
+  EXPECT_EQ(rope->cords[0].held, "start");
+  EXPECT_EQ(rope->cords[0].points, 32);
+  EXPECT_EQ(parse(text, {"cords.net.held=both"})->cords[0].held, "both");
+}
+
+TEST_F(CordsShot, Cut_or_damaged_anywhere_is_a_shot_or_faults) {
+  const std::string good = k_basketball;
+  for (std::size_t n = 0; n <= good.size(); ++n) {
+    const auto shot = parse(good.substr(0, n));
+    EXPECT_EQ(shot.ok(), faults_.messages.empty());
+  }
+  using namespace std::string_view_literals;
+  const test::TextDamage damage{"[]{}=\"'.,-0159eE\n #_\\+:\x00\xff\xc3zinfNaT"sv, 4, 30};
+  int accepted = 0;
+  for (std::uint64_t round = 0; round < 2'000; ++round) {
+    const auto shot = parse(test::damaged(good, damage, round));
+    ASSERT_EQ(shot.ok(), faults_.messages.empty());
+    ASSERT_TRUE(shot.ok() ? !canonical(*shot).empty() : !shot.error().what.empty());
+    accepted += shot.ok() ? 1 : 0;
+  }
+  EXPECT_GT(accepted, 20);
 }
 
 TEST_F(CordsShot, Slips_are_recognised_and_the_right_word_is_named) {
@@ -211,7 +245,7 @@ TEST_F(CordsShot, Overrides_reach_every_new_section_and_name_slips) {
 TEST_F(CordsShot, Names_of_caches_are_used_once) {
   expect_fault({{"[cords.net]", "[cords.ball]"}},
                "shot.toml:13:8: cords \"ball\": a primary has the same name, their caches would overwrite each other");
-  expect_fault({{"", "[cloth.net]\nmesh = \"dress.obj\"\n"}, {"damping = 3.9", "for = \"net\""}},
+  expect_fault({{"", "[cloth.net]\nmesh = \"dress.obj\"\n"}, {"damping = 3.9", "damping = 3.9\nfor = \"net\""}},
                "shot.toml:13:8: cords \"net\": a cloth has the same name, their caches would overwrite each other");
 }
 
@@ -228,9 +262,10 @@ std::string shot_for(std::string_view key) {
   if (is_one({"knots", "knot_mass"})) cords = "shape = \"knots\"\nto = [0, 9, 0]\n";
   if (is_one({"mesh", "unit_scale", "up"})) cords = "shape = \"mesh\"\nmesh = \"dress.obj\"\n";
   if (is_one({"radius_top", "radius_bottom", "height", "soft_edge", "damping", "damping_quadratic", "damping_spin"}))
-    standin = "kind = \"damping\"\nshape = \"cone\"\nradius_top = 1\nradius_bottom = 1\nheight = 1\n";
-  if (is_one({"shape", "size", "mesh"})) standin = "kind = \"damping\"\nshape = \"box\"\nsize = [1, 1, 1]\n";
-  if (key == "mesh") standin = "kind = \"damping\"\nshape = \"mesh\"\nmesh = \"dress.obj\"\n";
+    standin = "kind = \"damping\"\ndamping = 1\nshape = \"cone\"\nradius_top = 1\nradius_bottom = 1\nheight = 1\n";
+  if (is_one({"shape", "size", "mesh"}))
+    standin = "kind = \"damping\"\ndamping = 1\nshape = \"box\"\nsize = [1, 1, 1]\n";
+  if (key == "mesh") standin = "kind = \"damping\"\ndamping = 1\nshape = \"mesh\"\nmesh = \"dress.obj\"\n";
   if (is_one({"stiffness", "stiffness_cubic", "damping_ratio"})) standin = "kind = \"mat\"\nstiffness = 1e3\n";
   if (is_one({"density", "drag", "slam"})) standin = "kind = \"water\"\n";
   if (is_one({"length", "anchor"})) standin = "kind = \"spring\"\nstiffness = 1\nanchor = [0, 9, 0]\nlength = 1\n";
