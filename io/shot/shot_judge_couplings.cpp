@@ -46,6 +46,8 @@ constexpr ChoiceKeys k_volume_shapes[] = {
     {"mesh", "mesh", ""},
 };
 
+constexpr double k_most_cords = 1e6;
+
 bool has(std::string_view words, std::string_view word) {
   const std::vector<std::string> all = split_words(words);
   return std::find(all.begin(), all.end(), word) != all.end();
@@ -115,6 +117,12 @@ void judge_cords(const Value& table, CordsSpec& cords, FaultList& faults) {
                                                  std::vector<std::string>{"start", "end", "both", "none"});
   if (line && !held) cords.held = "start";
   if (cords.points == 0) cords.points = cords.shape == "net" ? 2 : cords.shape == "rope" ? 32 : line ? 4 : 1;
+  const double sides = cords.shape == "net"     ? 2.0 * cords.columns * cords.rows
+                       : cords.shape == "knots" ? cords.knots
+                                                : 1;
+  if (sides * cords.points > k_most_cords)
+    faults.add(table.place, owner + ": would be of " + number_text(sides * cords.points) + " pieces, at most " +
+                                number_text(k_most_cords) + " are baked");
   if (line && to && cords.to == cords.position)
     faults.add(to->place, owner + ": to is where it starts; its length would be 0");
   if (cords.shape == "knots" && knot_mass && table.find("mass") && cords.knots * cords.knot_mass >= cords.mass)

@@ -37,7 +37,7 @@ CordGraph rope(const RopeMeasures& measures);
 
 /// Every edge of the mesh's faces as `pieces` >= 1 cords; vertices without a face are left out, the others come first
 /// and keep their order. Held are those with a weight above 0 in the group; none when its name is empty. Refused: no
-/// such group, an edge without length.
+/// such group, an edge without length, more than a million cords.
 Result<CordGraph> cords_of_mesh(const Mesh& mesh, std::string_view held_group, int pieces);
 
 }  // namespace ft

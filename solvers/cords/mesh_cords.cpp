@@ -6,6 +6,7 @@
 namespace ft {
 namespace {
 
+constexpr double k_most_cords = 1e6;
 constexpr double k_least_length = 1e-6;  // m: shorter, and its stiffness EA / length is beyond any solver
 
 /// Edges of the faces as they are, without the diagonals that triangles need; unique, sorted.
@@ -48,6 +49,10 @@ Status hold_group(const Mesh& mesh, std::string_view name, std::span<const int> 
 Result<CordGraph> cords_of_mesh(const Mesh& mesh, std::string_view held_group, int pieces) {
   const std::vector<Edge> edges = face_edges(mesh);
   if (edges.empty()) return input_error("has no faces, whose edges would be cords", mesh.name);
+  if (static_cast<double>(edges.size()) * pieces > k_most_cords)
+    return input_error("would be more than a million cords: it has " + std::to_string(edges.size()) +
+                           " edges, each in " + std::to_string(pieces) + (pieces == 1 ? " piece" : " pieces"),
+                       mesh.name);
   std::vector<int> point_of(mesh.positions.size(), -1);
   for (const Edge& edge : edges)
     for (const int v : edge) point_of[at(v)] = 0;

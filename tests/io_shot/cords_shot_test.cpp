@@ -1,4 +1,6 @@
 // Props, cords, stand-ins and couplings in the shot file.
+#include <set>
+
 #include "io/shot/shot_keys.h"
 #include "tests/io_shot/shot_fixture.h"
 #include "tests/support/damage.h"
@@ -70,14 +72,26 @@ TEST_F(CordsShot, A_ball_and_a_net_are_read_with_their_defaults) {
 }
 
 TEST_F(CordsShot, One_shot_serves_all_three_couplings_and_says_what_it_does_not_use) {
+  std::set<std::string> texts;
   for (const char* coupling : {"one-way", "hybrid", "two-way"}) {
     const auto shot = parse(k_basketball, {std::string("cords.net.coupling=") + coupling});
     ASSERT_TRUE(shot.ok()) << shot.error().text();
     EXPECT_EQ(shot->cords[0].coupling, coupling);
+    EXPECT_TRUE(texts.insert(canonical(*shot)).second);
     const std::string note =
         "standin \"air\" is not used: cords \"net\" has coupling = \"" + std::string(coupling) + "\"";
     EXPECT_EQ(shot->notes, coupling == std::string("hybrid") ? std::vector<std::string>() : std::vector{note});
   }
+}
+
+TEST_F(CordsShot, Cloth_may_be_hybrid_beside_cords_that_are_one_way) {
+  std::string text = k_basketball;
+  text += "for = \"cape\"\n[cloth.cape]\nmesh = \"dress.obj\"\ncoupling = \"hybrid\"\n";
+  const auto shot = parse(text, {"cords.net.coupling=one-way"});
+  ASSERT_TRUE(shot.ok()) << shot.error().text();
+  EXPECT_EQ(shot->cloths[0].coupling, "hybrid");
+  EXPECT_NE(canonical(*shot).find("cloth.cape.coupling = \"hybrid\"\n"), std::string::npos);
+  EXPECT_TRUE(shot->notes.empty());
 }
 
 TEST_F(CordsShot, A_prop_is_released_at_once_at_a_frame_or_at_contact) {
@@ -167,6 +181,8 @@ TEST_F(CordsShot, Shapes_and_kinds_say_which_keys_they_need_and_which_are_anothe
                "shot.toml:15:1: cords \"net\": to is where it starts; its length would be 0");
   expect_fault({{"shape = \"net\"", "shape = \"knots\"\nto = [0, 1, 0]\nknots = 3\nknot_mass = 0.01"}},
                "shot.toml:17:1: cords \"net\": its knots weigh 0.03 kg, and all of it only mass = 0.03");
+  expect_fault({{"mass = 0.03", "mass = 0.03\ncolumns = 1000\nrows = 1000"}},
+               "shot.toml:13:1: cords \"net\": would be of 4000000 pieces, at most 1000000 are baked");
   expect_fault({{"kind = \"damping\"", "kind = \"damping\"\ndensity = 1000"}},
                "shot.toml:20:1: standin \"air\": density goes with kind = \"water\", not with kind = \"damping\"");
   expect_fault({{"height = 0.42\n", ""}},

@@ -134,6 +134,7 @@ TEST(Cords, Meshes_that_make_no_cords_are_refused_with_the_reason) {
   Mesh mesh = test::grid_of_quads(1, 1);
   EXPECT_NE(cords_of_mesh(mesh, "rim", 1).error().text().find("no vertex group \"rim\" (there are: top)"),
             std::string::npos);
+  EXPECT_NE(cords_of_mesh(mesh, "", 300'000).error().text().find("4 edges, each in 300000 pieces"), std::string::npos);
   mesh.positions[1] = mesh.positions[0];
   EXPECT_NE(cords_of_mesh(mesh, "", 1).error().text().find("vertices 0 and 1 has no length"), std::string::npos);
   EXPECT_FALSE(cords_of_mesh(Mesh{}, "", 1).ok());
