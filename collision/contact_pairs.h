@@ -37,7 +37,8 @@ struct VertexBox {
 
 class PairFinder {
  public:
-  /// Triangles index the common numbering; collider_triangles' indices are all >= cloth_vertex_count.
+  /// Triangles index the common numbering; collider_triangles' indices are all >= cloth_vertex_count. A triangle with
+  /// a vertex twice, {a, b, b}, is a cord: an edge and its ends, and no face.
   PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
              std::span<const Triangle> collider_triangles);
   ~PairFinder();

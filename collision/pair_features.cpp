@@ -18,6 +18,10 @@ inline bool valid(const VertexBox& b) {
   return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
 }
 
+bool is_cord(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 template <class T>
 std::size_t rank(const std::vector<T>& sorted, const T& value) {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
@@ -44,6 +48,7 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
   faces = all;
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  std::erase_if(faces, is_cord);
   edges = unique_edges(all);
   std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
 
@@ -57,8 +62,11 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
     const bool of_cloth = k < cloth_triangles.size();
     PairElement e;
     e.v = all[k];
-    const std::size_t face = rank(faces, e.v);
-    e.face = take(face_owned, face) ? static_cast<int>(face) : -1;
+    e.face = -1;
+    if (!is_cord(e.v)) {
+      const std::size_t face = rank(faces, e.v);
+      if (take(face_owned, face)) e.face = static_cast<int>(face);
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       CHECK(e.v[i] >= 0 && e.v[i] < vertex_count);
       CHECK(of_cloth == (e.v[i] < cloth_vertex_count));

@@ -63,7 +63,7 @@ struct BoxLanes {
 /// A triangle as the search sees it.
 struct PairElement {
   Triangle v;
-  int face = 0;                                     ///< rank of the face; -1 for a repetition of an earlier triangle
+  int face = 0;                                     ///< rank of the face; -1 for a cord, or an earlier triangle again
   std::array<int, 3> owned_vertex{}, owned_edge{};  ///< the first so many are meant; edges by rank
   int owned_vertex_count = 0, owned_edge_count = 0;
 };

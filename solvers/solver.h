@@ -85,6 +85,8 @@ class Solver {
   /// Topology of the feasible collider, and its positions at the state's time.
   virtual std::span<const Triangle> collider_triangles() const = 0;
   virtual void collider_positions(const State& state, std::vector<Vec3>& positions) const = 0;
+  /// Whether the primary goes where the solver takes it, which is where the collider is; else along its trajectory.
+  virtual bool moves_primary() const { return false; }
 
   /// State at the start of the pre-roll.
   virtual State initial_state() const = 0;

@@ -59,12 +59,6 @@ double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::spa
 
 }  // namespace
 
-IntegratorWeights integrator_weights(double h, double h_previous, bool bdf2) {
-  if (!bdf2 || h_previous <= 0 || h > 2 * h_previous) return {};
-  const double w = h / h_previous;
-  return {(1 + w) * (1 + w) / (1 + 2 * w), w * w / (1 + 2 * w), (1 + w) / (1 + 2 * w)};
-}
-
 struct ImplicitStep::Scratch {
   Scratch(const ClothModel& model, const LinearSettings& settings)
       : system(model.pattern, model.contact.rest, settings), contact(model.contact) {}

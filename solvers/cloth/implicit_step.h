@@ -1,8 +1,7 @@
 // One implicit step of the cloth with the body standing still: minimises
 //   1/(2 (beta h)^2) |x - y|_M^2 + elasticity + contact + friction + pins
 // by Newton's method with a positive definite Hessian, every displacement truncated so that no pair crosses, with
-// energy backtracking as a safety net. Time integration is BDF2 with variable steps (implicit Euler as an option and
-// where the step ratio exceeds 2, beyond which BDF2 is not zero-stable).
+// energy backtracking as a safety net. Time integration: integrator.h.
 #pragma once
 
 #include <functional>
@@ -12,15 +11,10 @@
 
 #include "baker/core/wrench.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/integrator.h"
 #include "solvers/linear/linear_system.h"
 
 namespace ft {
-
-/// x_1 = a x_0 - b x_-1 + beta h v_1, and the same for v.
-struct IntegratorWeights {
-  double a = 1, b = 0, beta = 1;
-};
-IntegratorWeights integrator_weights(double h, double h_previous, bool bdf2);
 
 struct StepInput {
   std::span<const Vec3> x_t0, v_t0, x_tm1, v_tm1;  ///< cloth

@@ -312,6 +312,14 @@ TEST(PairFinder, Nothing_meets_nothing) {
   EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
 }
 
+TEST(PairFinder, A_cord_meets_faces_with_its_ends_and_edges_with_its_length) {
+  const std::vector<Triangle> cord{{0, 1, 1}}, face{{2, 3, 4}};
+  ContactPairs found;
+  PairFinder(2, cord, 3, face).find(std::vector<VertexBox>(5, VertexBox::swept({0, 0, 0}, {1, 1, 1}, 0)), true, found);
+  EXPECT_EQ(found.vertex_face, (std::vector<Stencil>{{{0, 2, 3, 4}}, {{1, 2, 3, 4}}}));
+  EXPECT_EQ(found.edge_edge, (std::vector<Stencil>{{{0, 1, 2, 3}}, {{0, 1, 2, 4}}, {{0, 1, 3, 4}}}));
+}
+
 TEST(VertexBox, Holds_the_swept_ball_however_the_numbers_round) {
   Dice dice(3);
   for (int trial = 0; trial < 100000; ++trial) {

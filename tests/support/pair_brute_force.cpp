@@ -51,6 +51,7 @@ ContactPairs brute_force(const PairScene& scene, bool self) {
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   const auto wanted = [&](int a, int b) { return of_cloth(a) != of_cloth(b) || (self && of_cloth(a) && of_cloth(b)); };
   std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
+  std::erase_if(faces, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });  // cords
   const std::vector<VertexBox> face_boxes = feature_boxes(scene.boxes, faces),
                                edge_boxes = feature_boxes(scene.boxes, edges);
   for (const int v : vertices) {

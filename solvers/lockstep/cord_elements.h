@@ -1,0 +1,54 @@
+// The potential of cords and of the prop's frame, but for inertia and contact:
+//   stretching  1/2 k max(0, l - L)^2, for springs that push too 1/2 k (l - L)^2
+//   damping     of stretching, implicit: 1/2 (c / t) (e - e_0)^2 while the cord is taut. A cord never pushes, so both
+//               together are one spring: stiffness k + c/t, longer by what damping holds back
+//   bending     1/2 (B / l^3) |x_0 - 2 x_1 + x_2|^2 along a strand that rests straight
+//   holds       1/2 k |x - p|^2
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solvers/lockstep/node_system.h"
+
+namespace ft {
+
+struct CordSpring {
+  int a = 0, b = 0;
+  double length = 0;     ///< at rest [m], > 0
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+  bool pushes = false;
+};
+
+/// Evenly spaced points of a strand.
+struct CordBend {
+  std::array<int, 3> node{};
+  double stiffness = 0;  ///< N/m
+};
+
+struct CordHold {
+  int node = 0;
+  Vec3 place = Vec3::Zero();  ///< m
+  double stiffness = 0;       ///< N/m
+};
+
+struct CordElements {
+  std::vector<CordSpring> springs;
+  std::vector<CordBend> bends;
+  std::vector<CordHold> holds;
+
+  /// Takes over the step: positions at its start, seconds that the integrator's rate spans.
+  void begin_step(std::span<const Vec3> x_t0, double rate_time);
+  double value(std::span<const Vec3> x) const;  ///< J
+  void add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out) const;
+  Vec3 hold_force(std::span<const Vec3> x) const;  ///< of all holds on their nodes [N]
+
+ private:
+  struct Now {
+    double length, stiffness;  ///< with damping
+  };
+  std::vector<Now> now_;
+};
+
+}  // namespace ft

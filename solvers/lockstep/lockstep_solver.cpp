@@ -1,0 +1,285 @@
+// The walk of a frame: equal substeps no longer than the setup's; in each the prop's place at its end, if it is driven,
+// then the step. A prop that is to be released on contact is let go at the start of the first substep in which
+// something comes into its reach.
+#include "solvers/lockstep/lockstep_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "baker/core/edge_strain.h"
+#include "solvers/cords/tubes.h"
+#include "solvers/lockstep/lockstep_step.h"
+
+namespace ft {
+namespace {
+
+std::vector<double> flat(const std::vector<Vec3>& points) {
+  const double* begin = points.empty() ? nullptr : points[0].data();
+  return {begin, begin + 3 * points.size()};
+}
+std::vector<Vec3> points_of(const State& state, const char* name, std::size_t count) {
+  const auto* values = state.find(name);
+  CHECK(values && values->size() == 3 * count);
+  const auto view = as_points(*values);
+  return {view.begin(), view.end()};
+}
+double number_of(const State& state, const char* name) {
+  const auto* values = state.find(name);
+  CHECK(values && values->size() == 1);
+  return values->front();
+}
+
+/// A driven prop that is held back by more than this is not let wait [m].
+constexpr double k_missed = 1e-4;
+constexpr int k_most_attempts = 100;
+
+class LockstepSolver final : public Solver {
+ public:
+  explicit LockstepSolver(LockstepModel model) : model_(std::move(model)), step_(model_) {
+    for (const CordSystem& c : model_.setup.cords) tubes_.emplace_back(c.graph, c.radius, c.name);
+    const int first = model_.has_prop() ? model_.point_count() : 0;
+    for (const Triangle& t : model_.skin) prop_triangles_.push_back({t[0] - first, t[1] - first, t[2] - first});
+  }
+
+  int system_count() const override { return static_cast<int>(tubes_.size()); }
+  const Mesh& system_mesh(int system) const override { return tubes_[at(system)].mesh(); }
+  void system_positions(const State& state, int system, std::span<Vec3> out) const override {
+    const std::vector<Vec3> x = points_of(state, "x", at(model_.node_count()));
+    const auto first = at(model_.first_point[at(system)]), end = at(model_.first_point[at(system) + 1]);
+    tubes_[at(system)].place(std::span(x).subspan(first, end - first), out);
+  }
+  std::span<const Triangle> collider_triangles() const override { return prop_triangles_; }
+  void collider_positions(const State& state, std::vector<Vec3>& out) const override {
+    std::vector<Vec3> places;
+    model_.spread(points_of(state, "x", at(model_.node_count())), places);
+    out.assign(places.begin() + model_.point_count(), places.end());
+  }
+  bool moves_primary() const override { return model_.has_prop() && model_.setup.prop->two_way; }
+  State initial_state() const override;
+  FrameReport advance_frame(State& state) const override;
+
+ private:
+  struct Moving {
+    LockstepMotion motion;
+    bool free = false;
+    std::vector<double> through;  ///< per point: 1 where it is let through the prop
+    Vec3 hold_impulse = Vec3::Zero();
+  };
+  void substep(double time, double h, double frame_time, Moving& moving, FrameReport& report) const;
+  bool is_released(double time, double h, const Moving& moving) const;
+  void hold_again(Moving& moving, FrameReport& report) const;
+  void judge(const Moving& moving, FrameReport& report) const;
+  void store(State& state, const Moving& moving) const;
+  Moving load(const State& state) const;
+  std::array<Vec3, 4> track(double time) const { return model_.frame.place(model_.setup.prop->track(time).pose); }
+
+  LockstepModel model_;
+  std::vector<CordTubes> tubes_;
+  std::vector<Triangle> prop_triangles_;
+  // Scratch only: forgotten between frames, one frame at a time.
+  mutable LockstepStep step_;
+  mutable std::mutex one_at_a_time_;
+};
+
+void LockstepSolver::store(State& state, const Moving& m) const {
+  state.block("x") = flat(m.motion.x);
+  state.block("v") = flat(m.motion.v);
+  state.block("x_previous") = flat(m.motion.x_previous);
+  state.block("v_previous") = flat(m.motion.v_previous);
+  state.block("h_previous") = {m.motion.h_previous};
+  state.block("through") = m.through;
+  state.block("free") = {m.free ? 1.0 : 0.0};
+  state.block("hold_impulse") = {m.hold_impulse.x(), m.hold_impulse.y(), m.hold_impulse.z()};
+}
+
+LockstepSolver::Moving LockstepSolver::load(const State& state) const {
+  const std::size_t n = at(model_.node_count());
+  Moving m;
+  m.motion = {points_of(state, "x", n), points_of(state, "v", n), points_of(state, "x_previous", n),
+              points_of(state, "v_previous", n), number_of(state, "h_previous")};
+  const auto* through = state.find("through");
+  CHECK(through && through->size() == at(model_.point_count()));
+  m.through = *through;
+  m.free = number_of(state, "free") != 0;
+  m.hold_impulse = points_of(state, "hold_impulse", 1)[0];
+  return m;
+}
+
+State LockstepSolver::initial_state() const {
+  const LockstepSetup& setup = model_.setup;
+  State state;
+  state.frame = setup.first_frame - setup.preroll_frames;
+  state.time = -setup.preroll_frames / setup.fps;
+  Moving m;
+  m.motion.x = model_.start;
+  m.motion.v.assign(model_.start.size(), Vec3::Zero());
+  if (model_.has_prop()) {
+    const RigidMotion motion = setup.prop->track(state.time);
+    for (const Vec3& p : model_.frame.place(motion.pose)) {
+      m.motion.x.push_back(p);
+      m.motion.v.push_back(motion.velocity_at(p));
+    }
+  }
+  m.motion.x_previous = m.motion.x;
+  m.motion.v_previous = m.motion.v;
+  m.through.assign(model_.start.size(), 0);
+  store(state, m);
+  return state;
+}
+
+/// At the start of a substep. A history on the track makes the integrator exact for the flight that follows.
+bool LockstepSolver::is_released(double time, double h, const Moving& m) const {
+  const RigidProp& prop = *model_.setup.prop;
+  if (!prop.two_way) return false;
+  if (time >= prop.release - 1e-9 * h) return true;
+  if (!prop.release_on_contact) return false;
+  std::vector<Vec3> way;
+  for (const Vec3& v : m.motion.v) way.push_back(h * v);
+  const auto next = track(time + h);
+  const std::size_t points = at(model_.point_count());
+  for (std::size_t k = 0; k < 4; ++k) way[points + k] = next[k] - m.motion.x[points + k];
+  step_.contact().find(m.motion.x, way);
+  return step_.contact().meets_prop();
+}
+
+void LockstepSolver::substep(double time, double h, double frame_time, Moving& m, FrameReport& report) const {
+  std::array<Vec3, 4> driven;
+  bool is_driven = false;
+  if (model_.has_prop() && !m.free) {
+    if (is_released(time, h, m)) {
+      m.free = true;
+      const RigidMotion now = model_.setup.prop->track(time);
+      const std::size_t points = at(model_.point_count());
+      const auto nodes = model_.frame.place(now.pose);
+      for (std::size_t k = 0; k < 4; ++k) {
+        m.motion.x[points + k] = nodes[k];
+        m.motion.v[points + k] = now.velocity_at(nodes[k]);
+        // Constant acceleration before: BDF2 is exact for the flight from its first step on.
+        m.motion.x_previous[points + k] = nodes[k] - h * m.motion.v[points + k] + 0.5 * h * h * model_.setup.gravity;
+        m.motion.v_previous[points + k] = m.motion.v[points + k] - h * model_.setup.gravity;
+      }
+    } else {
+      driven = track(time + h);
+      is_driven = true;
+    }
+  }
+  LockstepStepReport step;
+  const LockstepMotion before = m.motion;
+  for (int attempt = 0;; ++attempt) {
+    step_.contact().let_through(m.through);
+    step = step_.step(h, is_driven ? std::span<const Vec3>(driven) : std::span<const Vec3>(), m.motion);
+    ++report.substeps;
+    report.newton_iterations += step.newton_iterations;
+    report.linear_iterations += step.newton_iterations;
+    if (!is_driven || !step.finite || step.missed <= k_missed || attempt == k_most_attempts) break;
+    // What is driven goes its way: cords that stand in it and give way no further are let through.
+    const std::vector<int> blocking = step_.contact().blocking(m.motion.x);
+    if (blocking.empty()) break;
+    for (const int v : blocking) m.through[at(v)] = 1;
+    m.motion = before;
+  }
+  report.finite = report.finite && step.finite;
+  report.profile.narrow += step.seconds_contact;
+  report.profile.assembly += step.seconds_assembly;
+  report.profile.linear += step.seconds_linear;
+  if (!step.finite) return;
+  m.hold_impulse += step.effective_step * step.hold_force;
+  for (std::size_t c = 0; c < step.on_prop.size(); ++c) {
+    InteractionForce& force = report.forces[c];
+    const double size = step.on_prop[c].force.norm();
+    force.mean += (h / frame_time) * step.on_prop[c];
+    force.peak = std::max(force.peak, size);
+    if (size > 0) force.contact_share = std::min(1.0, force.contact_share + h / frame_time);
+  }
+}
+
+/// What was let through and is out of the prop's reach again, is held back by it again.
+void LockstepSolver::hold_again(Moving& m, FrameReport& report) const {
+  report.released_vertices = static_cast<int>(std::count(m.through.begin(), m.through.end(), 1.0));
+  if (report.released_vertices == 0) return;
+  Incident incident;
+  incident.kind = Incident::Kind::k_released;
+  incident.frame = report.frame;
+  incident.vertex = static_cast<int>(std::find(m.through.begin(), m.through.end(), 1.0) - m.through.begin());
+  incident.system = model_.cords_of(incident.vertex).name;
+  incident.place = m.motion.x[at(incident.vertex)];
+  incident.vertex -= model_.first_point[at(model_.system_of[at(incident.vertex)])];
+  incident.text = fmt::format("{} points are let through \"{}\", which goes its way whatever stands in it",
+                              report.released_vertices, model_.setup.prop->name);
+  report.incidents.push_back(std::move(incident));
+  std::vector<char> meets = step_.contact().within_reach(m.motion.x);
+  for (const Crossing& c : step_.contact().crossings(m.motion.x))
+    for (const int v : c.edge) meets[at(v)] = 1;
+  for (std::size_t v = 0; v < m.through.size(); ++v)
+    if (meets[v] == 0) m.through[v] = 0;
+}
+
+void LockstepSolver::judge(const Moving& m, FrameReport& report) const {
+  const auto crossings = step_.contact().crossings(m.motion.x);
+  report.crossings_body = report.crossings_drawn = static_cast<int>(crossings.size());
+  std::vector<double> strain;
+  double sum = 0;
+  for (std::size_t i = 0; i < model_.cords.size(); ++i) {
+    const double length = (m.motion.x[at(model_.cords[i][0])] - m.motion.x[at(model_.cords[i][1])]).norm();
+    strain.push_back(std::max(0.0, length / model_.rest_length[i] - 1));  // slack is no strain
+    sum += strain.back();
+  }
+  std::sort(strain.begin(), strain.end());
+  report.strain_max = strain.back();
+  report.strain_p99 = strain[strain.size() * 99 / 100];
+  report.strain_mean = sum / static_cast<double>(strain.size());
+  for (int i = 0; i < model_.point_count(); ++i)
+    report.kinetic_energy += 0.5 * model_.mass[at(i)] * m.motion.v[at(i)].squaredNorm();
+  if (crossings.empty()) return;
+  Incident incident;
+  incident.kind = Incident::Kind::k_crossing;
+  incident.frame = report.frame;
+  incident.system = model_.cords_of(crossings[0].edge[0]).name;
+  incident.place = m.motion.x[at(crossings[0].edge[0])];
+  incident.text = "cords cross the prop";
+  report.incidents.push_back(std::move(incident));
+}
+
+FrameReport LockstepSolver::advance_frame(State& state) const {
+  const std::lock_guard lock(one_at_a_time_);
+  const auto clock = std::chrono::steady_clock::now();
+  const LockstepSetup& setup = model_.setup;
+  const int number = state.frame + 1,
+            substeps = std::max(1, static_cast<int>(std::ceil(1 / (setup.fps * setup.longest_step) - 1e-9)));
+  const double t0 = (state.frame - setup.first_frame) / setup.fps, t1 = (number - setup.first_frame) / setup.fps;
+  Moving moving = load(state);
+  FrameReport report;
+  report.frame = number;
+  if (model_.has_prop())
+    for (const CordSystem& c : setup.cords) report.forces.push_back({c.name, {}, 0, 0});
+  step_.contact().forget_gap();
+  for (int k = 0; k < substeps && report.finite; ++k)
+    substep(t0 + (t1 - t0) * k / substeps, (t1 - t0) / substeps, t1 - t0, moving, report);
+  if (model_.has_prop()) {
+    Vec3 centre = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) centre += 0.25 * moving.motion.x[at(model_.point_count()) + k];
+    for (InteractionForce& force : report.forces) force.mean = force.mean.moved(centre);
+  }
+  report.smallest_gap = std::min(step_.contact().smallest_gap(), step_.contact().widest_reach());
+  judge(moving, report);
+  hold_again(moving, report);
+  store(state, moving);
+  state.frame = number;
+  state.time = t1;
+  report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return report;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Solver>> make_lockstep_solver(LockstepSetup setup) {
+  auto model = build_lockstep_model(std::move(setup));
+  if (!model) return model.error();
+  return std::unique_ptr<Solver>(std::make_unique<LockstepSolver>(std::move(*model)));
+}
+
+}  // namespace ft

@@ -1,0 +1,154 @@
+#include "solvers/lockstep/lockstep_step.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "solvers/integrator.h"
+
+namespace ft {
+namespace {
+
+constexpr double k_settled = 1e-9;           ///< Newton ends when nothing wants to move further [m]
+constexpr int k_most_iterations = 60;        ///< of one look at friction
+constexpr int k_friction_looks = 3;          ///< at most
+constexpr double k_friction_settled = 1e-6;  ///< a new look at friction that moves nothing further was the last [m]
+/// What gets on by so small a share of what it wants, so many times in a row, is in the way of something that is
+/// driven.
+constexpr double k_stuck_share = 1e-3;
+constexpr int k_stuck_iterations = 6;
+constexpr int k_most_halvings = 24;
+constexpr double k_energy_noise = 1e-12;  ///< rounding of the potential, over its size [1]
+/// Inertia of a driven node, over the stiffest that pulls at it: it yields by so much less.
+constexpr double k_driven = 1e4;
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+double longest(std::span<const Vec3> all) {
+  double squared = 0;
+  for (const Vec3& d : all) squared = std::max(squared, d.squaredNorm());
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
+LockstepStep::LockstepStep(const LockstepModel& model) : model_(model), contact_(model), elements_(model.elements) {}
+
+double LockstepStep::value(std::span<const double> weight, std::span<const Vec3> x) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += 0.5 * weight[i] * (x[i] - y_[i]).squaredNorm();
+  return sum + elements_.value(x) + contact_.value(x);
+}
+
+/// From x_; false where it did not settle.
+bool LockstepStep::newton(std::span<const double> weight, LockstepStepReport& report) {
+  const std::size_t n = x_.size();
+  Stopwatch watch;
+  int stuck = 0;
+  for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+    watch.lap();
+    system_.begin(weight);
+    for (std::size_t i = 0; i < n; ++i) gradient_[i] = weight[i] * (y_[i] - x_[i]);
+    terms_.clear();
+    elements_.add_terms(x_, terms_);
+    contact_.add_terms(x_, terms_);
+    for (const NodeTerm& t : terms_) {
+      system_.add(t);
+      for (int k = 0; k < t.count; ++k) gradient_[at(t.node[at(k)])] -= t.weight[at(k)] * t.force;
+    }
+    report.seconds_assembly += watch.lap();
+    ++report.newton_iterations;
+    const bool solved = system_.solve(gradient_, direction_) && all_finite(direction_);
+    report.seconds_linear += watch.lap();
+    if (!solved) {
+      report.finite = false;
+      return false;
+    }
+    report.residual = longest(direction_);
+    const double before = value(weight, x_);
+    contact_.find(x_, direction_);
+    double factor = contact_.free_share();
+    bool accepted = false;
+    for (int halving = 0; halving < k_most_halvings && !accepted; ++halving, factor *= 0.5) {
+      for (std::size_t i = 0; i < n; ++i) trial_[i] = x_[i] + factor * direction_[i];
+      const double after = value(weight, trial_);
+      accepted = std::isfinite(after) && after <= before + k_energy_noise * std::abs(before);
+    }
+    report.seconds_contact += watch.lap();
+    if (!accepted) return report.residual < 1e3 * k_settled;  // rounding decides here
+    stuck = factor < k_stuck_share ? stuck + 1 : 0;
+    if (stuck >= k_stuck_iterations) return false;
+    x_.swap(trial_);
+    if (report.residual < k_settled) return true;
+  }
+  return false;
+}
+
+LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, LockstepMotion& m) {
+  const std::size_t n = at(model_.node_count()), points = at(model_.point_count());
+  const IntegratorWeights w = integrator_weights(h, m.h_previous, model_.setup.bdf2);
+  const double bh = w.beta * h;
+  LockstepStepReport report;
+  report.effective_step = bh / (1 - w.b);
+
+  elements_.begin_step(m.x, bh);
+  y_.resize(n), trial_.resize(n), gradient_.resize(n), direction_.resize(n), weight_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    y_[i] = w.a * m.x[i] - w.b * m.x_previous[i] + bh * (w.a * m.v[i] - w.b * m.v_previous[i]) +
+            bh * bh * model_.setup.gravity;
+    weight_[i] = model_.mass[i] / (bh * bh);
+  }
+  if (!driven.empty()) {
+    double stiffest = model_.contact_stiffness;
+    for (const CordSpring& s : model_.elements.springs) stiffest = std::max(stiffest, s.stiffness);
+    for (std::size_t k = 0; k < 4; ++k) y_[points + k] = driven[k], weight_[points + k] = k_driven * stiffest;
+  }
+
+  // As far as all goes on as it did, or the prop's track wants, without meeting anything: a good place to begin.
+  x_ = m.x;
+  for (std::size_t i = 0; i < n; ++i)
+    direction_[i] = i >= points && !driven.empty() ? (driven[i - points] - m.x[i]).eval() : (h * m.v[i]).eval();
+  contact_.find(x_, direction_);
+  const double share = contact_.free_share();
+  for (std::size_t i = 0; i < n; ++i) x_[i] += share * direction_[i];
+
+  std::vector<Vec3> before;
+  for (int look = 0; look < k_friction_looks; ++look) {
+    contact_.lag_friction(x_, m.x, h);
+    before = x_;
+    if (!newton(weight_, report)) break;
+    if (!contact_.rubs()) break;
+    double moved = 0;
+    for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, (x_[i] - before[i]).norm());
+    if (look > 0 && moved < k_friction_settled) break;
+  }
+  report.finite = report.finite && all_finite(x_);
+  if (!report.finite) return report;
+
+  report.on_prop = contact_.on_prop(x_);
+  report.hold_force = elements_.hold_force(x_);
+  for (std::size_t k = 0; k < driven.size(); ++k)
+    report.missed = std::max(report.missed, (x_[points + k] - driven[k]).norm());
+  LockstepMotion next;
+  next.x = x_;
+  next.v.resize(n);
+  for (std::size_t i = 0; i < n; ++i) next.v[i] = (x_[i] - w.a * m.x[i] + w.b * m.x_previous[i]) / bh;
+  next.x_previous = std::move(m.x);
+  next.v_previous = std::move(m.v);
+  next.h_previous = h;
+  m = std::move(next);
+  return report;
+}
+
+}  // namespace ft

@@ -1,0 +1,48 @@
+// One implicit step of a lockstep system: Newton on the whole potential until nothing moves any more, every iteration
+// cut short where something would meet. The normal forces of friction are looked at anew until they, too, have settled.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solvers/lockstep/lockstep_contact.h"
+
+namespace ft {
+
+struct LockstepMotion {
+  std::vector<Vec3> x, v, x_previous, v_previous;  ///< of the nodes
+  double h_previous = 0;                           ///< s; 0: no history
+};
+
+struct LockstepStepReport {
+  int newton_iterations = 0;
+  double residual = 0;  ///< what the last iteration wanted to move [m]
+  double missed = 0;    ///< how far a driven prop stayed behind its track [m]
+  bool finite = true;
+  std::vector<Wrench> on_prop;     ///< per cord system, about the origin
+  Vec3 hold_force = Vec3::Zero();  ///< on all held points [N]
+  double effective_step = 0;       ///< what forces acted for, in the integrator's sense [s]
+  double seconds_contact = 0, seconds_assembly = 0, seconds_linear = 0;
+};
+
+class LockstepStep {
+ public:
+  explicit LockstepStep(const LockstepModel& model);
+  /// driven: where the prop's nodes have to be at the end; empty: it moves by itself, or there is none.
+  LockstepStepReport step(double h, std::span<const Vec3> driven, LockstepMotion& motion);
+  LockstepContact& contact() { return contact_; }
+
+ private:
+  bool newton(std::span<const double> weight, LockstepStepReport& report);
+  double value(std::span<const double> weight, std::span<const Vec3> x) const;
+
+  const LockstepModel& model_;
+  LockstepContact contact_;
+  CordElements elements_;
+  NodeSystem system_;
+  std::vector<Vec3> x_, y_, trial_, gradient_, direction_;
+  std::vector<double> weight_;
+  std::vector<NodeTerm> terms_;
+};
+
+}  // namespace ft
