@@ -30,9 +30,14 @@ DampingVolume::DampingVolume(const StandInSpec& spec)
 }
 
 Result<std::unique_ptr<StandIn>> DampingVolume::make(const StandInSpec& s) {
+  if (auto fault = check(s, false)) return *fault;
+  return std::unique_ptr<StandIn>(new DampingVolume(s));
+}
+
+std::optional<Error> DampingVolume::check(const StandInSpec& s, bool may_be_undamped) {
   const double weakest = std::min({s.damping, s.damping_quadratic, s.damping_spin, s.damping_axes.minCoeff()});
-  if (!(weakest >= 0)) return usage_error("a damping volume never pushes: damping must be 0 or more");
-  if (s.damping == 0 && s.damping_quadratic == 0 && s.damping_spin == 0)
+  if (!(weakest >= 0)) return usage_error("a damping volume never pushes: damping must be 0 or more", s.name);
+  if (!may_be_undamped && s.damping == 0 && s.damping_quadratic == 0 && s.damping_spin == 0)
     return usage_error("the damping volume does nothing", s.name,
                        "write damping [kg/s], damping_quadratic [kg/m] or damping_spin [kg m2/s]");
   if (s.shape == VolumeShape::k_box && !(s.size.minCoeff() > 0))
@@ -49,12 +54,17 @@ Result<std::unique_ptr<StandIn>> DampingVolume::make(const StandInSpec& s) {
         const int a = t[at(k)], b = t[at((k + 1) % 3)];
         sides.push_back({std::min(a, b), std::max(a, b)});
       }
+    double volume = 0;
+    for (const Triangle& t : triangles)
+      volume += s.mesh.positions[at(t[0])].dot(s.mesh.positions[at(t[1])].cross(s.mesh.positions[at(t[2])])) / 6;
     std::sort(sides.begin(), sides.end());
     for (std::size_t i = 0; i < sides.size(); ++i)
       if ((i == 0 || sides[i] != sides[i - 1]) && (i + 1 == sides.size() || sides[i] != sides[i + 1]))
         return usage_error("the mesh of a damping volume must be closed", s.name, "cap its openings");
+    if (!(volume > 0))
+      return usage_error("the mesh of a damping volume is turned inside out", s.name, "flip its faces");
   }
-  return std::unique_ptr<StandIn>(new DampingVolume(s));
+  return {};
 }
 
 double DampingVolume::depth(const Vec3& place) const {
@@ -66,13 +76,7 @@ double DampingVolume::depth(const Vec3& place) const {
 }
 
 double DampingVolume::share(const BodyState& body) const {
-  const auto weight = [&](const Vec3& place) {
-    const double d = depth(place);
-    if (!(d > 0)) return 0.0;
-    if (d >= spec().soft_edge) return 1.0;
-    const double t = d / spec().soft_edge;
-    return t * t * (3 - 2 * t);
-  };
+  const auto weight = [&](const Vec3& place) { return ramp(depth(place)); };
   double inside = 0, all = 0;
   for (const ShapeSample& s : body.shape) {
     if (s.volume <= 0) continue;

@@ -12,21 +12,23 @@
 namespace ft {
 
 /// Reads shape and its measures, soft_edge, damping, damping_axes, damping_quadratic, damping_spin.
-class DampingVolume final : public StandIn {
+class DampingVolume : public StandIn {
  public:
   static Result<std::unique_ptr<StandIn>> make(const StandInSpec& spec);
   bool is_dissipative() const override { return true; }
   bool reaches(const BodyState& body, double margin) const override;
 
  protected:
-  StandInForce law(const BodyState& body) const override;
-
- private:
   explicit DampingVolume(const StandInSpec& spec);
-  /// How far inside [m]; 0 or less outside, where it need not be the distance.
-  double depth(const Vec3& place) const;
+  /// What is wrong with shape and damping; may_be_undamped: something else acts in it.
+  static std::optional<Error> check(const StandInSpec& spec, bool may_be_undamped);
+  StandInForce law(const BodyState& body) const override;
   /// Share of the body's volume that counts as inside.
   double share(const BodyState& body) const;
+
+ private:
+  /// How far inside [m]; 0 or less outside, where it need not be the distance.
+  double depth(const Vec3& place) const;
 
   std::vector<Vec3> positions_;  ///< of the mesh, in the shape's axes
   std::vector<Triangle> triangles_;

@@ -138,15 +138,20 @@ StandInForce Deviation::force(const BodyState& body, std::vector<char>& touched)
   return out;
 }
 
-/// Whether the clip's support, which gives it this acceleration upwards on top of gravity, is to be replaced.
-bool Deviation::is_carried(const RigidMotion& clip, double upward, double middle) const {
-  if (!(upward > k_least_support * settings_.gravity.norm())) return false;
+/// The clip in the middle of a step, where its support is to be replaced: what gives it this acceleration upwards on
+/// top of gravity.
+std::optional<RigidMotion> Deviation::carried(double upward, double middle) const {
+  if (!(upward > k_least_support * settings_.gravity.norm())) return {};
   BodyState body;
-  body.motion = clip, body.mass = body_.mass.mass, body.shape = body_.shape(middle), body.time = middle;
-  return std::any_of(stand_ins_.begin(), stand_ins_.end(), [&](const auto& s) {
-    return s->spec().support == Support::k_replace && s->spec().from <= middle && middle < s->spec().until &&
-           s->reaches(body, k_standing_distance);
-  });
+  for (const auto& s : stand_ins_) {
+    if (s->spec().support != Support::k_replace || middle < s->spec().from || middle >= s->spec().until) continue;
+    if (body.mass == 0) {
+      body.motion = body_.motion(middle), body.shape = body_.shape(middle);
+      body.mass = body_.mass.mass, body.time = middle;
+    }
+    if (s->reaches(body, k_standing_distance)) return body.motion;
+  }
+  return {};
 }
 
 /// The deviation after h without stand-ins and without the way back.
@@ -159,7 +164,7 @@ DeviationState Deviation::drift(const DeviationState& from, const RigidMotion& c
   // The support of the clip as what it changes: a landing may be an impulse within the step.
   const Vec3 change = later.velocity - clip.velocity - h * settings_.gravity;
   const double middle = from.time + 0.5 * h;
-  if (is_carried(body_.motion(middle), up.dot(change) / h, middle)) {
+  if (const std::optional<RigidMotion> standing = carried(up.dot(change) / h, middle)) {
     const Vec3 way = later.pose.position - clip.pose.position - h * clip.velocity - 0.5 * h * h * settings_.gravity;
     const Vec3 yielding = settings_.move_axes.cwiseProduct(up);
     out.offset.position -= up.dot(way) * yielding;
@@ -167,7 +172,7 @@ DeviationState Deviation::drift(const DeviationState& from, const RigidMotion& c
     // Its moment: all of the clip's but what friction has, which stays and acts at the lowest point.
     double lowest = 0;
     for (const ShapeSample& s : body_.shape(middle))
-      lowest = std::min(lowest, up.dot(body_.motion(middle).pose.rotation * s.place));
+      lowest = std::min(lowest, up.dot(standing->pose.rotation * s.place));
     const Vec3 friction = body_.mass.mass * (change - up.dot(change) * up);
     Vec3 moment = world_inertia(body_.mass, later.pose.rotation) * later.spin -
                   world_inertia(body_.mass, clip.pose.rotation) * clip.spin - lowest * up.cross(friction);

@@ -16,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "solvers/standins/standin.h"
@@ -97,7 +98,7 @@ class Deviation {
   Vec3 turning(const DeviationState& state, const RigidMotion& clip) const;
   StandInForce force(const BodyState& body, std::vector<char>& touched) const;
   DeviationState drift(const DeviationState& from, const RigidMotion& clip, const RigidMotion& later, double h) const;
-  bool is_carried(const RigidMotion& clip, double upward, double middle) const;
+  std::optional<RigidMotion> carried(double upward, double middle) const;
   double comeback_share(const DeviationState& state, bool touching, double middle) const;
   Trial attempt(const DeviationState& from, double h) const;
 

@@ -1,13 +1,30 @@
 #include "solvers/standins/registry.h"
 
-#include "solvers/standins/damping_volume.h"
+#include <cmath>
+
+#include "solvers/standins/carried_weight.h"
+#include "solvers/standins/fitted_field.h"
+#include "solvers/standins/spring_grid.h"
+#include "solvers/standins/unilateral_spring.h"
+#include "solvers/standins/water_plane.h"
 
 namespace ft {
 namespace {
 
 constexpr StandInKind k_kinds[] = {
-    {"damping", DampingVolume::make},
+    {"damping", DampingVolume::make},   {"mat", SpringGrid::make},       {"water", WaterPlane::make},
+    {"spring", UnilateralSpring::make}, {"weight", CarriedWeight::make}, {"fitted", FittedField::make},
 };
+
+/// All but the times and the largest force, where infinity means that there is none.
+bool is_finite(const StandInSpec& s) {
+  for (const double value :
+       {s.gain, s.heading, s.radius_top, s.radius_bottom, s.height, s.soft_edge, s.damping, s.damping_quadratic,
+        s.damping_spin, s.stiffness, s.stiffness_cubic, s.damping_ratio, s.density, s.drag, s.slam, s.length, s.mass})
+    if (!std::isfinite(value)) return false;
+  const Vec3 places[] = {s.position, s.size, s.damping_axes, s.anchor};
+  return all_finite(places) && all_finite(s.mesh.positions);
+}
 
 }  // namespace
 
@@ -20,6 +37,7 @@ Result<std::unique_ptr<StandIn>> make_stand_in(const StandInSpec& spec) {
   for (const StandInKind& kind : k_kinds) {
     names += (names.empty() ? "" : ", ") + std::string(kind.name);
     if (spec.kind != kind.name) continue;
+    if (!is_finite(spec)) return usage_error("all numbers of a stand-in must be finite", spec.name);
     if (!(spec.gain >= 0)) return usage_error("gain must be 0 or more", spec.name);
     if (!(spec.until > spec.from)) return usage_error("until must come after from", spec.name);
     if (!(spec.limit_force > 0)) return usage_error("limit_force must be above 0", spec.name);

@@ -10,6 +10,7 @@ void StandInForce::add(const Vec3& arm, const Vec3& force, const Mat3& stiffness
   // A rotation r moves the place by r x arm = -[arm] r, and the arm of the force with it.
   const Mat3 x = cross_matrix(arm);
   const auto put = [&](Mat6& all, const Mat3& there) {
+    if (there.isZero(0)) return;
     all.topLeftCorner<3, 3>() += there;
     all.topRightCorner<3, 3>() -= there * x;
     all.bottomLeftCorner<3, 3>() += x * there;
@@ -30,6 +31,13 @@ StandInForce& StandInForce::operator*=(double factor) {
   wrench = factor * wrench, rate = factor * rate;
   stiffness *= factor, damping *= factor, inertia *= factor;
   return *this;
+}
+
+double StandIn::ramp(double depth) const {
+  if (!(depth > 0)) return 0;
+  if (depth >= spec_.soft_edge) return 1;
+  const double t = depth / spec_.soft_edge;
+  return t * t * (3 - 2 * t);
 }
 
 StandInForce StandIn::act(const BodyState& body) const {

@@ -80,6 +80,8 @@ class StandIn {
  public:
   explicit StandIn(StandInSpec spec) : spec_(std::move(spec)) {}
   virtual ~StandIn() = default;
+  StandIn(const StandIn&) = delete;
+  StandIn& operator=(const StandIn&) = delete;
 
   const StandInSpec& spec() const { return spec_; }
   /// Holds the body up as the ground of the clip did, which then has to go: needs support = "replace".
@@ -98,7 +100,11 @@ class StandIn {
   virtual StandInForce law(const BodyState& body) const = 0;
   /// World to the shape's axes.
   Vec3 local(const Vec3& place) const { return turned().transpose() * (place - spec_.position); }
+  /// Shape's axes to the world's.
   Mat3 turned() const { return Eigen::AngleAxisd(spec_.heading, Vec3::UnitY()).toRotationMatrix(); }
+
+  /// From 0 at the rim to 1 at the soft edge's depth inside [m], without a kink.
+  double ramp(double depth) const;
 
  private:
   StandInSpec spec_;
