@@ -108,7 +108,7 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
 Result<Solvers> make_solvers(const BakePlan& plan, const SolverFactory& factory) {
   Solvers out;
   for (const GroupPlan& group : plan.groups) {
-    auto solver = factory(group.setup);
+    auto solver = group.lockstep ? make_lockstep_solver(*group.lockstep) : factory(group.setup);
     if (!solver) return solver.error();
     out.push_back(std::move(*solver));
   }

@@ -19,14 +19,16 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     CHECK(outputs.size() == static_cast<std::size_t>(solver.system_count()));
     for (int s = 0; s < solver.system_count(); ++s) {
       const Mesh& mesh = outputs[static_cast<std::size_t>(s)].mesh;
-      add({g, s, false, mesh}, mesh.name, "cloth", true);
+      add({g, s, false, mesh}, mesh.name, plan.groups[g].lockstep ? "cords" : "cloth", true);
     }
     if (!plan.shot().cache_collider) continue;
     std::vector<Vec3> collider;
     solver.collider_positions(solver.initial_state(), collider);
-    if (!collider.empty())
+    if (!collider.empty() && !plan.groups[g].lockstep)  // a prop is its own collider
       add({g, -1, true, make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles())},
           primary.name + ".collider", "collider", false);
+    const auto is_there = [&](const ManifestSystem& system) { return system.name == primary.name; };
+    if (std::any_of(systems_.begin(), systems_.end(), is_there)) continue;
     std::vector<Vec3> body(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
     primary.trajectory->bind_pose(body);
     add({g, -1, false, make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles)}, primary.name,
@@ -102,7 +104,7 @@ Snapshot CacheSet::take(std::span<const State> states, const Snapshot* before) c
         if (const Teleport* teleport = teleport_into(teleports, out.frame)) carry(*teleport, std::span(from));
         for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - from[k]) * plan_.shot().fps;
       }
-    } else if (source.collider) {
+    } else if (source.collider || solvers_[source.group]->moves_primary()) {
       solvers_[source.group]->collider_positions(state, x);
     } else {
       plan_.primaries[plan_.groups[source.group].primary].trajectory->sample(state.time, x);
@@ -143,7 +145,7 @@ std::uint64_t CacheSet::expected_bytes() const {
     const auto vertices = static_cast<std::uint64_t>(system.vertex_count);
     // 12 bytes a position; as much again for velocities where the format has them.
     for (const ManifestCache& cache : system.caches)
-      sum += vertices * frames * (cache.format == "pc2" || system.role != "cloth" ? 12 : 24);
+      sum += vertices * frames * (cache.format == "pc2" || !is_secondary(system.role) ? 12 : 24);
   }
   return sum;
 }

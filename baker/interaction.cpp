@@ -57,7 +57,7 @@ std::vector<Interaction> interactions(const Manifest& manifest, const std::vecto
   for (const PrimaryPlan& primary : primaries) {
     std::vector<std::string> secondaries;
     for (const ManifestSystem& s : manifest.systems)
-      if (s.role == "cloth" && s.primary == primary.name) secondaries.push_back(s.name);
+      if (is_secondary(s.role) && s.primary == primary.name) secondaries.push_back(s.name);
     std::vector<Sum> sums(secondaries.size());
     Sum together;
     for (const FrameReport& frame : manifest.frames) {

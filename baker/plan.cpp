@@ -7,6 +7,7 @@
 #include <map>
 
 #include "baker/pins.h"
+#include "baker/plan_cords.h"
 #include "baker/quality.h"
 #include "baker/vertex_maps.h"
 #include "io/shot/mesh_file.h"
@@ -238,43 +239,105 @@ void place_garment(Mesh& mesh, const ClothSpec& spec) {
   }
 }
 
+namespace {
+
+Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, const Importer& importer,
+                                   const std::filesystem::path& import_cache, std::vector<std::string>& notes) {
+  auto imported = importer(import_request(shot, spec, import_cache));
+  if (!imported) return imported.error();
+  CHECK(imported->trajectory);
+  if (const Status checked = check_primary(shot, spec, *imported->trajectory); !checked) return checked.error();
+  for (const std::string& note : imported->info.notes) notes.push_back("primary \"" + spec.name + "\": " + note);
+  PrimaryPlan out;
+  out.name = spec.name;
+  out.scan = scan_of(shot, spec, *imported->trajectory);
+  for (std::string& note : teleport_notes(out.scan, spec.name)) notes.push_back(std::move(note));
+  out.mass = primary_mass(spec, *imported->trajectory);
+  out.trajectory = std::move(imported->trajectory);
+  out.info = std::move(imported->info);
+  return out;
+}
+
+/// Whether something asks for a primary that is one rigid body: cords on it, or a coupling that moves it.
+bool has_to_be_rigid(const Shot& shot, const std::string& primary) {
+  return is_hybrid(shot, primary) ||
+         std::any_of(shot.cords.begin(), shot.cords.end(), [&](const CordsSpec& c) { return c.on == primary; });
+}
+
+/// Its prop, and where it goes: along its track or, once stand-ins have been met, the adjusted one.
+Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary, std::vector<std::string>& notes) {
+  if (!spec.shape.empty()) {
+    primary.prop = std::make_shared<const Prop>(prop_of_shape(spec, shot));
+  } else if (has_to_be_rigid(shot, spec.name)) {
+    auto prop = prop_of_trajectory(spec, shot, primary.trajectory, primary.mass.kilograms);
+    if (!prop) return prop.error();
+    primary.prop = std::make_shared<const Prop>(std::move(*prop));
+  } else {
+    return {};
+  }
+  primary.track = primary.prop->track;
+  if (is_hybrid(shot, spec.name)) {
+    auto pass = hybrid_pass(shot, *primary.prop);
+    if (!pass) return pass.error();
+    primary.track = pass->track;
+    notes.push_back(pass->text(spec.name));
+    notes.insert(notes.end(), pass->notes.begin(), pass->notes.end());
+  }
+  primary.trajectory = prop_trajectory(*primary.prop, primary.track, shot.preroll / shot.fps);
+  if (!spec.shape.empty()) {
+    primary.mass = primary_mass(spec, *primary.trajectory);
+    primary.info.format = spec.shape;
+    primary.info.vertex_count = primary.trajectory->surface().vertex_count();
+    primary.info.triangle_count = static_cast<int>(primary.trajectory->surface().triangles.size());
+    primary.info.bind_bounds = bounds(bind_pose(*primary.trajectory));
+    primary.info.up = "y";
+  }
+  return {};
+}
+
+Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
+  GroupPlan group{p, common_setup(shot), {}, {}};
+  group.setup.primary = plan.primaries[p].trajectory;
+  group.setup.teleports = plan.primaries[p].scan.teleports;
+  std::vector<const ClothSpec*> worn;
+  for (const ClothSpec& spec : shot.cloths) {
+    if (spec.on != plan.primaries[p].name) continue;
+    if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added) return added;
+    worn.push_back(&spec);
+  }
+  for (std::size_t g = 0; g < worn.size(); ++g)
+    if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added) return added;
+  if (!group.setup.garments.empty()) plan.groups.push_back(std::move(group));
+  return {};
+}
+
+}  // namespace
+
 Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache) {
   BakePlan plan;
   plan.inputs = std::move(inputs);
   const Shot& shot = plan.shot();
+  plan.notes = shot.notes;
   const auto clock = std::chrono::steady_clock::now();
   for (const PrimarySpec& spec : shot.primaries) {
-    auto imported = importer(import_request(shot, spec, import_cache));
-    if (!imported) return imported.error();
-    CHECK(imported->trajectory);
-    if (const Status checked = check_primary(shot, spec, *imported->trajectory); !checked) return checked.error();
-    for (const std::string& note : imported->info.notes) plan.notes.push_back("primary \"" + spec.name + "\": " + note);
-    TeleportScan scan = scan_of(shot, spec, *imported->trajectory);
-    for (std::string& note : teleport_notes(scan, spec.name)) plan.notes.push_back(std::move(note));
-    const PrimaryMass mass = primary_mass(spec, *imported->trajectory);
-    plan.primaries.push_back(
-        {spec.name, std::move(imported->trajectory), std::move(imported->info), std::move(scan), mass});
+    PrimaryPlan primary;
+    primary.name = spec.name;
+    if (spec.shape.empty()) {
+      auto character = plan_character(shot, spec, importer, import_cache, plan.notes);
+      if (!character) return character.error();
+      primary = std::move(*character);
+    }
+    if (const Status planned = plan_prop(shot, spec, primary, plan.notes); !planned) return planned.error();
+    plan.primaries.push_back(std::move(primary));
   }
   if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-    GroupPlan group{p, common_setup(shot), {}};
-    group.setup.primary = plan.primaries[p].trajectory;
-    group.setup.teleports = plan.primaries[p].scan.teleports;
-    std::vector<const ClothSpec*> worn;
-    for (const ClothSpec& spec : shot.cloths) {
-      if (spec.on != plan.primaries[p].name) continue;
-      if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added)
-        return added.error();
-      worn.push_back(&spec);
-    }
-    for (std::size_t g = 0; g < worn.size(); ++g)
-      if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added)
-        return added.error();
-    if (!group.setup.garments.empty()) plan.groups.push_back(std::move(group));
+    if (const Status planned = plan_cloths(shot, p, plan); !planned) return planned.error();
+    if (const Status planned = plan_cords(shot, p, plan); !planned) return planned.error();
   }
-  if (plan.groups.empty()) return usage_error("no cloth is on any primary", shot.file.string());
+  if (plan.groups.empty()) return usage_error("no cloth or cords are on any primary", shot.file.string());
   return plan;
 }
 

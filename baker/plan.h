@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "baker/hybrid.h"
 #include "baker/inputs.h"
 #include "baker/primary_mass.h"
+#include "baker/prop.h"
 #include "io/import/import.h"
 #include "io/import/teleport_scan.h"
 #include "solvers/cloth/cloth_solver.h"
+#include "solvers/lockstep/lockstep_solver.h"
 
 namespace ft {
 
@@ -22,19 +25,23 @@ struct PrimaryPlan {
   CharacterInfo info;
   TeleportScan scan;
   PrimaryMass mass;
+  std::shared_ptr<const Prop> prop;  ///< null for a character
+  RigidTrack track;                  ///< of a prop: where `trajectory` has it
 };
 
-/// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation.
+/// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation. Cords leave as tubes.
 struct GarmentOutput {
   Mesh mesh;                   ///< the file's, placed
   std::vector<int> joined_of;  ///< per vertex of the file: its vertex in the simulation; empty: the same
 };
 
-/// All garments of one primary are solved together and feel each other; garments on different primaries do not.
+/// All garments of one primary are solved together and feel each other, and so are all cords of one primary; cloth and
+/// cords do not feel each other, nor does what is on different primaries.
 struct GroupPlan {
   std::size_t primary = 0;  ///< into BakePlan::primaries
   ClothSetup setup;
-  std::vector<GarmentOutput> outputs;  ///< one per garment of setup
+  std::vector<GarmentOutput> outputs;     ///< one per garment of setup, or cord system of lockstep
+  std::optional<LockstepSetup> lockstep;  ///< a group of cords: then `setup` is not used
 };
 
 struct BakePlan {

@@ -100,6 +100,14 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
       if (!garment.mesh.stitches.empty())
         out.push_back("  " + sewing_text(garment.mesh) + (garment.pattern_scale > 0 ? ", cut from its pattern" : ""));
     }
+  for (const GroupPlan& group : plan.groups) {
+    if (!group.lockstep) continue;
+    for (const CordSystem& c : group.lockstep->cords)
+      out.push_back(fmt::format("cords \"{}\" on \"{}\": {} points, {} cords, {} held, {:g} kg, EA = {:g} N{}", c.name,
+                                plan.primaries[group.primary].name, c.graph.points.size(), c.graph.cords.size(),
+                                c.graph.held.size(), c.mass, c.stretch,
+                                group.lockstep->prop->two_way ? ", two-way" : ""));
+  }
   for (const std::string& note : plan.notes) out.push_back("note: " + note);
   std::string formats;
   for (const std::string& f : shot.cache_formats) formats += (formats.empty() ? "" : ", ") + f;
