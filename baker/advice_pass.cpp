@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "baker/core/volume.h"
+#include "solvers/standins/fit.h"
 
 namespace ft {
 namespace {
@@ -55,7 +56,7 @@ void gather(std::span<const Wrench> forces, std::span<const Vec3> centre, const 
   std::vector<double> sizes;
   std::vector<Vec3> acceleration;
   Vec3 impulse = Vec3::Zero();
-  double fv = 0, vv = 0, ff = 0;
+  std::vector<ForceSample> samples;
   int against = 0, upright = 0, moving = 0;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const Vec3& f = forces[i].force;
@@ -69,17 +70,15 @@ void gather(std::span<const Wrench> forces, std::span<const Vec3> centre, const 
     const Vec3 v = (centre[i] - centre[i - 1]) / dt;
     ++moving;
     if (f.dot(v) < 0) ++against;
-    fv += f.dot(v), vv += v.squaredNorm(), ff += f.squaredNorm();
+    samples.push_back({f, v, Vec3::Zero()});
   }
   e.mass_known = mass > 0;
   e.frames = static_cast<int>(sizes.size());
   if (e.frames == 0) return;
   e.upright_share = static_cast<double>(upright) / e.frames;
   if (moving > 0) e.dissipative_share = static_cast<double>(against) / moving;
-  if (vv > 0 && ff > 0 && fv < 0) {
-    e.damping = -fv / vv;
-    e.damping_r2 = fv * fv / (vv * ff);
-  }
+  const StandInFit fit = fit_stand_in(samples);
+  e.damping = fit.damping, e.damping_r2 = fit.r2;
   if (mass <= 0) return;
   e.acceleration_p95 = quantile(sizes, 0.95) / mass;
   e.acceleration_max = *std::max_element(sizes.begin(), sizes.end()) / mass;
