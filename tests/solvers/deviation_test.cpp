@@ -221,6 +221,34 @@ TEST(Deviation, Quadratic_drag_follows_its_closed_form_and_does_not_depend_on_th
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.4);  // second order
 }
 
+TEST(Deviation, A_tumbling_body_that_was_pushed_flies_on_as_a_free_body_does) {
+  const RigidMass mass{2, Vec3(0.1, 0.2, 0.15).asDiagonal()};
+  RigidMotion release;
+  release.velocity = Vec3(2, 3, 0), release.spin = Vec3(2, 1, -3);
+  double errors[2];
+  for (int halvings = 0; halvings < 2; ++halvings) {
+    StandInSpec gate;
+    gate.until = 0.2;
+    std::vector<std::unique_ptr<StandIn>> acting;
+    acting.push_back(std::make_unique<ConstantForce>(Vec3(5, 0, 1), Vec3(0.5, -0.4, 0.8), gate));
+    DeviationSettings settings;
+    settings.step = std::ldexp(1.0 / 240, -halvings);
+    const Deviation d = deviation(flying_body(release, mass, Vec3(0, -k_gravity, 0)), std::move(acting), settings);
+    DeviationState state = d.start(0);
+    const RigidFlight flight(advance(d, state, 0.2).motion, mass);
+    EXPECT_GT(rotation_vector(state.offset.rotation).norm(), 0.05);
+    const RigidMotion m = advance(d, state, 0.7).motion, expected = flight.at(0.5);
+    EXPECT_LT((m.pose.position - expected.pose.position).norm(), 1e-12);
+    EXPECT_LT(
+        (world_inertia(mass, m.pose.rotation) * m.spin - world_inertia(mass, expected.pose.rotation) * expected.spin)
+            .norm(),
+        1e-9);
+    errors[halvings] = m.pose.rotation.angularDistance(expected.pose.rotation);
+  }
+  EXPECT_LT(errors[0], 1e-4);
+  EXPECT_NEAR(errors[0] / errors[1], 4, 0.4);  // second order
+}
+
 TEST(Deviation, Refuses_bodies_and_settings_that_make_no_sense) {
   EXPECT_FALSE(Deviation::make(still_body({}), {}, {}));
   DeviationSettings coarse;
