@@ -9,8 +9,7 @@
 // Horizontal ground forces of the clip stay: those stand-ins have no shear (O'Brien, Zordan & Hodgins 2000, section 4).
 //
 // Steps are exponential (Rosenbrock-Euler, Hochbruck & Ostermann 2010): exact where the forces are linear in place,
-// velocity and time, whatever the stiffness, and halved where they are not, up to a bound of the error; so is
-// touchdown.
+// velocity and time, whatever the stiffness, and halved where they are not (a touchdown), up to a bound of the error.
 #pragma once
 
 #include <functional>

@@ -57,9 +57,9 @@ struct StandInSpec {
   double mass = 0;                   ///< carried [kg]
 };
 
-/// What a stand-in does to a body, about its centre of mass, and how that changes: to first order
-///   wrench + rate dt - stiffness dx - damping dv - inertia da   (translation of the centre of mass, rotation; world
-///   axes)
+/// What a stand-in does to a body, about its centre of mass, and how that changes with time, place, velocity and
+/// acceleration (of translation and rotation, world axes), to first order:
+///   wrench + rate dt - stiffness dx - damping dv - inertia da
 /// The step is exact where this is; what a kind leaves out of it only costs smaller steps. `inertia` must be complete.
 struct StandInForce {
   Wrench wrench;
@@ -88,15 +88,14 @@ class StandIn {
   virtual bool is_supporting() const { return false; }
   /// Only ever takes energy from the body.
   virtual bool is_dissipative() const { return false; }
-  /// Whether it is at the body, give or take a margin [m]: where it would carry a body that the clip has standing
-  /// there.
+  /// Whether it is at the body, give or take a margin [m]: whether it would carry what the clip has standing here.
   virtual bool reaches(const BodyState& body, double margin) const = 0;
 
   /// With gain, time gate and limit.
   StandInForce act(const BodyState& body) const;
 
  protected:
-  /// The kind's own law.
+  /// The kind's own law: full gain, at all times, without a limit.
   virtual StandInForce law(const BodyState& body) const = 0;
   /// World to the shape's axes.
   Vec3 local(const Vec3& place) const { return turned().transpose() * (place - spec_.position); }

@@ -179,6 +179,45 @@ TEST(StandInLaws, A_sinking_sphere_ends_at_its_terminal_velocity) {
   EXPECT_NEAR(state.velocity.y(), -std::sqrt(8 * r * k_gravity / (3 * 0.47)), 0.02 * 1.67);
 }
 
+Vec6 stacked(const Wrench& w) {
+  Vec6 out;
+  out << w.force, w.torque;
+  return out;
+}
+
+TEST(StandInLaws, Derivatives_by_place_and_turn_and_by_the_samples_own_motion_are_those_of_the_wrench) {
+  StandInSpec cord;
+  cord.kind = "spring", cord.length = 0.4, cord.stiffness = 300, cord.anchor = Vec3(0.1, 0.2, -0.3);
+  StandInSpec mat = field(0);
+  mat.kind = "mat", mat.support = Support::k_replace, mat.stiffness = 5e3, mat.stiffness_cubic = 1e5;
+  for (const StandInSpec& spec : {cord, mat}) {
+    auto made = make_stand_in(spec);
+    ASSERT_TRUE(made) << made.error().text();
+    std::vector<ShapeSample> point(1);  // alone: shares do not change as it turns
+    point[0].place = Vec3(0.1, -0.2, 0.15), point[0].normal = Vec3(0, -1, 0), point[0].area = 1;
+    BodyState body;
+    body.mass = 3, body.shape = point;
+    body.motion.pose = {Vec3(0.3, -0.6, 0.5), rotation_by(Vec3(0.3, -0.5, 0.2))};
+    const StandInForce f = (*made)->act(body);
+    constexpr double k_step = 1e-6;
+    for (int k = 0; k < 6; ++k) {
+      const auto moved = [&](double by) {
+        BodyState other = body;
+        if (k < 3) other.motion.pose.position[k] += by;
+        if (k >= 3) other.motion.pose.rotation = rotation_by(by * Vec3::Unit(k - 3)) * body.motion.pose.rotation;
+        return stacked((*made)->act(other).wrench);
+      };
+      const Vec6 difference = (moved(k_step) - moved(-k_step)) / (2 * k_step);
+      EXPECT_LT((difference + f.stiffness.col(k)).norm(), 1e-6 * (1 + f.stiffness.norm())) << spec.kind << k;
+    }
+    if (spec.kind == "spring") continue;  // no sample of the body
+    point[0].velocity = Vec3(0.5, -1, 2);
+    const Vec6 rate = stacked((*made)->act(body).rate), begin = stacked((*made)->act(body).wrench);
+    point[0].place += k_step * point[0].velocity;
+    EXPECT_LT((stacked((*made)->act(body).wrench) - begin - k_step * rate).norm(), 1e-5 * k_step * rate.norm());
+  }
+}
+
 /// Forces of a known law at random motions, with noise of this size beside them.
 std::vector<ForceSample> recorded(double c, double k, double noise, int count) {
   std::mt19937 random(11);
