@@ -1,82 +1,13 @@
 #include "io/import/body_bones.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "io/import/bind.h"
+#include "io/import/limbs.h"
 
 namespace ft {
 namespace {
-
-enum class Limb {
-  k_hips,
-  k_torso,
-  k_neck,
-  k_head,
-  k_hip_joint,
-  k_thigh,
-  k_shin,
-  k_foot,
-  k_toe,
-  k_collar,
-  k_upper_arm,
-  k_forearm,
-  k_hand,
-  k_finger,
-  k_other
-};
-
-struct Word {
-  const char* text;
-  Limb limb;
-};
-/// First match wins; "upleg" stands before "leg", "forearm" before "arm".
-// clang-format off
-constexpr Word k_words[] = {
-    {"hipjoint", Limb::k_hip_joint}, {"upleg", Limb::k_thigh},       {"upperleg", Limb::k_thigh},    {"thigh", Limb::k_thigh},
-    {"femur", Limb::k_thigh},       {"shin", Limb::k_shin},         {"knee", Limb::k_shin},         {"calf", Limb::k_shin},
-    {"lowleg", Limb::k_shin},       {"lowerleg", Limb::k_shin},     {"tibia", Limb::k_shin},        {"leg", Limb::k_shin},
-    {"toe", Limb::k_toe},           {"foot", Limb::k_foot},         {"ankle", Limb::k_foot},        {"thumb", Limb::k_finger},
-    {"finger", Limb::k_finger},     {"index", Limb::k_finger},      {"middle", Limb::k_finger},     {"ring", Limb::k_finger},
-    {"pinky", Limb::k_finger},      {"handend", Limb::k_finger},    {"hand", Limb::k_hand},         {"wrist", Limb::k_hand},
-    {"forearm", Limb::k_forearm},   {"lowerarm", Limb::k_forearm},  {"elbow", Limb::k_forearm},     {"radius", Limb::k_forearm},
-    {"collar", Limb::k_collar},     {"clavicle", Limb::k_collar},   {"uparm", Limb::k_upper_arm},   {"upperarm", Limb::k_upper_arm},
-    {"humerus", Limb::k_upper_arm}, {"shldr", Limb::k_upper_arm},   {"shoulder", Limb::k_collar},   {"arm", Limb::k_upper_arm},
-    {"head", Limb::k_head},         {"neck", Limb::k_neck},         {"spine", Limb::k_torso},       {"chest", Limb::k_torso},
-    {"back", Limb::k_torso},        {"abdomen", Limb::k_torso},     {"torso", Limb::k_torso},       {"thorax", Limb::k_torso},
-    {"hip", Limb::k_hips},          {"pelvis", Limb::k_hips},       {"root", Limb::k_hips},
-};
-// clang-format on
-
-std::string lower(const std::string& text) {
-  std::string out;
-  for (const char c : text) out.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-  return out;
-}
-
-Limb limb_by_name(const std::string& name) {
-  const std::string word = lower(name);
-  for (const Word& w : k_words)
-    if (word.find(w.text) != std::string::npos) return w.limb;
-  return Limb::k_other;
-}
-
-/// Names, with two habits mended: "LeftHip - LeftKnee" means the thigh, "LeftShoulder - LeftElbow" the upper arm.
-std::vector<Limb> limbs(const Character& character, const BodyFrame& frame) {
-  std::vector<Limb> out;
-  for (const CharacterNode& node : character.nodes) {
-    const bool end = node.name.starts_with("EndSite");
-    out.push_back(end && node.parent >= 0 ? out[static_cast<std::size_t>(node.parent)] : limb_by_name(node.name));
-  }
-  for (std::size_t i = 0; i < out.size(); ++i)
-    for (const int child : frame.children[i]) {
-      const Limb below = out[static_cast<std::size_t>(child)];
-      if (out[i] == Limb::k_hips && below == Limb::k_shin) out[i] = Limb::k_thigh;
-      if (out[i] == Limb::k_collar && below == Limb::k_forearm) out[i] = Limb::k_upper_arm;
-    }
-  return out;
-}
 
 struct Radii {
   double at_joint, at_end;
@@ -161,7 +92,7 @@ Landmarks find_landmarks(const Character& character, const BodyFrame& frame, con
 class FleshBuilder {
  public:
   FleshBuilder(const Character& character, const BodyFrame& frame)
-      : frame_(frame), limb_(limbs(character, frame)), marks_(find_landmarks(character, frame, limb_)) {}
+      : frame_(frame), limb_(limbs_by_name(character)), marks_(find_landmarks(character, frame, limb_)) {}
 
   std::vector<BodyBone> build() {
     for (std::size_t i = 0; i < limb_.size(); ++i)
@@ -259,7 +190,7 @@ class FleshBuilder {
 
 /// Turns an arm that points down by more than 45 degrees about its shoulder until it points sideways.
 void raise_arms(const Character& character, BodyFrame& frame) {
-  const Landmarks marks = find_landmarks(character, frame, limbs(character, frame));
+  const Landmarks marks = find_landmarks(character, frame, limbs_by_name(character));
   if (!marks.complete) return;
   for (const int arm : marks.arms) {
     const auto& below = frame.children[static_cast<std::size_t>(arm)];
@@ -318,7 +249,7 @@ std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) 
 }
 
 std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame) {
-  const std::vector<Limb> limb = limbs(character, frame);
+  const std::vector<Limb> limb = limbs_by_name(character);
   std::vector<BodyBone> out;
   for (std::size_t i = 0; i < limb.size(); ++i)
     for (const int child : frame.children[i]) {

@@ -11,6 +11,7 @@
 #include "io/import/clips.h"
 #include "io/import/geometry_cache.h"
 #include "io/import/import_cache.h"
+#include "io/import/placed_character.h"
 #include "io/import/placement.h"
 #include "io/import/sampled_trajectory.h"
 
@@ -140,14 +141,30 @@ Result<LoadedCharacter> load_with_animation(const ImportRequest& request, std::v
   return loaded;
 }
 
-Result<ImportedPrimary> import_character(const ImportRequest& request) {
+Status check_request(const ImportRequest& request) {
+  const std::string name = request.file.string();
+  if (request.body != "blended" && request.body != "capsules")
+    return usage_error("body = \"" + request.body + "\" is unknown", name, "\"blended\" or \"capsules\"");
+  const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
+  if (!positive(request.speed) || !positive(request.shot_fps))
+    return usage_error("speed and fps have to be above 0", name);
+  if (!(request.height >= 0) || !std::isfinite(request.clip_start) || !(request.preroll >= 0) ||
+      !(request.duration >= 0))
+    return usage_error("height, preroll and duration cannot be below 0", name);
+  return {};
+}
+
+}  // namespace
+
+Result<PlacedCharacter> place_character(const ImportRequest& request) {
+  if (Status s = check_request(request); !s) return s.error();
   const std::string name = request.file.string();
   const std::string clip_file = request.animation.empty() ? name : request.animation.string();
-  ImportedPrimary out;
+  PlacedCharacter out;
   std::vector<std::string>& notes = out.info.notes;
   auto loaded = load_with_animation(request, notes);
   if (!loaded) return loaded.error();
-  Character& character = loaded->character;
+  Character& character = out.character = std::move(loaded->character);
   out.content = loaded->content;
 
   auto clip_index = select_clip(character, request.clip, clip_file, notes);
@@ -164,7 +181,7 @@ Result<ImportedPrimary> import_character(const ImportRequest& request) {
   }
   auto meshes = choose_meshes(character, request.meshes, name);
   if (!meshes) return meshes.error();
-  Skin skin = weld(character, *meshes, notes);
+  Skin& skin = out.skin = weld(character, *meshes, notes);
   if (skin.surface.triangles.empty()) return input_error("has no triangle with an area", name);
 
   const ClipPose rest(character, nullptr);
@@ -191,36 +208,41 @@ Result<ImportedPrimary> import_character(const ImportRequest& request) {
   describe(character, *meshes, out.info);
   out.info.unit_scale = placement->unit_scale, out.info.up = placement->up;
   out.info.bind_bounds = bounds(positions);
-  const int pelvis = find_pelvis(character, *meshes);
-  const Playback playback{(clip != nullptr ? clip->start : 0) + request.clip_start, request.speed, request.preroll};
-  const auto kept = std::make_shared<const Character>(std::move(character));
-  const Clip* kept_clip = *clip_index < 0 ? nullptr : &kept->clips[static_cast<std::size_t>(*clip_index)];
-  out.trajectory = std::make_unique<CharacterTrajectory>(kept, kept_clip, std::move(skin), std::move(bind), pelvis,
-                                                         placement->matrix(), playback);
+  out.clip = *clip_index;
+  out.pelvis = find_pelvis(character, *meshes);
+  out.placement = placement->matrix();
+  out.bind = std::move(bind);
+  out.playback = {(clip != nullptr ? clip->start : 0) + request.clip_start, request.speed, request.preroll};
+  return out;
+}
+
+Result<ImportedPrimary> play(PlacedCharacter placed, const ImportRequest& request) {
+  ImportedPrimary out;
+  out.info = std::move(placed.info);
+  out.content = placed.content;
+  const auto kept = std::make_shared<const Character>(std::move(placed.character));
+  const Clip* clip = placed.clip < 0 ? nullptr : &kept->clips[at(placed.clip)];
+  out.trajectory = std::make_unique<CharacterTrajectory>(kept, clip, std::move(placed.skin), std::move(placed.bind),
+                                                         placed.pelvis, placed.placement, placed.playback);
 
   // Numbers that are finite one by one can still be far out together.
+  std::vector<Vec3> positions(at(out.trajectory->surface().vertex_count()));
   for (const double t : {-request.preroll, 0.0, request.duration}) {
     out.trajectory->sample(t, positions);
     if (!all_finite(positions) || bounds(positions).size().norm() > 1e6)
       return input_error(
-          "the character is not finite, or larger than 1000 km, " + std::to_string(t) + " s into the shot", clip_file);
+          "the character is not finite, or larger than 1000 km, " + std::to_string(t) + " s into the shot",
+          (request.animation.empty() ? request.file : request.animation).string());
   }
   return out;
 }
 
-}  // namespace
-
 Result<ImportedPrimary> import_primary(const ImportRequest& request) {
-  const std::string name = request.file.string();
-  if (request.body != "blended" && request.body != "capsules")
-    return usage_error("body = \"" + request.body + "\" is unknown", name, "\"blended\" or \"capsules\"");
-  const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
-  if (!positive(request.speed) || !positive(request.shot_fps))
-    return usage_error("speed and fps have to be above 0", name);
-  if (!(request.height >= 0) || !std::isfinite(request.clip_start) || !(request.preroll >= 0) ||
-      !(request.duration >= 0))
-    return usage_error("height, preroll and duration cannot be below 0", name);
-  return is_geometry_cache(request.file) ? import_geometry_cache(request) : import_character(request);
+  if (Status s = check_request(request); !s) return s.error();
+  if (is_geometry_cache(request.file)) return import_geometry_cache(request);
+  auto placed = place_character(request);
+  if (!placed) return placed.error();
+  return play(std::move(*placed), request);
 }
 
 Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const ImportLimits& limits) {
