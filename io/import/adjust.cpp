@@ -79,9 +79,9 @@ KeyTimes key_times(const Character& character, const Clip& clip, const std::vect
         }
       }
     }
-  for (double& key : keys) key = round_to_float(key);
   std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  const auto one_float = [](double a, double b) { return static_cast<float>(a) == static_cast<float>(b); };
+  keys.erase(std::unique(keys.begin(), keys.end(), one_float), keys.end());
 
   KeyTimes out;
   double frame = std::ceil((keys.front() - first) / step);

@@ -12,7 +12,7 @@ namespace ft {
 enum class ChannelPath { k_translation, k_rotation, k_scale };
 
 /// New keys for one part of one node's transform, in the file's units and axes, relative to the parent. Times [s] are
-/// those of the file. Times and values are numbers that a 32-bit float holds where they come from adjust_motion().
+/// those of the file.
 struct ChangedChannel {
   int node = -1;
   ChannelPath path = ChannelPath::k_translation;

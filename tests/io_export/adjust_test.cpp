@@ -116,8 +116,7 @@ TEST(Adjust, A_deviation_that_grows_moves_and_turns_the_whole_body_at_every_fram
     ASSERT_NE(source, nullptr);
     for (std::size_t k = 0; k < source->translation.times.size(); ++k) {
       if (source->translation.times[k] > start + 0.25) continue;
-      const auto same =
-          std::find(first.track.times.begin(), first.track.times.end(), round_to_float(source->translation.times[k]));
+      const auto same = std::find(first.track.times.begin(), first.track.times.end(), source->translation.times[k]);
       ASSERT_NE(same, first.track.times.end());
       const std::ptrdiff_t key = same - first.track.times.begin();
       EXPECT_TRUE(std::equal(first.track.values.begin() + 3 * key, first.track.values.begin() + 3 * key + 3,
