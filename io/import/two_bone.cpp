@@ -32,9 +32,10 @@ TwoBoneTurn bend_to(const TwoBonePose& pose, const Vec3& target, const Vec3& axi
   const double r = std::clamp(to_target.norm(), reach.least, reach.most);
   const double angle = std::acos(std::clamp((r * r - a * a - b * b) / (2 * a * b), -1.0, 1.0));
 
-  // A tenth of the usual axis: it decides below a bend of some six degrees, and leaves larger ones as they are.
+  // What is bent further is bent about the usual axis: nothing jumps where a deviation begins, and a straight limb, the
+  // axis of whose own bend is noise, bends the right way.
   const Vec3 along = to_knee / a, usual = axis - along * along.dot(axis);
-  Vec3 n = along.cross(to_end / b) + 0.1 * usual;
+  Vec3 n = along.cross(to_end / b) + std::max(angle - bend(pose), 0.0) * usual;
   n -= along * along.dot(n);
   n = n.norm() > 1e-9 ? Vec3(n.normalized()) : along.unitOrthogonal();
   out.lower = Quat(Eigen::AngleAxisd(angle, n)) * Quat::FromTwoVectors(to_end, to_knee);

@@ -1,5 +1,5 @@
 // Two-bone inverse kinematics, closed form: the bend of the middle joint follows from the distance, the turn of the
-// chain from the direction (law of cosines; e.g. Tolani, Goswami and Badler 2000, section 3). The plane of the bend
+// chain from the direction (law of cosines; e.g. Tolani, Goswami and Badler 2000). The plane of the bend
 // stays the one that the pose has.
 #pragma once
 
@@ -29,7 +29,7 @@ struct TwoBoneTurn {
 };
 
 /// The turns that take the end to the target; to the reachable point towards it, when it is out of reach. `axis`: about
-/// which the limb usually bends, of length 1; decides where the pose is nearly straight.
+/// which the limb usually bends, of length 1; what is bent further is bent about it.
 TwoBoneTurn bend_to(const TwoBonePose& pose, const Vec3& target, const Vec3& axis, const BendLimits& limits);
 
 }  // namespace ft

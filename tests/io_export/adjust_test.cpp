@@ -36,8 +36,11 @@ std::unique_ptr<Trajectory> played(const MovedCase& c, const PlacedCharacter& pl
   return std::move(primary->trajectory);
 }
 
-std::vector<AdjustedLimb> legs_of(const PlacedCharacter& placed) {
+std::vector<AdjustedLimb> legs_of(const MovedCase& c, const PlacedCharacter& placed) {
   std::vector<AdjustedLimb> out;
+  for (const auto& [hip, knee, ankle] : c.legs)
+    out.push_back({find_limb(placed.character, hip, knee, ankle).value(), {}, {}});
+  if (!c.legs.empty()) return out;
   for (const LimbChain& chain : find_limbs(placed.character))
     if (limbs_by_name(placed.character)[at(chain.end)] == Limb::k_foot) out.push_back({chain, {}, {}});
   return out;
@@ -47,7 +50,7 @@ TEST(Adjust, Without_a_deviation_no_channel_changes_and_the_file_is_the_same_byt
   for (const MovedCase& c : moved_cases()) {
     FT_PLACE(placed, c);
     MotionAdjustment adjustment = adjustment_of(*placed);
-    adjustment.limbs = legs_of(*placed);
+    adjustment.limbs = legs_of(c, *placed);
     for (AdjustedLimb& limb : adjustment.limbs)
       limb.target = [](double, const Vec3& imported) { return LimbTarget{imported, 1}; };
     auto motion = adjust_motion(placed->character, placed->clip, placed->placement, adjustment);
@@ -144,8 +147,7 @@ TEST(Adjust, Planted_feet_stay_while_the_body_sinks) {
   for (const MovedCase& c : moved_cases()) {
     FT_PLACE(placed, c);
     MotionAdjustment adjustment = adjustment_of(*placed);
-    adjustment.limbs = legs_of(*placed);
-    if (adjustment.limbs.empty()) continue;  // names tell nothing: see the test with given names
+    adjustment.limbs = legs_of(c, *placed);
     ASSERT_EQ(adjustment.limbs.size(), 2u);
     const double start = placed->playback.start;
     adjustment.deviation = [&](double time) {
@@ -195,6 +197,105 @@ TEST(Adjust, Planted_feet_stay_while_the_body_sinks) {
     EXPECT_LT(length, 1e-6);
     EXPECT_LT(unit, 2e-7);
   }
+}
+
+TEST(Adjust, What_a_leg_cannot_reach_the_root_goes_to_meet) {
+  for (const MovedCase& c : moved_cases()) {
+    FT_PLACE(placed, c);
+    MotionAdjustment adjustment = adjustment_of(*placed);
+    adjustment.limbs = legs_of(c, *placed);
+    adjustment.limbs.resize(1);
+    const Vec3 lift(0.1, 0.5, 0);
+    adjustment.deviation = [&](double) { return RootDeviation{.displacement = lift}; };
+    adjustment.limbs[0].target = [](double, const Vec3& imported) { return LimbTarget{imported, 1}; };
+    auto motion = adjust_motion(placed->character, placed->clip, placed->placement, adjustment);
+    ASSERT_TRUE(motion) << motion.error().text();
+    EXPECT_LT(motion->worst_miss, 1e-6);
+    EXPECT_GT(motion->root_rest, 0.05);
+    EXPECT_LT(motion->root_rest, lift.norm());
+    PlacedCharacter moved = *placed;
+    ASSERT_TRUE(apply_changes(moved.character, moved.clip, motion->channels));
+    const BendLimits limits;
+    for (int f = 0; f < adjustment.frame_count && f < 20; ++f) {
+      const double time = adjustment.first_frame + f * adjustment.frame_time;
+      const TwoBonePose a = view(*placed, adjustment.limbs[0].chain, time).pose;
+      const TwoBonePose b = view(moved, adjustment.limbs[0].chain, time).pose;
+      const auto bend = [](const TwoBonePose& p) {
+        const Vec3 x = p.lower - p.upper, y = p.end - p.lower;
+        return std::atan2(x.cross(y).norm(), x.dot(y));
+      };
+      EXPECT_LT((a.end - b.end).norm(), 1e-4) << time;  // a nearly straight leg between keys and frames 0.1 ms apart
+      EXPECT_GT(bend(b), std::min(limits.least, bend(a)) - 1e-3) << time;
+      EXPECT_GT((b.upper - a.upper).norm(), 0) << time;
+    }
+  }
+}
+
+TEST(Adjust, Says_what_cannot_be_moved) {
+  const MovedCase c = moved_cases()[1];
+  FT_PLACE(placed, c);
+  const auto fault = [&](auto&& edit) {
+    MotionAdjustment adjustment = adjustment_of(*placed);
+    adjustment.limbs = legs_of(c, *placed);
+    int clip = placed->clip;
+    Character character = placed->character;
+    edit(adjustment, character, clip);
+    auto motion = adjust_motion(character, clip, placed->placement, adjustment);
+    return motion ? std::string("no fault") : motion.error().text();
+  };
+  using A = MotionAdjustment;
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  EXPECT_PRED2(has, fault([](A&, Character&, int& clip) { clip = 99; }), "clip 99");
+  EXPECT_PRED2(has, fault([](A& a, Character&, int&) { a.roots = {-1}; }), "root");
+  EXPECT_PRED2(has, fault([](A& a, Character&, int&) { a.frame_time = 0; }), "above 0");
+  EXPECT_PRED2(has, fault([](A& a, Character&, int&) { std::swap(a.limbs[0].chain.upper, a.limbs[0].chain.end); }),
+               "no chain");
+  EXPECT_PRED2(has, fault([](A& a, Character&, int&) { a.limbs[1] = a.limbs[0]; }), "moved twice");
+  EXPECT_PRED2(has, fault([](A& a, Character&, int&) {
+                 a.deviation = [](double) { return RootDeviation{.displacement = Vec3(0, NAN, 0)}; };
+               }),
+               "not finite");
+  EXPECT_PRED2(has, fault([](A& a, Character& character, int&) {
+                 const int parent = character.nodes[at(a.roots[0])].parent;
+                 character.nodes[at(parent)].local.col(0) *= 2;
+                 a.deviation = [](double) {
+                   return RootDeviation{.rotation = Quat(Eigen::AngleAxisd(0.5, Vec3::UnitZ()))};
+                 };
+               }),
+               "scaled unequally");
+  EXPECT_PRED2(has, find_limb(placed->character, "DEF-thigh.L", "DEF-shin", "DEF-foot.L").error().text(),
+               "did you mean");
+  EXPECT_PRED2(has, find_limb(placed->character, "DEF-thigh.L", "DEF-shin.R", "DEF-foot.L").error().text(),
+               "not one above");
+}
+
+TEST(TwoBone, Reaches_what_is_in_reach_and_points_at_what_is_not) {
+  const TwoBonePose pose{{0, 1, 0}, {0.02, 0.55, 0.1}, {0, 0.1, 0}};
+  const BendLimits limits;
+  const double a = (pose.lower - pose.upper).norm(), b = (pose.end - pose.lower).norm();
+  const auto moved = [&](const TwoBoneTurn& t) {
+    const Vec3 lower = pose.upper + t.upper * (pose.lower - pose.upper);
+    return TwoBonePose{pose.upper, lower, lower + t.upper * (t.lower * (pose.end - pose.lower))};
+  };
+  const Reach reach = reach_of(pose, limits);
+  EXPECT_NEAR(reach.most, std::sqrt(a * a + b * b + 2 * a * b * std::cos(limits.least)), 1e-12);
+  EXPECT_NEAR(reach.least, std::sqrt(a * a + b * b + 2 * a * b * std::cos(limits.most)), 1e-12);
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 target = pose.upper + (0.1 + 0.006 * k) * Vec3(std::sin(0.1 * k), -1.2, std::cos(0.37 * k)).normalized();
+    const TwoBonePose is = moved(bend_to(pose, target, Vec3::UnitX(), limits));
+    EXPECT_NEAR((is.lower - is.upper).norm(), a, 1e-12);
+    EXPECT_NEAR((is.end - is.lower).norm(), b, 1e-12);
+    const Vec3 way = target - pose.upper;
+    const double r = std::clamp(way.norm(), reach.least, reach.most);
+    EXPECT_LT((is.end - pose.upper - r * way.normalized()).norm(), 1e-9);
+  }
+  // Where it is already, nothing turns; what is nearly straight bends about the usual axis.
+  const TwoBoneTurn none =
+      bend_to(pose, pose.end, (pose.lower - pose.upper).cross(pose.end - pose.lower).normalized(), limits);
+  EXPECT_LT(none.upper.angularDistance(Quat::Identity()) + none.lower.angularDistance(Quat::Identity()), 1e-7);
+  const TwoBonePose straight{{0, 1, 0}, {0, 0.5, 0}, {0, 0, 0}};
+  const TwoBoneTurn forward = bend_to(straight, {0, 0.1, 0}, Vec3::UnitX(), limits);
+  EXPECT_GT((forward.upper * Vec3(0, -1, 0)).z(), 0.2);
 }
 
 }  // namespace

@@ -13,13 +13,15 @@ namespace ft::test {
 struct MovedCase {
   const char* name;
   ImportRequest request;
-  double key_beside_frame = 0;  ///< a key that lies so far from a frame stands for it [s]
+  std::vector<std::array<const char*, 3>> legs;  ///< hip, knee, ankle; empty: by the words in the names
+  double key_beside_frame = 0;                   ///< a key that lies so far from a frame stands for it [s]
 };
 
 inline std::vector<MovedCase> moved_cases() {
   const auto root = assets_root() / "characters";
   std::vector<MovedCase> out(4);
   out[0].name = "cesium_man", out[0].request.file = root / "cesium_man/cesium_man.gltf";
+  out[0].legs = {{"nodes[7]", "nodes[8]", "nodes[9]"}, {"nodes[3]", "nodes[4]", "nodes[5]"}};
   out[1].name = "quaternius", out[1].request.file = root / "quaternius_base_human/human-base-animations.glb";
   out[1].request.clip = "Jog_Fwd_Loop";
   out[2].name = "mh_adult", out[2].request.file = root / "mh_adult_cmu_dressed/adult_cmu01.glb";
