@@ -96,8 +96,7 @@ Result<int> select_clip(const Character& character, const std::string& name, con
   return usage_error("clip \"" + name + "\" does not exist", file, hint);
 }
 
-Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
-                                         const std::string& source_file, std::vector<std::string>& notes) {
+std::vector<int> match_names(const Character& source, const Character& target) {
   const auto exact = index_names(target, [](const std::string& n) { return n; });
   const auto loose = index_names(target, bare);
   std::vector<int> to(source.nodes.size(), -1);
@@ -108,8 +107,17 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
     else if (const auto near = loose.find(bare(name)); near != loose.end())
       to[i] = near->second;
   }
-  // A BVH has no unit: the same as its skeleton's is assumed.
-  const double scale = source.file_unit > 0 && target.file_unit > 0 ? source.file_unit / target.file_unit : 1;
+  return to;
+}
+
+double unit_ratio(const Character& source, const Character& target) {
+  return source.file_unit > 0 && target.file_unit > 0 ? source.file_unit / target.file_unit : 1;
+}
+
+Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
+                                         const std::string& source_file, std::vector<std::string>& notes) {
+  const std::vector<int> to = match_names(source, target);
+  const double scale = unit_ratio(source, target);
   std::vector<Clip> out;
   std::vector<char> is_missing(source.nodes.size(), 0);
   std::size_t matched = 0;
