@@ -112,6 +112,7 @@ Status plan_cords(const Shot& shot, std::size_t p, BakePlan& plan) {
   setup.fps = shot.fps;
   setup.preroll_frames = shot.preroll;
   setup.gravity = shot.solver.gravity;
+  setup.wind = shot.wind.velocity;
   setup.bdf2 = shot.solver.integrator == "bdf2";
   plan.groups.push_back(std::move(group));
   return {};

@@ -43,7 +43,9 @@ void add_bends(const CordSystem& c, int first, std::vector<CordBend>& out) {
       const Vec3 before = point(i) - point(i - 1), after = point(i + 1) - point(i);
       if (before.normalized().dot(after.normalized()) < std::cos(k_straight)) continue;
       const double length = 0.5 * (before.norm() + after.norm());
-      out.push_back({{first + strand[i - 1], first + strand[i], first + strand[i + 1]}, c.bend / std::pow(length, 3)});
+      const double stiffness = c.bend / std::pow(length, 3);
+      out.push_back(
+          {{first + strand[i - 1], first + strand[i], first + strand[i + 1]}, stiffness, c.damping * stiffness});
     }
 }
 
@@ -77,6 +79,7 @@ Result<LockstepModel> build_lockstep_model(LockstepSetup setup) {
   m.setup = std::move(setup);
   if (!(m.setup.fps > 0 && m.setup.longest_step > 0)) return usage_error("fps and the step have to be positive");
   std::vector<double> piece_stiffness;
+  m.elements.air = {m.setup.air_density, m.setup.wind};
   m.first_point.push_back(0);
   for (std::size_t c = 0; c < m.setup.cords.size(); ++c) {
     const CordSystem& cords = m.setup.cords[c];
@@ -90,6 +93,7 @@ Result<LockstepModel> build_lockstep_model(LockstepSetup setup) {
       const double length = (cords.graph.points[at(e[0])] - cords.graph.points[at(e[1])]).norm();
       const double stiffness = cords.stretch / length;
       m.elements.springs.push_back({first + e[0], first + e[1], length, stiffness, cords.damping * stiffness, false});
+      m.elements.drags.push_back({first + e[0], first + e[1], length * 2 * cords.radius});
       m.cords.push_back({first + e[0], first + e[1], first + e[1]});
       m.rest_length.push_back(length);
       piece_stiffness.push_back(stiffness);

@@ -53,6 +53,8 @@ struct LockstepSetup {
   double fps = 24;
   int preroll_frames = 24;
   Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
+  Vec3 wind = Vec3::Zero();               ///< m/s
+  double air_density = 1.225;             ///< drags at cords, not at the prop [kg/m3]; 0: vacuum
   double longest_step = 1.0 / 600;        ///< s
   bool bdf2 = true;                       ///< false: implicit Euler
 };

@@ -102,7 +102,7 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   LockstepStepReport report;
   report.effective_step = bh / (1 - w.b);
 
-  elements_.begin_step(m.x, bh);
+  elements_.begin_step(m.x, m.v, h);
   y_.resize(n), trial_.resize(n), gradient_.resize(n), direction_.resize(n), weight_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     y_[i] = w.a * m.x[i] - w.b * m.x_previous[i] + bh * (w.a * m.v[i] - w.b * m.v_previous[i]) +
