@@ -188,7 +188,7 @@ void LockstepSolver::substep(double time, double h, double frame_time, Moving& m
   report.profile.linear += step.seconds_linear;
   if (!step.finite) return;
   m.hold_impulse += step.effective_step * step.hold_force;
-  for (std::size_t c = 0; c < step.on_prop.size(); ++c) {
+  for (std::size_t c = 0; c < report.forces.size(); ++c) {
     InteractionForce& force = report.forces[c];
     const double size = step.on_prop[c].force.norm();
     force.mean += (h / frame_time) * step.on_prop[c];
