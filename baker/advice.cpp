@@ -97,6 +97,12 @@ bool find_stand_in(const Evidence& e, const AdviceThresholds& t, std::vector<std
 
 Coupling choose_significant(const Evidence& e, const AdviceThresholds& t, std::vector<std::string>& reasons) {
   // Two-way inherits the requirements of both; what it adds to a pass over a rigid primary is little.
+  if (!e.two_way_possible) {
+    reasons.push_back("two-way cannot be baked for it: only cords and rigid props are stepped together");
+    if (find_stand_in(e, t, reasons)) return Coupling::k_hybrid;
+    reasons.push_back("what comes nearest is hybrid, with the fitted stand-in and an eye on what it leaves out");
+    return Coupling::k_hybrid;
+  }
   if (e.cycle_seconds <= t.interactive) {
     reasons.push_back(fmt::format("two-way stays interactive: a coarse pass takes {:.2g} s, at most {:g} s",
                                   e.cycle_seconds, t.interactive));
@@ -130,6 +136,18 @@ std::vector<std::string> context_names() {
   std::vector<std::string> out;
   for (const ContextName& c : k_contexts) out.emplace_back(c.name);
   return out;
+}
+
+std::vector<std::string> Evidence::stand_in_table() const {
+  if (!(damping > 0) || place.empty()) return {};
+  const Vec3 middle = 0.5 * (place.lo + place.hi), size = place.size();
+  return {fmt::format("[standin.{}_field]", secondary),
+          "kind = \"damping\"",
+          fmt::format("for = \"{}\"", secondary),
+          "shape = \"box\"",
+          fmt::format("position = [{:.3g}, {:.3g}, {:.3g}]", middle.x(), middle.y(), middle.z()),
+          fmt::format("size = [{:.3g}, {:.3g}, {:.3g}]", size.x(), size.y(), size.z()),
+          fmt::format("damping = {:.3g}", damping)};
 }
 
 Advice advise(const Evidence& e, Context context, const AdviceThresholds& t) {
@@ -171,6 +189,7 @@ Json to_json(const Evidence& e, const Advice& a) {
                 {"cycle_seconds", e.cycle_seconds},
                 {"dissipative_share", number(e.dissipative_share)},
                 {"upright_share", number(e.upright_share)},
+                {"two_way_possible", e.two_way_possible},
                 {"damping", {{"c", e.damping}, {"r2", e.damping_r2}}}}}};
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/types.h"
 #include "baker/report_json.h"
 
 namespace ft {
@@ -52,6 +53,11 @@ struct Evidence {
   std::optional<double> dissipative_share, upright_share;  ///< of the frames: against the motion; straight upwards [1]
   /// F = -c v fitted to all frames: c [kg/s] and the share of the force that it explains.
   double damping = 0, damping_r2 = 0;
+  Box place;                     ///< of the primary while they touch [m]
+  bool two_way_possible = true;  ///< the program can step the two together
+
+  /// The fitted stand-in as a table of the shot file; empty where nothing was fitted.
+  std::vector<std::string> stand_in_table() const;
 };
 
 struct Advice {

@@ -97,6 +97,9 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
   overrides.push_back("shot.quality=preview");
   auto inputs = read_inputs(options.shot_file, overrides, {}, faults);
   if (!inputs) return inputs.error();
+  // Whatever the shot file has them, forces are those on a primary that does not yield.
+  for (ClothSpec& cloth : inputs->shot.cloths) cloth.coupling = "one-way";
+  for (CordsSpec& cords : inputs->shot.cords) cords.coupling = "one-way";
   auto plan = make_plan(std::move(*inputs), services.importer, {});
   if (!plan) return plan.error();
   const Shot& shot = plan->shot();
@@ -110,11 +113,12 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     const PrimaryPlan& primary = plan->primaries[group.primary];
     const double share = (options.seconds - since(clock)) / left--;
     const auto begin = Clock::now();
-    auto solver = services.make_solver(group.setup);
+    auto solver = make_group_solver(group, services.make_solver);
     if (!solver) return solver.error();
     State state = (*solver)->initial_state();
     reports.clear();
     std::vector<Vec3> centre, pose(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
+    std::vector<Box> boxes;
     const auto walk_clock = Clock::now();
     int walked = 0;
     while (state.frame < shot.last_frame && since(begin) < share) {
@@ -122,6 +126,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
       ++walked;
       if (report.frame < shot.first_frame) continue;
       primary.trajectory->sample(state.time, pose);
+      boxes.push_back(bounds(pose));
       centre.push_back(volume_centre(pose, primary.trajectory->surface().triangles));
       reports.push_back(std::move(report));
     }
@@ -131,10 +136,11 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     if (measured < out.shot_frames)
       out.notes.push_back(fmt::format("\"{}\": {} of {} frames were measured in the time given; --seconds gives more",
                                       primary.name, measured, out.shot_frames));
-    for (std::size_t g = 0; g < group.setup.garments.size(); ++g) {
+    for (const GarmentOutput& secondary : group.outputs) {
       Evidence e;
       e.primary = primary.name;
-      e.secondary = group.setup.garments[g].name;
+      e.secondary = secondary.mesh.name;
+      e.two_way_possible = group.lockstep.has_value();
       std::vector<Wrench> forces(reports.size());
       for (std::size_t i = 0; i < reports.size(); ++i) {
         const FrameReport& r = reports[i];
@@ -145,7 +151,9 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
         e.released_frames += r.released_vertices > 0;
         e.finite = e.finite && r.finite;
       }
-      gather(forces, centre, group.setup.gravity, primary.mass.kilograms, shot.fps, e);
+      for (std::size_t i = 0; i < forces.size(); ++i)
+        if (forces[i].force != Vec3::Zero()) e.place.include(boxes[i]);
+      gather(forces, centre, shot.solver.gravity, primary.mass.kilograms, shot.fps, e);
       out.pairs.push_back(std::move(e));
     }
   }

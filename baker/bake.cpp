@@ -108,7 +108,7 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
 Result<Solvers> make_solvers(const BakePlan& plan, const SolverFactory& factory) {
   Solvers out;
   for (const GroupPlan& group : plan.groups) {
-    auto solver = group.lockstep ? make_lockstep_solver(*group.lockstep) : factory(group.setup);
+    auto solver = make_group_solver(group, factory);
     if (!solver) return solver.error();
     out.push_back(std::move(*solver));
   }
@@ -168,6 +168,10 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
 }
 
 }  // namespace
+
+Result<std::unique_ptr<Solver>> make_group_solver(const GroupPlan& group, const SolverFactory& cloth) {
+  return group.lockstep ? make_lockstep_solver(*group.lockstep) : cloth(group.setup);
+}
 
 BakeResult bake(const BakeOptions& options, const BakeServices& services, Progress& progress) {
   const SignalGuard guard;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "baker/quality.h"
 #include "io/shot/mesh_file.h"
 #include "solvers/cords/generators.h"
 #include "solvers/cords/tubes.h"
@@ -113,6 +114,7 @@ Status plan_cords(const Shot& shot, std::size_t p, BakePlan& plan) {
   setup.preroll_frames = shot.preroll;
   setup.gravity = shot.solver.gravity;
   setup.wind = shot.wind.velocity;
+  apply_quality(shot, setup);
   setup.bdf2 = shot.solver.integrator == "bdf2";
   plan.groups.push_back(std::move(group));
   return {};

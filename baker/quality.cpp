@@ -7,10 +7,12 @@ namespace {
 
 // Tuned on the benchmark's scene S2 for a quarter of the time: longer steps alone cost more than they save, since what
 // may meet in a step grows faster than the step.
-constexpr double k_coarsen = 2;      ///< edges of garments and collider, in those of a final bake [1]
-constexpr double k_travel = 2;       ///< of the body in a substep, in that of a final bake [1]
-constexpr int k_fewer_substeps = 2;  ///< times fewer substeps at least
-constexpr double k_tolerance = 0.1;  ///< of the linear solver at least [1]
+constexpr double k_coarsen = 2;              ///< edges of garments and collider, in those of a final bake [1]
+constexpr double k_travel = 2;               ///< of the body in a substep, in that of a final bake [1]
+constexpr int k_fewer_substeps = 2;          ///< times fewer substeps at least
+constexpr double k_longer_cord_steps = 2.5;  ///< [1]
+constexpr double k_looser_cords = 100;       ///< of what Newton leaves to move [1]
+constexpr double k_tolerance = 0.1;          ///< of the linear solver at least [1]
 
 }  // namespace
 
@@ -25,6 +27,12 @@ void apply_quality(const Shot& shot, ClothSetup& setup) {
   setup.travel *= k_travel;
   setup.min_substeps = std::max(1, setup.min_substeps / k_fewer_substeps);
   setup.linear_tolerance = std::max(k_tolerance, setup.linear_tolerance);
+}
+
+void apply_quality(const Shot& shot, LockstepSetup& setup) {
+  if (!is_preview(shot)) return;
+  setup.longest_step *= k_longer_cord_steps;
+  setup.settled *= k_looser_cords;
 }
 
 std::string quality_note() {

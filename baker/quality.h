@@ -6,6 +6,7 @@
 
 #include "io/shot/shot.h"
 #include "solvers/cloth/cloth_solver.h"
+#include "solvers/lockstep/lockstep_solver.h"
 
 namespace ft {
 
@@ -13,6 +14,7 @@ bool is_preview(const Shot& shot);
 
 /// Makes a setup a preview's; a final one stays as it is.
 void apply_quality(const Shot& shot, ClothSetup& setup);
+void apply_quality(const Shot& shot, LockstepSetup& setup);
 
 /// For the log and the manifest: what a preview's certificate is worth.
 std::string quality_note();

@@ -25,7 +25,11 @@ void print(const AdvicePass& pass, const std::vector<Advice>& advice) {
     std::printf("\"%s\" on \"%s\": %s%s\n", e.secondary.c_str(), e.primary.c_str(), name(advice[i].coupling),
                 also.c_str());
     for (const std::string& reason : advice[i].reasons) std::printf("  %s\n", reason.c_str());
-    if (advice[i].coupling != Coupling::k_one_way) std::printf("  (this version of the program bakes one-way only)\n");
+    if (advice[i].coupling == Coupling::k_one_way) continue;
+    const std::vector<std::string> table = e.stand_in_table();
+    if (!table.empty())
+      std::printf("  a stand-in fitted to these forces, which explains %.0f %% of them:\n", 100 * e.damping_r2);
+    for (const std::string& line : table) std::printf("    %s\n", line.c_str());
   }
   std::printf("One-way forces are upper bounds: a primary that yields is pushed less.\n");
   std::printf("measured %d of %d frames in %.1f s; a final one-way bake would take about %.0f s\n", pass.frames,

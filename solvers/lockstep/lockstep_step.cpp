@@ -86,11 +86,11 @@ bool LockstepStep::newton(std::span<const double> weight, LockstepStepReport& re
       accepted = std::isfinite(after) && after <= before + k_energy_noise * std::abs(before);
     }
     report.seconds_contact += watch.lap();
-    if (!accepted) return report.residual < 1e3 * k_settled;  // rounding decides here
+    if (!accepted) return report.residual < 1e3 * model_.setup.settled;  // rounding decides here
     stuck = factor < k_stuck_share ? stuck + 1 : 0;
     if (stuck >= k_stuck_iterations) return false;
     x_.swap(trial_);
-    if (report.residual < k_settled) return true;
+    if (report.residual < model_.setup.settled) return true;
   }
   return false;
 }
