@@ -1,24 +1,28 @@
-// `preview`: a bake as one page that needs nothing else: player, colours by strain and gap, plots. The page is made of
-// the files in baker/preview and of three.js, all of which are inside the program.
+// `preview`: bakes as one page that needs nothing else: player, colours by strain and gap, plots, and the primaries'
+// paths in all the bakes over each other. The page is made of the files in baker/preview and of three.js, all of which
+// are inside the program.
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "baker/core/result.h"
 
 namespace ft {
 
 struct PreviewOptions {
-  std::filesystem::path folder;  ///< of a bake; an unfinished one is shown as far as it has come
-  std::filesystem::path output;  ///< empty: preview.html in the folder
+  std::vector<std::filesystem::path> folders;  ///< of bakes, the first one plays; one that is unfinished is shown as
+                                               ///< far as it has come
+  std::filesystem::path output;                ///< empty: preview.html in the first folder
 };
 
 /// Gaps are shown up to here [m].
 inline constexpr double k_preview_gap_range = 0.02;
 
 /// The page's text. Errors: no manifest, caches that do not belong to it (k_input).
-Result<std::string> preview_page(const std::filesystem::path& bake_folder);
+Result<std::string> preview_page(std::span<const std::filesystem::path> bake_folders);
 
 /// Writes the page and says where; returns an exit code.
 int run_preview(const PreviewOptions& options);

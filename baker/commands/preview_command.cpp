@@ -10,8 +10,13 @@ namespace ft {
 void add_preview_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("preview", "Writes one self-contained page with a player and plots");
   auto o = std::make_shared<PreviewOptions>();
-  command->add_option("folder", o->folder, "Bake folder")->required()->type_name("DIR");
-  command->add_option("-o,--out", o->output, "The page; without it preview.html in the folder")->type_name("FILE");
+  command
+      ->add_option("folders", o->folders,
+                   "Bake folders; of several the paths of the primaries are drawn over each other")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("-o,--out", o->output, "The page; without it preview.html in the first folder")
+      ->type_name("FILE");
   command->callback([o, &exit_code] { exit_code = run_preview(*o); });
 }
 

@@ -8,6 +8,8 @@
 
 FT_EMBEDDED(page)
 FT_EMBEDDED(style)
+FT_EMBEDDED(plots)
+FT_EMBEDDED(paths)
 FT_EMBEDDED(player)
 FT_EMBEDDED(three)
 FT_EMBEDDED(controls)

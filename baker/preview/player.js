@@ -1,22 +1,26 @@
-// Player of a bake. Everything it shows comes from the JSON block of the page: positions quantised to 16 bits per axis over the
-// clip's bounds, strain and gap to 8 bits. window.followthrough lets a test ask where a vertex is.
+// Player of one or several bakes, one at a time. Everything it shows comes from the JSON block of the page: positions quantised
+// to 16 bits per axis over the clip's bounds, strain and gap to 8 bits. window.followthrough lets a test ask where a vertex is.
 (function () {
   'use strict';
-  const bake = JSON.parse(document.getElementById('bake').textContent);
+  const bakes = JSON.parse(document.getElementById('bake').textContent).bakes;
   const $ = (id) => document.getElementById(id);
+  const element = (kind, ...inside) => { const out = document.createElement(kind); out.append(...inside); return out; };
 
   function bytes(base64) {
     const text = atob(base64), out = new Uint8Array(text.length);
     for (let i = 0; i < text.length; ++i) out[i] = text.charCodeAt(i);
     return out;
   }
-  for (const s of bake.systems) {
-    s.positions = new Uint16Array(bytes(s.positions).buffer);
-    s.triangles = new Uint32Array(bytes(s.triangles).buffer);
-    if (s.strain) s.strain = new Int8Array(bytes(s.strain).buffer);
-    if (s.gap) s.gap = bytes(s.gap);
+  function unpack(bake) {
+    bake.unpacked = true;
+    for (const s of bake.systems) {
+      s.positions = new Uint16Array(bytes(s.positions).buffer);
+      s.triangles = new Uint32Array(bytes(s.triangles).buffer);
+      if (s.strain) s.strain = new Int8Array(bytes(s.strain).buffer);
+      if (s.gap) s.gap = bytes(s.gap);
+    }
   }
-  const count = bake.frame_count, first = bake.first_frame;
+  let bake = null, count = 0, first = 0;  // the bake that plays, its frames
   let frame = -1, playing = false, clock = 0, shown = null;
 
   // ---- data ----
@@ -33,11 +37,13 @@
   const palette = [0x3f74c4, 0xc8694f, 0x4f9a6d, 0xb08a3e, 0x8560b5, 0x3d9aa8];
   let scene, camera, renderer, controls, sun, centre = null;
   const box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
-  for (const s of bake.systems)
+  for (const s of bakes.flatMap((b) => b.systems))
     for (let axis = 0; axis < 3; ++axis) {
       box.low[axis] = Math.min(box.low[axis], s.low[axis]);
       box.high[axis] = Math.max(box.high[axis], s.low[axis] + 65535 * s.step[axis]);
     }
+  const size = Math.max(...[0, 1, 2].map((a) => box.high[a] - box.low[a]), 0.1);
+  const paths = makePaths(bakes), second = (index) => (first + index) / bake.fps;
 
   function build() {
     renderer = new THREE.WebGLRenderer({ canvas: $('view'), antialias: true, preserveDrawingBuffer: true });
@@ -49,7 +55,6 @@
     const dark = window.matchMedia('(prefers-color-scheme: dark)').matches;
     const ground = new THREE.Color(dark ? 0x23272d : 0xe9ebee);
     scene.background = ground;
-    const size = Math.max(...[0, 1, 2].map((a) => box.high[a] - box.low[a]), 0.1);
     scene.fog = new THREE.Fog(ground, 6 * size, 14 * size);
     camera = new THREE.PerspectiveCamera(32, 1, size / 200, size * 40);
     scene.add(new THREE.HemisphereLight(0xffffff, dark ? 0x3a3f47 : 0x9aa0a8, 0.55));
@@ -76,27 +81,34 @@
     grid.position.set(Math.round(middle[0]), floor.position.y, Math.round(middle[2]));
     scene.add(grid);
 
-    let garment = 0;
-    for (const s of bake.systems) {
-      const cloth = s.role === 'cloth';
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * s.vertices), 3));
-      geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
-      geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
-      s.plain = cloth ? palette[garment++ % palette.length] : 0xc4beb4;
-      const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: cloth ? 0.82 : 0.62, metalness: 0,
-        side: cloth ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true });
-      s.mesh = new THREE.Mesh(geometry, material);
-      s.mesh.castShadow = s.mesh.receiveShadow = true;
-      s.mesh.frustumCulled = false;
-      s.mesh.visible = s.role !== 'collider';
-      scene.add(s.mesh);
-    }
+    scene.add(paths.build());
     controls = new THREE.OrbitControls(camera, renderer.domElement);
     controls.enableDamping = false;
     controls.addEventListener('change', draw);
     new ResizeObserver(resize).observe($('view'));
     resize();
+  }
+
+  const secondary = (s) => s.role === 'cloth' || s.role === 'cords';
+  function meshes(systems) {
+    const group = new THREE.Group();
+    let garment = 0;
+    for (const s of systems) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * s.vertices), 3));
+      geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
+      geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
+      s.plain = secondary(s) ? palette[garment++ % palette.length] : 0xc4beb4;
+      const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0,
+        side: s.role === 'cloth' ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
+        wireframe: secondary(s) && $('wireframe').checked });
+      s.mesh = new THREE.Mesh(geometry, material);
+      s.mesh.castShadow = s.mesh.receiveShadow = true;
+      s.mesh.frustumCulled = false;
+      s.mesh.visible = s.role !== 'collider';
+      group.add(s.mesh);
+    }
+    return group;
   }
 
   function resize() {
@@ -108,7 +120,10 @@
     draw();
   }
   function draw() {
-    if (renderer) renderer.render(scene, camera);
+    if (!renderer) return;
+    paths.group.visible = $('paths').checked;
+    paths.face(camera, $('view').clientHeight);
+    renderer.render(scene, camera);
   }
   /// Bounds of what is visible in the frame at hand.
   function bounds() {
@@ -119,11 +134,13 @@
   function fit() {
     if (!renderer) return;
     const b = bounds();
+    if ($('paths').checked) for (const path of paths.list) for (const c of path.centres) b.expandByPoint(c);
     if (b.isEmpty()) return;
     const middle = b.getCenter(new THREE.Vector3()), size = b.getSize(new THREE.Vector3());
     const tall = Math.max(size.y, Math.hypot(size.x, size.z) / camera.aspect);
     const away = 0.62 * tall / Math.tan(camera.fov * Math.PI / 360) + 0.5 * Math.max(size.x, size.z);
-    camera.position.copy(middle).add(new THREE.Vector3(0.55, 0.18, 0.82).normalize().multiplyScalar(away));
+    const from = $('paths').checked ? paths.side() : new THREE.Vector3(0.55, 0.18, 0.82);
+    camera.position.copy(middle).add(from.normalize().multiplyScalar(away));
     controls.target.copy(middle);
     controls.update();
     draw();
@@ -133,7 +150,7 @@
   const ramps = {
     // blue: shorter, white: as cut, red: longer
     strain: { title: 'strain', low: '-10 %', high: '+10 %', stops: [[0.13, 0.35, 0.75], [0.92, 0.92, 0.92], [0.78, 0.1, 0.1]] },
-    gap: { title: 'gap to the nearest surface', low: '0 mm', high: bake.gap_range * 1000 + ' mm', stops: [[0.75, 0.05, 0.05], [0.95, 0.75, 0.2], [0.25, 0.62, 0.4], [0.8, 0.84, 0.88]] },
+    gap: { title: 'gap to the nearest surface', low: '0 mm', high: bakes[0].gap_range * 1000 + ' mm', stops: [[0.75, 0.05, 0.05], [0.95, 0.75, 0.2], [0.25, 0.62, 0.4], [0.8, 0.84, 0.88]] },
   };
   function ramp(stops, t, out, at) {
     const x = Math.min(Math.max(t, 0), 1) * (stops.length - 1), k = Math.min(Math.floor(x), stops.length - 2), u = x - k;
@@ -184,14 +201,14 @@
         controls.update();
       }
       centre = middle;
-      const size = Math.max(...[0, 1, 2].map((a) => box.high[a] - box.low[a]), 0.1);
       sun.target.position.copy(middle);
       sun.position.copy(middle).add(new THREE.Vector3(0.9, 2.0, 1.1).multiplyScalar(size));
     }
     shown = index;
     $('scrub').value = index;
     $('frame-number').textContent = 'frame ' + (first + index) + ' / ' + (first + count - 1);
-    for (const p of plots) p.draw();
+    for (const p of plots) p.draw(frame);
+    paths.show(second(frame));
     draw();
   }
   function play(on) {
@@ -220,97 +237,85 @@
     later();
   }
 
-  // ---- plots ----
-  const plots = [];
-  function plot(title, unit, series, worse) {
-    const figure = document.createElement('figure'), caption = document.createElement('figcaption'), name = document.createElement('b');
-    const value = document.createElement('span'), canvas = document.createElement('canvas');
-    name.textContent = title;
-    caption.append(name, value);
-    figure.append(caption, canvas);
-    $('plots').append(figure);
-    const known = series.flatMap((s) => s.values).filter((v) => v !== null && isFinite(v));
-    if (known.length === 0) {
-      value.textContent = 'not recorded';
-      canvas.remove();
-      return;
-    }
-    const top = Math.max(...known, 1e-9) * 1.08;
-    const index = (event) => Math.round((event.offsetX / canvas.clientWidth) * (count - 1));
-    canvas.addEventListener('pointerdown', (event) => { canvas.setPointerCapture(event.pointerId); play(false); show(index(event)); });
-    canvas.addEventListener('pointermove', (event) => { if (event.buttons & 1) show(index(event)); });
-    const style = getComputedStyle(document.documentElement);
-    plots.push({ title, draw() {
-      const scale = window.devicePixelRatio || 1, width = canvas.clientWidth || 300, height = 74;
-      canvas.width = width * scale;
-      canvas.height = height * scale;
-      const pen = canvas.getContext('2d');
-      pen.scale(scale, scale);
-      const x = (i) => (count > 1 ? i / (count - 1) : 0.5) * (width - 1) + 0.5, y = (v) => height - 1 - (v / top) * (height - 4);
-      pen.strokeStyle = style.getPropertyValue('--line');
-      pen.strokeRect(0.5, 0.5, width - 1, height - 1);
-      series.forEach((s, k) => {
-        pen.strokeStyle = style.getPropertyValue(worse ? '--bad' : '--accent');
-        pen.globalAlpha = k === 0 ? 1 : 0.4;
-        pen.lineWidth = 1.4;
-        pen.beginPath();
-        let down = false;
-        s.values.forEach((v, i) => {
-          if (v === null || !isFinite(v)) { down = false; return; }
-          down ? pen.lineTo(x(i), y(v)) : pen.moveTo(x(i), y(v));
-          down = true;
-        });
-        pen.stroke();
-      });
-      pen.globalAlpha = 1;
-      pen.strokeStyle = style.getPropertyValue('--ink');
-      pen.lineWidth = 1;
-      pen.beginPath();
-      pen.moveTo(x(frame), 1);
-      pen.lineTo(x(frame), height - 1);
-      pen.stroke();
-      value.textContent = series.map((s) => {
-        const v = s.values[frame];
-        return s.name + ' ' + (v === null || v === undefined || !isFinite(v) ? '-' : v >= 100 ? v.toFixed(0) : +v.toPrecision(3)) + unit;
-      }).join('   ');
-    } });
+  // ---- one bake of several ----
+  let plots = [];
+  function draw_plots() {
+    const column = (key, factor) => bake.frames.map((f) => (f[key] === null || f[key] === undefined ? null : f[key] * factor));
+    const onPick = (index) => { play(false); show(index); };
+    const plot = (title, unit, series, worse) => makePlot($('plots'), { title, unit, series, worse, onPick });
+    $('plots').replaceChildren();
+    plots = [
+      plot('strain', ' %', [{ name: 'p99', values: column('strain_p99', 100) }, { name: 'max', values: column('strain_max', 100) }]),
+      plot('smallest gap', ' mm', [{ name: '', values: column('smallest_gap', 1000) }]),
+      plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'cloth', values: column('crossings_self', 1) }], true)];
+    const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map((f) => f.system)))];
+    for (const [title, unit, of] of names.length === 0 ? [] : [['force', ' N', (f) => f.force], ['torque', ' N m', (f) => f.torque]])
+      plots.push(plot(title, unit, names.map((name) => ({ name: names.length > 1 ? name : '', values: bake.frames.map((row) => {
+        const force = (row.forces ?? []).find((f) => f.system === name);
+        return force ? Math.hypot(...of(force)) : null;
+      }) }))));
+    plots.push(plot('time', ' ms', [{ name: '', values: column('milliseconds', 1) }]));
+    plots = plots.filter((p) => p !== null);
   }
-  const column = (key, factor) => bake.frames.map((f) => (f[key] === null || f[key] === undefined ? null : f[key] * factor));
+  function describe() {
+    const worst = bake.frames.reduce((a, f) => a + f.crossings_body + f.crossings_self, 0);
+    $('title').textContent = bake.shot + (bakes.length > 1 ? ': ' + bake.name : '');
+    $('summary').textContent = count + ' frames at ' + bake.fps + ' fps' + (bake.complete ? '' : ', not finished') +
+      ', ' + (worst === 0 ? 'no crossing with the collider' : worst + ' crossings');
+    $('scrub').max = count - 1;
+    $('systems').replaceChildren(...bake.systems.map((s) => {
+      const tick = element('input'), colour = element('i');
+      tick.type = 'checkbox';
+      tick.checked = s.mesh ? s.mesh.visible : s.role !== 'collider';
+      tick.addEventListener('change', () => { if (s.mesh) s.mesh.visible = tick.checked; draw(); });
+      colour.style.background = '#' + (s.plain || 0x888888).toString(16).padStart(6, '0');
+      return element('label', tick, colour, s.name + (s.role === 'cloth' ? '' : ' (' + s.role + ')'), element('span', s.vertices + ' vertices'));
+    }));
+    $('incidents').replaceChildren(...bake.incidents.slice(0, 200).map((i) => {
+      const link = element('a', 'frame ' + i.frame);
+      link.addEventListener('click', () => { play(false); show(i.frame - first); });
+      return element('li', link, ' ' + (i.system ? i.system + ': ' : '') + i.text);
+    }));
+    $('incidents-title').hidden = bake.incidents.length === 0;
+    paths.legend($('paths-legend'), bake);
+    draw_plots();
+  }
+  /// Plays another bake, from the frame at hand.
+  function choose(next) {
+    const number = first + frame, before = bake;
+    bake = next;
+    first = bake.first_frame;
+    count = bake.frame_count;
+    shown = null;
+    if (!bake.unpacked) unpack(bake);
+    if (renderer) {
+      if (before) scene.remove(before.group);
+      bake.group = bake.group || meshes(bake.systems);
+      scene.add(bake.group);
+    }
+    describe();
+    if (before) show(number - first);
+  }
 
   // ---- controls ----
   function wire() {
-    $('title').textContent = bake.shot;
-    const worst = bake.frames.reduce((a, f) => a + f.crossings_body + f.crossings_self, 0);
-    $('summary').textContent = count + ' frames at ' + bake.fps + ' fps' + (bake.complete ? '' : ', not finished') +
-      ', ' + (worst === 0 ? 'no crossing with the feasible collider' : worst + ' crossings');
-    $('scrub').max = count - 1;
     $('scrub').addEventListener('input', () => { play(false); show(+$('scrub').value); });
     $('play').addEventListener('click', () => play(!playing));
     $('speed').addEventListener('change', () => play(playing));
     $('colour').addEventListener('change', () => { legend(); shown = null; show(frame); });
     $('home').addEventListener('click', fit);
     $('wireframe').addEventListener('change', () => {
-      for (const s of bake.systems) if (s.mesh && s.role === 'cloth') s.mesh.material.wireframe = $('wireframe').checked;
+      for (const s of bakes.flatMap((b) => b.systems)) if (s.mesh && secondary(s)) s.mesh.material.wireframe = $('wireframe').checked;
       draw();
     });
-    for (const s of bake.systems) {
-      const label = document.createElement('label'), tick = document.createElement('input'), colour = document.createElement('i'), size = document.createElement('span');
-      tick.type = 'checkbox';
-      tick.checked = s.role !== 'collider';
-      tick.addEventListener('change', () => { if (s.mesh) s.mesh.visible = tick.checked; draw(); });
-      colour.style.background = '#' + (s.plain || 0x888888).toString(16).padStart(6, '0');
-      size.textContent = s.vertices + ' vertices';
-      label.append(tick, colour, document.createTextNode(s.name + (s.role === 'cloth' ? '' : ' (' + s.role + ')')), size);
-      $('systems').append(label);
-    }
-    for (const i of bake.incidents.slice(0, 200)) {
-      const item = document.createElement('li'), link = document.createElement('a');
-      link.textContent = 'frame ' + i.frame;
-      link.addEventListener('click', () => { play(false); show(i.frame - first); });
-      item.append(link, document.createTextNode(' ' + (i.system ? i.system + ': ' : '') + i.text));
-      $('incidents').append(item);
-    }
-    $('incidents-title').hidden = bake.incidents.length === 0;
+    $('bakes-row').hidden = bakes.length < 2;
+    $('bakes').append(...bakes.map((b) => element('option', b.name)));
+    $('bakes').addEventListener('change', () => choose(bakes[$('bakes').selectedIndex]));
+    $('paths-row').hidden = paths.list.length === 0;
+    $('paths').checked = paths.list.length > 0 && (wish.has('paths') ? wish.get('paths') !== '0' : bakes.length > 1 || bakes[0].prop);
+    const legend_of_paths = () => { $('paths-legend').hidden = !$('paths').checked; };
+    $('paths').addEventListener('change', () => { legend_of_paths(); draw(); });
+    legend_of_paths();
     document.addEventListener('keydown', (event) => {
       if (event.target.tagName === 'SELECT') return;
       const step = event.shiftKey ? 10 : 1;
@@ -323,7 +328,7 @@
     });
   }
 
-  // #frame=12&colour=strain&test=skirt:0,40 : where to start; test writes those vertices into the page.
+  // #frame=12&colour=strain&bake=two-way&paths=0&test=skirt:0,40 : where to start; test writes those vertices into the page.
   const wish = new URLSearchParams(location.hash.slice(1));
   try {
     build();
@@ -333,18 +338,8 @@
     $('trouble').textContent = 'This browser cannot draw the scene (' + error.message + '). The plots still work.';
   }
   wire();
-  plot('strain', ' %', [{ name: 'p99', values: column('strain_p99', 100) }, { name: 'max', values: column('strain_max', 100) }]);
-  plot('smallest gap', ' mm', [{ name: '', values: column('smallest_gap', 1000) }]);
-  plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'cloth', values: column('crossings_self', 1) }], true);
-  for (const [title, unit, of] of [['force', ' N', (f) => f.force], ['torque', ' N m', (f) => f.torque]]) {
-    const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map((f) => f.system)))];
-    if (names.length === 0) continue;
-    plot(title, unit, names.map((name) => ({ name: names.length > 1 ? name : '', values: bake.frames.map((row) => {
-      const force = (row.forces ?? []).find((f) => f.system === name);
-      return force ? Math.hypot(...of(force)) : null;
-    }) })));
-  }
-  plot('time', ' ms', [{ name: '', values: column('milliseconds', 1) }]);
+  $('bakes').selectedIndex = Math.max(bakes.findIndex((b) => b.name === wish.get('bake')), 0);
+  choose(bakes[$('bakes').selectedIndex]);
   if (wish.has('colour')) $('colour').value = wish.get('colour');
   legend();
   show(wish.has('frame') ? +wish.get('frame') - first : 0);
@@ -353,7 +348,9 @@
     vertex, play, playing: () => playing, drawn: () => renderer !== null, plots: plots.map((p) => p.title) };
 
   if (wish.has('test')) {
-    const answer = { vertices: {}, drawn: renderer !== null, plots: plots.map((p) => p.title), frame: first + frame };
+    const answer = { vertices: {}, drawn: renderer !== null, plots: plots.map((p) => p.title), frame: first + frame,
+      bake: bake.name, paths: {} };
+    if ($('paths').checked) for (const path of paths.list) answer.paths[path.name] = paths.place(path, second(frame)).toArray();
     const [name, list] = wish.get('test').split(':');
     answer.vertices[name] = list.split(',').map((i) => vertex(name, +i));
     $('scrub').value = 0;

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "baker/commands/preview_bake.h"
+#include "baker/core/file.h"
 #include "baker/manifest.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
@@ -28,8 +30,9 @@ std::vector<Vec3> wave(const Mesh& sheet, int frame) {
   return x;
 }
 
-/// A bake of a waving sheet above a ball, in both formats.
-void make_bake(const std::filesystem::path& folder) {
+/// A bake of a waving sheet above a ball, in both formats; the ball moves on in every frame.
+void make_bake(const std::filesystem::path& folder, const Vec3& ball_per_frame = Vec3::Zero()) {
+  std::filesystem::create_directories(folder);
   Manifest manifest;
   manifest.version = manifest.build = manifest.fingerprint = "0";
   manifest.shot = "</script>wave.toml";
@@ -52,8 +55,14 @@ void make_bake(const std::filesystem::path& folder) {
     const std::string file = name + "." + format;
     auto writer = find_cache_format(format)->open_writer(folder / file, info, 0);
     ASSERT_TRUE(writer);
-    for (int f = 0; f < k_frames; ++f)
-      ASSERT_TRUE((*writer)->write_frame(role == "cloth" ? wave(mesh, f) : mesh.positions, {}));
+    for (int f = 0; f < k_frames; ++f) {
+      std::vector<Vec3> x = wave(mesh, f);
+      if (role == "body") {
+        x = mesh.positions;
+        for (Vec3& p : x) p += f * ball_per_frame;
+      }
+      ASSERT_TRUE((*writer)->write_frame(x, {}));
+    }
     ASSERT_TRUE((*writer)->close());
     manifest.systems.push_back(
         {name, role, "ball", mesh.vertex_count(), mesh.face_count(), name + ".obj", {{format, file, 0, ""}}});
@@ -68,6 +77,10 @@ void make_bake(const std::filesystem::path& folder) {
     manifest.frames.push_back(report);
   }
   std::ofstream(folder / "manifest.json") << to_text(manifest);
+}
+
+Result<std::string> page_of(const std::vector<std::filesystem::path>& folders) {
+  return preview_page(folders);
 }
 
 nlohmann::json ask(const std::filesystem::path& page, const std::string& hash) {
@@ -96,7 +109,7 @@ TEST(Preview, shows_every_vertex_where_the_cache_has_it_and_plays_slow) {
   const ScratchFolder folder;
   make_bake(folder.path());
   const auto page = folder.path() / "page.html";
-  ASSERT_EQ(run_preview({folder.path(), page}), 0);
+  ASSERT_EQ(run_preview({{folder.path()}, page}), 0);
   const auto answer = ask(page, "frame=107&colour=strain&test=sheet:0,57,168");
   ASSERT_TRUE(answer.is_object());
   EXPECT_EQ(answer["frame"], 107);
@@ -117,10 +130,66 @@ TEST(Preview, shows_every_vertex_where_the_cache_has_it_and_plays_slow) {
   EXPECT_GT(answer["colours"], 20);  // something is lit, not one flat colour
 }
 
+TEST(Preview, draws_the_paths_of_several_bakes_and_plays_the_one_that_is_chosen_slow) {
+  if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not installed";
+  const ScratchFolder folder;
+  make_bake(folder / "still");
+  const Vec3 per_frame(0.1, 0, 0.02);
+  make_bake(folder / "moved", per_frame);
+  const auto page = folder / "page.html";
+  ASSERT_EQ(run_preview({{folder / "still", folder / "moved"}, page}), 0);
+  const auto answer = ask(page, "frame=107&bake=moved&test=ball:0");
+  ASSERT_TRUE(answer.is_object());
+  EXPECT_EQ(answer["bake"], "moved");
+  ASSERT_EQ(answer["paths"].size(), 2u);
+  const Vec3 apart = (107 - k_first) * per_frame;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(answer["paths"]["moved"][axis].get<double>() - answer["paths"]["still"][axis].get<double>(),
+                apart[static_cast<int>(axis)], 1e-6);
+  auto reader = open_cache(folder / "moved" / "ball.pc2");
+  ASSERT_TRUE(reader);
+  std::vector<Vec3f> x;
+  ASSERT_TRUE((*reader)->read_frame(107 - k_first, x));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(answer["vertices"]["ball"][0][axis].get<double>(), x[0][static_cast<int>(axis)],
+                1e-4);  // 16 bits over two metres
+  // Of one bake with no prop they are not drawn unless they are asked for.
+  ASSERT_EQ(run_preview({{folder / "moved"}, page}), 0);
+  EXPECT_TRUE(ask(page, "test=ball:0")["paths"].empty());
+}
+
+TEST(Preview, bakes_of_one_name_are_told_apart_by_the_folders_above) {
+  const ScratchFolder folder;
+  make_bake(folder / "a" / "bake");
+  make_bake(folder / "b" / "bake");
+  const auto page = page_of({folder / "a" / "bake", folder / "b" / "bake"});
+  ASSERT_TRUE(page) << page.error().text();
+  for (const char* name : {"\"name\":\"a/bake\"", "\"name\":\"b/bake\""})
+    EXPECT_NE(page->find(name), std::string::npos) << name;
+}
+
+TEST(Preview, tubes_have_a_gap_and_no_strain_and_their_prop_a_path) {
+  const ScratchFolder folder;
+  make_bake(folder.path());
+  std::string manifest = read_text(folder / "manifest.json").value();
+  const std::string role = "\"cloth\"";
+  manifest.replace(manifest.find(role), role.size(), "\"cords\"");
+  std::ofstream(folder / "manifest.json") << manifest;
+  const auto bake = preview_bake(folder.path());
+  ASSERT_TRUE(bake) << bake.error().text();
+  const Json& sheet = (*bake)["systems"][0];
+  EXPECT_EQ(sheet["role"], "cords");
+  EXPECT_TRUE(sheet.contains("gap"));
+  EXPECT_FALSE(sheet.contains("strain"));
+  EXPECT_TRUE((*bake)["prop"].get<bool>());
+  ASSERT_EQ((*bake)["paths"].size(), 1u);
+  EXPECT_EQ((*bake)["paths"][0]["centres"].size(), static_cast<std::size_t>(k_frames));
+}
+
 TEST(Preview, holds_every_frame_and_nothing_from_elsewhere) {
   const ScratchFolder folder;
   make_bake(folder.path());
-  const auto page = preview_page(folder.path());
+  const auto page = page_of({folder.path()});
   ASSERT_TRUE(page) << page.error().text();
   for (const char* outside : {"src=\"http", "src='http", "href=\"http", "import(", "<link"})
     EXPECT_EQ(page->find(outside), std::string::npos) << outside;
@@ -131,10 +200,10 @@ TEST(Preview, holds_every_frame_and_nothing_from_elsewhere) {
 
 TEST(Preview, refuses_a_folder_that_is_no_bake_and_caches_that_do_not_belong_to_it) {
   const ScratchFolder folder;
-  EXPECT_EQ(preview_page(folder.path()).error().kind, ErrorKind::k_input);
+  EXPECT_EQ(page_of({folder.path()}).error().kind, ErrorKind::k_input);
   make_bake(folder.path());
   std::filesystem::resize_file(folder.path() / "ball.pc2", 40);
-  EXPECT_EQ(preview_page(folder.path()).error().kind, ErrorKind::k_input);
+  EXPECT_EQ(page_of({folder.path()}).error().kind, ErrorKind::k_input);
 }
 
 }  // namespace

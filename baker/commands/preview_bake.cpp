@@ -1,0 +1,234 @@
+#include "baker/commands/preview_bake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "baker/bake_folder.h"
+#include "baker/cache_track.h"
+#include "baker/commands/preview.h"
+#include "baker/core/edge_strain.h"
+#include "baker/core/file.h"
+#include "baker/core/parallel.h"
+#include "baker/primary_paths.h"
+#include "collision/triangle_tree.h"
+
+namespace ft {
+namespace {
+
+constexpr double k_strain_step = 0.0025;  ///< of the 8-bit strain; player.js knows it as 40 steps to 10 %
+
+std::string base64(std::span<const std::byte> data) {
+  constexpr const char* k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((data.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < data.size(); i += 3) {
+    const auto byte = [&](std::size_t k) { return i + k < data.size() ? static_cast<unsigned>(data[i + k]) : 0u; };
+    const unsigned bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (std::size_t k = 0; k < 4; ++k) out += i + k > data.size() ? '=' : k_digits[bits >> (18 - 6 * k) & 63];
+  }
+  return out;
+}
+
+template <class T>
+std::string base64_of(const std::vector<T>& values) {
+  return base64(std::as_bytes(std::span<const T>(values)));
+}
+
+/// A system on its way into the page.
+struct Clip {
+  ManifestSystem system;
+  CacheTrack track;
+  RestEdges rest_edges;
+  Box box;
+  std::vector<std::uint16_t> positions;
+  std::vector<std::int8_t> strain;
+  std::vector<std::uint8_t> gap;
+};
+
+/// Positions go to 16 bits per axis between the clip's bounds.
+Status quantise(Clip& clip, int frames) {
+  std::vector<Vec3> x;
+  for (int f = 0; f < frames; ++f) {
+    x.clear();
+    if (const Status read = clip.track.read(f, x); !read) return read;
+    clip.box.include(bounds(x));
+  }
+  const Vec3 step = clip.box.size() / 65535.0;
+  for (int f = 0; f < frames; ++f) {
+    x.clear();
+    if (const Status read = clip.track.read(f, x); !read) return read;
+    for (const Vec3& p : x)
+      for (int k = 0; k < 3; ++k)
+        clip.positions.push_back(step[k] > 0
+                                     ? static_cast<std::uint16_t>(std::lround((p[k] - clip.box.lo[k]) / step[k]))
+                                     : std::uint16_t{0});
+  }
+  return {};
+}
+
+/// Per vertex the edge strain that is largest in size.
+void add_strain(Clip& clip, std::span<const Vec3> x) {
+  std::vector<double> worst(x.size(), 0.0);
+  const std::vector<double> strains = edge_strains(clip.rest_edges, x);
+  for (std::size_t e = 0; e < strains.size(); ++e)
+    for (const int v : clip.rest_edges.edges[e])
+      if (std::abs(strains[e]) > std::abs(worst[at(v)])) worst[at(v)] = strains[e];
+  for (const double s : worst)
+    clip.strain.push_back(static_cast<std::int8_t>(std::lround(std::clamp(s / k_strain_step, -127.0, 127.0))));
+}
+
+/// Distance to the nearest point of the surface, in 255 steps of the range.
+void add_gap(Clip& clip, std::span<const Vec3> x, std::span<const Vec3> surface, std::span<const Triangle> triangles,
+             const TriangleTree& tree) {
+  const std::size_t first = clip.gap.size();
+  clip.gap.resize(first + x.size());
+  parallel_for(x.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      TriangleTree::Hit hit;
+      hit.closest.squared_distance = k_preview_gap_range * k_preview_gap_range;
+      tree.closest(x[i], surface, triangles, hit);
+      clip.gap[first + i] =
+          static_cast<std::uint8_t>(std::lround(255 * std::sqrt(hit.closest.squared_distance) / k_preview_gap_range));
+    }
+  });
+}
+
+/// Strain of every cloth, and the gap of all secondaries to what they must not pass: the feasible collider, else the
+/// drawn body. Tubes have no strain to show: cords are what stretches, and no edge of a tube is one.
+Status measure(std::vector<Clip>& clips, int frames) {
+  for (Clip& clip : clips) {
+    if (!is_secondary(clip.system.role)) continue;
+    const bool cloth = clip.system.role == "cloth";
+    if (cloth) clip.rest_edges = rest_edges(clip.track.rest.positions, clip.track.triangles);
+    const Clip* surface = nullptr;
+    for (const Clip& other : clips)
+      if (other.system.primary == clip.system.primary &&
+          (other.system.role == "collider" || (other.system.role == "body" && surface == nullptr)))
+        surface = &other;
+    TriangleTree tree;
+    std::vector<Vec3> x, y;
+    for (int f = 0; f < frames; ++f) {
+      x.clear();
+      if (const Status read = clip.track.read(f, x); !read) return read;
+      if (cloth) add_strain(clip, x);
+      if (surface == nullptr) continue;
+      y.clear();
+      if (const Status read = surface->track.read(f, y); !read) return read;
+      if (tree.empty())
+        tree = TriangleTree(y, surface->track.triangles);
+      else
+        tree.refit(y, surface->track.triangles);
+      add_gap(clip, x, y, surface->track.triangles, tree);
+    }
+  }
+  return {};
+}
+
+Json describe(const Clip& clip) {
+  const Vec3 step = clip.box.size() / 65535.0;
+  std::vector<std::uint32_t> corners;
+  for (const Triangle& t : clip.track.triangles)
+    for (const int v : t) corners.push_back(static_cast<std::uint32_t>(v));
+  Json out{{"name", clip.system.name}, {"role", clip.system.role}, {"vertices", clip.track.rest.vertex_count()}};
+  out["low"] = {clip.box.lo[0], clip.box.lo[1], clip.box.lo[2]};
+  out["step"] = {step[0], step[1], step[2]};
+  out["triangles"] = base64_of(corners);
+  out["positions"] = base64_of(clip.positions);
+  if (!clip.strain.empty()) out["strain"] = base64_of(clip.strain);
+  if (!clip.gap.empty()) out["gap"] = base64_of(clip.gap);
+  return out;
+}
+
+/// Milliseconds of each frame from report.json, where there is one.
+std::map<int, double> milliseconds(const BakeFolder& folder) {
+  std::map<int, double> out;
+  const auto bytes = read_file(folder.report());
+  if (!bytes) return out;
+  const auto report =
+      parse_json(std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()), folder.report().string());
+  if (!report || !report->is_object() || !report->contains("frames") || !(*report)["frames"].is_array()) return out;
+  for (const Json& row : (*report)["frames"])
+    if (row.is_object() && row.contains("frame") && row["frame"].is_number_integer() && row.contains("milliseconds") &&
+        row["milliseconds"].is_number())
+      out[row["frame"].get<int>()] = row["milliseconds"].get<double>();
+  return out;
+}
+
+Json frame_rows(const Manifest& manifest, const BakeFolder& folder, int frames) {
+  const std::map<int, double> times = milliseconds(folder);
+  Json rows = Json::array();
+  for (const FrameReport& frame : manifest.frames) {
+    if (frame.frame < manifest.first_written || frame.frame >= manifest.first_written + frames) continue;
+    Json row = to_json(frame);
+    row.erase("incidents");
+    const auto time = times.find(frame.frame);
+    row["milliseconds"] = time == times.end() ? Json(nullptr) : Json(time->second);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// Whether a primary is a rigid prop: it has a shape, or cords, which no other may have.
+bool has_prop(const Manifest& manifest) {
+  for (const ManifestSystem& system : manifest.systems)
+    if (system.role == "cords") return true;
+  return std::any_of(manifest.settings.begin(), manifest.settings.end(), [](const auto& setting) {
+    return setting.first.starts_with("primary.") && setting.first.ends_with(".shape") && setting.second != "\"\"";
+  });
+}
+
+Result<Json> path_rows(const std::filesystem::path& folder, const Manifest& manifest, int frames) {
+  const auto paths = primary_paths(folder, manifest);
+  if (!paths) return paths.error();
+  Json out = Json::array();
+  for (const PrimaryPath& path : *paths) {
+    Json centres = Json::array();
+    for (int f = 0; f < frames; ++f)
+      centres.push_back({path.centres[at(f)].x(), path.centres[at(f)].y(), path.centres[at(f)].z()});
+    out.push_back({{"name", path.primary}, {"centres", std::move(centres)}});
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
+  const BakeFolder folder{bake_folder};
+  auto manifest = read_manifest(bake_folder);
+  if (!manifest) return manifest.error();
+  std::vector<Clip> clips;
+  bool has_body = false;
+  for (const ManifestSystem& system : manifest->systems) has_body = has_body || system.role == "body";
+  int frames = manifest->written_count();
+  for (const ManifestSystem& system : manifest->systems) {
+    auto track = open_track(bake_folder, system, *manifest);
+    if (!track) return track.error();
+    frames = std::min(frames, track->reader->info().frame_count);
+    clips.push_back({system, std::move(*track), {}, {}, {}, {}, {}});
+  }
+  if (clips.empty() || frames < 1) return input_error("the bake has no finished frame to show", bake_folder.string());
+  if (const Status measured = measure(clips, frames); !measured) return measured.error();
+
+  Json bake{{"shot", manifest->shot}, {"fps", manifest->fps},           {"first_frame", manifest->first_written},
+            {"frame_count", frames},  {"complete", manifest->complete}, {"gap_range", k_preview_gap_range}};
+  bake["prop"] = has_prop(*manifest);
+  auto paths = path_rows(bake_folder, *manifest, frames);
+  if (!paths) return paths.error();
+  bake["paths"] = std::move(*paths);
+  bake["frames"] = frame_rows(*manifest, folder, frames);
+  bake["incidents"] = Json::array();
+  for (const FrameReport& frame : manifest->frames)
+    for (const Incident& i : frame.incidents)
+      if (i.frame >= manifest->first_written && i.frame < manifest->first_written + frames)
+        bake["incidents"].push_back(to_json(i));
+  bake["systems"] = Json::array();
+  for (Clip& clip : clips) {
+    if (clip.system.role == "collider" && has_body) continue;  // looks like the body and costs as much
+    if (const Status done = quantise(clip, frames); !done) return done.error();
+    bake["systems"].push_back(describe(clip));
+  }
+  return bake;
+}
+
+}  // namespace ft

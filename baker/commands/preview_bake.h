@@ -1,0 +1,14 @@
+// One bake as the preview's page holds it: meshes that move, strain and gap, the primaries' paths, the frames' numbers.
+#pragma once
+
+#include <filesystem>
+
+#include "baker/core/result.h"
+#include "baker/report_json.h"
+
+namespace ft {
+
+/// Errors: no manifest, no finished frame, caches that do not belong to it (k_input).
+Result<Json> preview_bake(const std::filesystem::path& bake_folder);
+
+}  // namespace ft
