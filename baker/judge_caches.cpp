@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "baker/cache_track.h"
 #include "baker/core/edge_strain.h"
+#include "baker/judge_cords.h"
 #include "baker/report_json.h"
 #include "collision/crossings.h"
 #include "collision/penetration.h"
@@ -23,6 +25,8 @@ struct Group {
   RestEdges rest_edges;
   SewnPairs sewn;
   std::vector<int> first_vertex;
+  std::vector<CacheTrack> cords;
+  std::vector<MiddleLines> lines;  ///< of each of them
 };
 
 void prepare(Group& group) {
@@ -55,6 +59,7 @@ void place_incident(const Group& group, int vertex, Incident& incident) {
 Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   FrameReport report;
   report.frame = frame;
+  report.smallest_gap = std::numeric_limits<double>::infinity();
   std::vector<Vec3> x;
   for (const CacheTrack& cloth : group.cloths)
     if (const Status read = cloth.read(index, x); !read) return read.error();
@@ -101,6 +106,40 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   return report;
 }
 
+/// A prop is its own collider, as drawn.
+Result<FrameReport> judge_cords_in_frame(const Group& group, std::size_t cords, int index, int frame) {
+  const CacheTrack& track = group.cords[cords];
+  const MiddleLines& lines = group.lines[cords];
+  FrameReport report;
+  report.frame = frame;
+  report.smallest_gap = std::numeric_limits<double>::infinity();
+  std::vector<Vec3> x, points;
+  if (const Status read = track.read(index, x); !read) return read.error();
+  append_middle_points(x, points);
+  report.finite = all_finite(x);
+  const StrainSummary strain = summary(edge_strains(lines.cords, points));
+  report.strain_mean = strain.mean;
+  report.strain_p99 = strain.p99;
+  report.strain_max = strain.max;
+  for (const CacheTrack& body : group.body) {
+    std::vector<Vec3> y;
+    if (const Status read = body.read(index, y); !read) return read.error();
+    const CordsAndBody found = judge_cords(lines.cords.edges, points, y, body.triangles);
+    report.crossings_body = report.crossings_drawn = found.crossings;
+    report.smallest_gap = found.gap;
+    report.deepest_drawn = found.deepest;
+    if (found.crossed >= 0)
+      report.incidents.push_back({Incident::Kind::k_crossing, frame, track.name, vertex_of_point(found.crossed),
+                                  points[at(found.crossed)], 0,
+                                  fmt::format("{} crossings of cords with the prop", found.crossings)});
+    if (found.inside >= 0)
+      report.incidents.push_back({Incident::Kind::k_penetration, frame, track.name, vertex_of_point(found.inside),
+                                  points[at(found.inside)], found.deepest,
+                                  fmt::format("{:.2f} mm inside the prop", 1e3 * found.deepest)});
+  }
+  return report;
+}
+
 }  // namespace
 
 Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
@@ -113,7 +152,13 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
     Group& group = groups[system.primary];
+    if (system.role == "cords") {
+      auto lines = middle_lines(track->rest);
+      if (!lines) return lines.error();
+      group.lines.push_back(std::move(*lines));
+    }
     (system.role == "cloth"      ? group.cloths
+     : system.role == "cords"    ? group.cords
      : system.role == "collider" ? group.collider
                                  : group.body)
         .push_back(std::move(*track));
@@ -123,10 +168,13 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     prepare(group);
     out.has_collider = out.has_collider || !group.collider.empty();
     out.has_body = out.has_body || !group.body.empty();
-    if (group.collider.empty())
+    out.has_cords = out.has_cords || !group.cords.empty();
+    if (!group.cords.empty() && group.body.empty())
+      out.notes.push_back("the prop \"" + primary + "\" is not cached: crossings of cords with it are not judged");
+    if (!group.cloths.empty() && group.collider.empty())
       out.notes.push_back("the feasible collider of \"" + primary +
                           "\" is not cached: crossings with it are not judged");
-    for (const auto* tracks : {&group.cloths, &group.collider, &group.body})
+    for (const auto* tracks : {&group.cloths, &group.cords, &group.collider, &group.body})
       for (const CacheTrack& track : *tracks) frames = std::min(frames, track.reader->info().frame_count);
   }
   if (!manifest->complete)
@@ -135,12 +183,19 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
   for (int i = 0; i < frames; ++i) {
     bool first = true;
     FrameReport all;
-    for (const auto& [primary, group] : groups) {
-      if (group.cloths.empty()) continue;
-      auto report = judge_frame(group, i, manifest->first_written + i);
+    const auto add = [&](const Result<FrameReport>& report) -> Status {
       if (!report) return report.error();
-      all = first ? std::move(*report) : merge(all, *report);
+      all = first ? *report : merge(all, *report);
       first = false;
+      return {};
+    };
+    for (const auto& [primary, group] : groups) {
+      if (!group.cloths.empty())
+        if (const Status judged = add(judge_frame(group, i, manifest->first_written + i)); !judged)
+          return judged.error();
+      for (std::size_t c = 0; c < group.cords.size(); ++c)
+        if (const Status judged = add(judge_cords_in_frame(group, c, i, manifest->first_written + i)); !judged)
+          return judged.error();
     }
     if (!first) out.frames.push_back(std::move(all));
   }

@@ -13,12 +13,14 @@ namespace ft {
 
 struct CacheJudgement {
   std::string shot;
-  std::vector<FrameReport> frames;  ///< crossings, penetration, strain; gap and energy are not judged
-  bool has_collider = false, has_body = false;
+  /// Crossings, penetration, strain; of cords the gap, which is infinite where there are none. Energy is not judged.
+  std::vector<FrameReport> frames;
+  bool has_collider = false, has_body = false, has_cords = false;
   std::vector<std::string> notes;  ///< what could not be judged
 };
 
-/// Reads every frame of every cache in the first format of each system. Garments on one primary are judged together.
+/// Reads every frame of every cache in the first format of each system. Garments on one primary are judged together,
+/// cords each for itself.
 Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder);
 
 }  // namespace ft

@@ -1,10 +1,11 @@
 // `check DIR`: judges a bake from its caches alone, frame by frame. Exit code 4 when a gate fails; crossings with the
-// feasible collider and among cloths always do.
+// feasible collider, which a prop is to its cords, and among cloths always do.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "baker/commands/command_line.h"
@@ -25,6 +26,7 @@ struct CheckArguments {
 struct Totals {
   int crossing_frames = 0, crossings_body = 0, crossings_self = 0;
   double deepest = 0, strain_p99 = 0;
+  double cord_gap = std::numeric_limits<double>::infinity();
   int deepest_frame = 0, strain_frame = 0;
 };
 
@@ -34,6 +36,7 @@ Totals add_up(const std::vector<FrameReport>& frames) {
     out.crossing_frames += f.crossings_body + f.crossings_self > 0;
     out.crossings_body += f.crossings_body;
     out.crossings_self += f.crossings_self;
+    out.cord_gap = std::min(out.cord_gap, f.smallest_gap);
     if (f.deepest_drawn > out.deepest) out.deepest = f.deepest_drawn, out.deepest_frame = f.frame;
     if (f.strain_p99 > out.strain_p99) out.strain_p99 = f.strain_p99, out.strain_frame = f.frame;
   }
@@ -69,10 +72,14 @@ int run(const CheckArguments& a) {
     complain(judgement.error().text());
     return exit_code(judgement.error().kind);
   }
-  std::printf("frame  crossings: body  cloth  drawn   inside drawn   strain p99      max\n");
-  for (const FrameReport& f : judgement->frames)
-    std::printf("%5d %16d %6d %6d %11.2f mm %10.2f %% %8.2f %%\n", f.frame, f.crossings_body, f.crossings_self,
+  std::printf("frame  crossings: body  cloth  drawn   inside drawn   strain p99      max%s\n",
+              judgement->has_cords ? "   gap of cords" : "");
+  for (const FrameReport& f : judgement->frames) {
+    std::printf("%5d %16d %6d %6d %11.2f mm %10.2f %% %8.2f %%", f.frame, f.crossings_body, f.crossings_self,
                 f.crossings_drawn, 1e3 * f.deepest_drawn, 100 * f.strain_p99, 100 * f.strain_max);
+    if (judgement->has_cords) std::printf(" %11.3f mm", 1e3 * f.smallest_gap);
+    std::printf("\n");
+  }
   for (const FrameReport& f : judgement->frames)
     for (const Incident& i : f.incidents)
       if (i.kind == Incident::Kind::k_crossing)
@@ -83,9 +90,10 @@ int run(const CheckArguments& a) {
   const auto failed = failed_gates(a, totals);
   std::printf(
       "%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, "
-      "worst p99 strain %.2f %%\n",
+      "worst p99 strain %.2f %%%s\n",
       failed.empty() ? "passed" : "FAILED", judgement->frames.size(), totals.crossings_body, totals.crossings_self,
-      1e3 * totals.deepest, 100 * totals.strain_p99);
+      1e3 * totals.deepest, 100 * totals.strain_p99,
+      judgement->has_cords ? fmt::format(", least gap of cords {:.3f} mm", 1e3 * totals.cord_gap).c_str() : "");
   if (!a.json.empty())
     if (const Status written = write_text_durably(a.json, to_text(json_of(*judgement, totals, failed))); !written) {
       complain(written.error().text());
