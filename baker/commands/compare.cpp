@@ -199,10 +199,15 @@ int run_compare(const CompareOptions& options) {
   }
   const auto reports = compare_paths(options.a, options.b, options.tolerance);
   std::vector<ForceComparison> forces;  // of folders that are bakes
-  if (const auto a = read_manifest(options.a), b = read_manifest(options.b); a && b) forces = compare_forces(*a, *b);
-  fmt::print("{}{}", compare_text(reports), to_text(forces));
+  std::vector<PathComparison> paths;
+  if (const auto a = read_manifest(options.a), b = read_manifest(options.b); a && b) {
+    forces = compare_forces(*a, *b);
+    if (const auto in_a = primary_paths(options.a, *a), in_b = primary_paths(options.b, *b); in_a && in_b)
+      paths = compare_primaries(*in_a, *a, *in_b, *b);
+  }
+  fmt::print("{}{}{}", compare_text(reports), to_text(paths), to_text(forces));
   Status status;
-  if (!options.json.empty()) status = write_text_durably(options.json, compare_json(reports, forces));
+  if (!options.json.empty()) status = write_text_durably(options.json, compare_json(reports, forces, paths));
   if (status && !options.html.empty()) status = write_text_durably(options.html, compare_html(reports));
   if (status && !options.junit.empty()) status = write_text_durably(options.junit, compare_junit(reports));
   if (!status) {

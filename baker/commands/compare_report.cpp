@@ -96,7 +96,8 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
   return out;
 }
 
-std::string compare_json(const std::vector<CompareReport>& reports, const std::vector<ForceComparison>& forces) {
+std::string compare_json(const std::vector<CompareReport>& reports, const std::vector<ForceComparison>& forces,
+                         const std::vector<PathComparison>& paths) {
   const CompareVerdict verdict = overall_verdict(reports);
   Json all = {{"verdict", verdict_name(verdict)},
               {"exit_code", exit_code(verdict)},
@@ -119,6 +120,7 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
     all["caches"].push_back(std::move(j));
   }
   if (!forces.empty()) all["forces"] = to_json(forces);
+  if (!paths.empty()) all["primaries"] = to_json(paths);
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

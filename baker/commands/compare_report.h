@@ -7,11 +7,13 @@
 
 #include "baker/commands/compare.h"
 #include "baker/commands/compare_forces.h"
+#include "baker/commands/compare_primaries.h"
 
 namespace ft {
 
 std::string compare_text(const std::vector<CompareReport>& reports);
-std::string compare_json(const std::vector<CompareReport>& reports, const std::vector<ForceComparison>& forces = {});
+std::string compare_json(const std::vector<CompareReport>& reports, const std::vector<ForceComparison>& forces = {},
+                         const std::vector<PathComparison>& paths = {});
 std::string compare_junit(const std::vector<CompareReport>& reports);
 std::string compare_html(const std::vector<CompareReport>& reports);
 

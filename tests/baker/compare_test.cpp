@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "baker/commands/compare_primaries.h"
 #include "baker/commands/compare_report.h"
 #include "baker/core/file.h"
 #include "tests/support/assets.h"
@@ -196,6 +197,29 @@ TEST_F(Compare, Large_pictures_are_thinned_and_keep_the_worst_vertex) {
   const std::string html = read("r.html");
   EXPECT_LT(html.size(), 2u << 20);
   EXPECT_NE(html.find("worst (vertex 9000) is circled"), std::string::npos);
+}
+
+TEST_F(Compare, Paths_of_primaries_differ_by_so_much_at_that_frame_and_end_at_those_velocities) {
+  const double g = 9.81, fps = 50;
+  PrimaryPath thrown{"ball", {}}, kept{"ball", {}};
+  for (int f = 0; f < 21; ++f) {
+    const double t = f / fps;
+    thrown.centres.emplace_back(2 * t, 1 * t - 0.5 * g * t * t, 0);
+    kept.centres.push_back(thrown.centres.back() + (f == 7 ? Vec3(0, 0, 0.25) : Vec3(0, 0, 0.01 * t)));
+  }
+  kept.centres.erase(kept.centres.begin(), kept.centres.begin() + 3);  // its bake begins later
+  Manifest a, b;
+  a.fps = b.fps = fps;
+  a.first_written = 1001, b.first_written = 1004;
+  const auto rows = compare_primaries({thrown, {"hand", {Vec3::Zero()}}}, a, {kept}, b);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].frame, 1008);
+  EXPECT_DOUBLE_EQ(rows[0].largest, 0.25);
+  const Vec3 end(2, 1 - g * 20 / fps, 0);  // differences of second order are exact in free flight
+  EXPECT_LT((rows[0].velocity_a - end).norm(), 1e-12);
+  EXPECT_LT((rows[0].velocity_b - end - Vec3(0, 0, 0.01)).norm(), 1e-12);
+  EXPECT_NE(to_text(rows).find("primary \"ball\": paths differ by up to 0.25 m, at frame 1008"), std::string::npos);
+  EXPECT_EQ(to_text(compare_primaries({kept}, b, {kept}, b)), "primary \"ball\": the same path in both\n");
 }
 
 TEST_F(Compare, Caches_without_frames_are_equal) {
