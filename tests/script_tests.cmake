@@ -20,4 +20,5 @@ ft_script_test(failing_writes baker/failing_writes.sh ${small_shot} --set shot.p
 if(TARGET failing_write AND TEST failing_writes)
   set_property(TEST failing_writes APPEND PROPERTY ENVIRONMENT FT_FAILING_WRITE=$<TARGET_FILE:failing_write>)
 endif()
+ft_script_test(variants samples/variants.sh)
 ft_script_test(install install/install_test.sh ${CMAKE_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/data/small_shot/skirt.obj ${CMAKE_CXX_COMPILER})
