@@ -32,8 +32,8 @@ std::string opening(const ProgressStart& s) {
   const std::string resumed = s.from_frame > s.first_frame - s.preroll + 1
                                   ? fmt::format(", resuming at frame {}", s.from_frame)
                                   : std::string();
-  return fmt::format("baking {}: frames {}-{} after {} of pre-roll, {} cloth vertices, {} threads{}", s.shot,
-                     s.first_frame, s.last_frame, s.preroll, s.vertex_count, s.threads, resumed);
+  return fmt::format("baking {}: frames {}-{} after {} of pre-roll, {} vertices, {} threads{}", s.shot, s.first_frame,
+                     s.last_frame, s.preroll, s.vertex_count, s.threads, resumed);
 }
 
 double percent(const ProgressFrame& f) {

@@ -83,7 +83,7 @@ TEST(Progress, None_prints_nothing) {
 
 TEST(Progress, Plain_is_the_default_away_from_a_terminal) {
   const auto lines = printed("");
-  EXPECT_EQ(lines.front().rfind("baking shot.toml: frames 1-10 after 3 of pre-roll, 9 cloth vertices", 0), 0u)
+  EXPECT_EQ(lines.front().rfind("baking shot.toml: frames 1-10 after 3 of pre-roll, 9 vertices", 0), 0u)
       << lines.front();
   EXPECT_NE(lines[1].find("frame -1 (pre-roll)"), std::string::npos) << lines[1];
   EXPECT_EQ(lines.back().rfind("done: 10 frames in ", 0), 0u);
