@@ -7,8 +7,10 @@
 #include <csignal>
 
 #include "baker/bake_folder.h"
+#include "baker/body_only.h"
 #include "baker/cache_set.h"
 #include "baker/core/file.h"
+#include "baker/hybrid_files.h"
 #include "baker/interaction.h"
 #include "baker/lock_file.h"
 #include "baker/plan_text.h"
@@ -59,18 +61,19 @@ void warn_of_space(const BakeFolder& folder, std::uint64_t expected, Progress& p
 }
 
 /// Files of an earlier bake that this one does not write: a cache that stays behind would be taken for a new one.
-Status remove_left_behind(const BakeFolder& folder, const Manifest& before, const std::vector<ManifestSystem>& now) {
-  std::vector<std::string> keep;
-  for (const ManifestSystem& s : now) {
-    keep.push_back(s.topology);
-    for (const ManifestCache& c : s.caches) keep.push_back(c.file);
-  }
-  std::vector<std::string> old;
-  for (const ManifestSystem& s : before.systems) {
-    old.push_back(s.topology);
-    for (const ManifestCache& c : s.caches) old.push_back(c.file);
-  }
-  for (const std::string& file : old) {
+Status remove_left_behind(const BakeFolder& folder, const Manifest& before, const std::vector<ManifestSystem>& systems,
+                          const std::vector<ManifestFile>& files) {
+  const auto names = [](const std::vector<ManifestSystem>& of_systems, const std::vector<ManifestFile>& of_files) {
+    std::vector<std::string> out;
+    for (const ManifestSystem& s : of_systems) {
+      out.push_back(s.topology);
+      for (const ManifestCache& c : s.caches) out.push_back(c.file);
+    }
+    for (const ManifestFile& f : of_files) out.push_back(f.file);
+    return out;
+  };
+  const std::vector<std::string> keep = names(systems, files);
+  for (const std::string& file : names(before.systems, before.files)) {
     // Names come from a file on disk: only plain names inside the folder are ours to remove.
     if (file.empty() || file.find('/') != std::string::npos || file == "." || file == "..") continue;
     if (std::find(keep.begin(), keep.end(), file) != keep.end()) continue;
@@ -108,6 +111,11 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
 Result<Solvers> make_solvers(const BakePlan& plan, const SolverFactory& factory) {
   Solvers out;
   for (const GroupPlan& group : plan.groups) {
+    if (group.outputs.empty()) {
+      const Shot& shot = plan.shot();
+      out.push_back(make_body_only(shot.first_frame, shot.preroll, shot.fps));
+      continue;
+    }
     auto solver = make_group_solver(group, factory);
     if (!solver) return solver.error();
     out.push_back(std::move(*solver));
@@ -152,8 +160,11 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
 
   CacheSet caches(*plan, *solvers, folder.path);
   warn_of_space(folder, caches.expected_bytes(), progress);
+  auto files = write_hybrid_files(*plan, folder.path, manifest.notes);
+  if (!files) return failed(files.error());
+  manifest.files = std::move(*files);
   if (!*checkpoint)
-    if (const Status removed = remove_left_behind(folder, standing.before, caches.systems()); !removed)
+    if (const Status removed = remove_left_behind(folder, standing.before, caches.systems(), manifest.files); !removed)
       return failed(removed.error());
   WalkResult result = walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), progress);
   Status status = result.status;

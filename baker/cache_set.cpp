@@ -21,7 +21,8 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       const Mesh& mesh = outputs[static_cast<std::size_t>(s)].mesh;
       add({g, s, false, mesh}, mesh.name, plan.groups[g].lockstep ? "cords" : "cloth", true);
     }
-    if (!plan.shot().cache_collider) continue;
+    const bool alone = outputs.empty();
+    if (!plan.shot().cache_collider && !alone) continue;
     std::vector<Vec3> collider;
     solver.collider_positions(solver.initial_state(), collider);
     if (!collider.empty() && !plan.groups[g].lockstep)  // a prop is its own collider
@@ -32,7 +33,7 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     std::vector<Vec3> body(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
     primary.trajectory->bind_pose(body);
     add({g, -1, false, make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles)}, primary.name,
-        "body", false);
+        "body", alone);
   }
 }
 

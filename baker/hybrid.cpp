@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "io/shot/mesh_file.h"
-#include "solvers/standins/deviation.h"
 #include "solvers/standins/registry.h"
 
 namespace ft {
 namespace {
 
-constexpr double k_longest_step = 1.0 / 600;  ///< between samples of the adjusted track [s]
+constexpr double k_without_end = 2e4;  ///< of a mat whose size is not given [m]
 
 std::vector<std::string> stood_in_for(const Shot& shot, const std::string& primary) {
   std::vector<std::string> out;
@@ -20,6 +20,21 @@ std::vector<std::string> stood_in_for(const Shot& shot, const std::string& prima
     if (c.on == primary && c.coupling == "hybrid") out.push_back(c.name);
   for (const CordsSpec& c : shot.cords)
     if (c.on == primary && c.coupling == "hybrid") out.push_back(c.name);
+  return out;
+}
+
+DeviationSettings settings_of(const Shot& shot, const PrimarySpec& spec) {
+  DeviationSettings out;
+  out.gravity = shot.solver.gravity;
+  out.comeback = spec.comeback == "spring"   ? Comeback::k_spring
+                 : spec.comeback == "window" ? Comeback::k_window
+                 : spec.comeback == "hold"   ? Comeback::k_hold
+                                             : Comeback::k_free;
+  out.omega = 2 * std::numbers::pi * spec.comeback_frequency;
+  out.zeta = spec.comeback_damping_ratio;
+  out.window = spec.comeback_window;
+  if (spec.max_displacement) out.max_displacement = *spec.max_displacement;
+  if (spec.max_acceleration) out.max_acceleration = *spec.max_acceleration;
   return out;
 }
 
@@ -34,8 +49,29 @@ std::string HybridPass::text(const std::string& primary) const {
       primary, of, largest.force.norm(), work, largest_displacement);
 }
 
+RigidPose HybridPass::offset(double time) const {
+  if (!(time > 0)) return {};
+  const double place = std::min(time / dt, static_cast<double>(offsets.size() - 1));
+  const auto i = static_cast<std::size_t>(place);
+  const double s = place - static_cast<double>(i);
+  if (s == 0) return offsets[i];
+  RigidPose out;
+  out.position = (1 - s) * offsets[i].position + s * offsets[i + 1].position;
+  out.rotation = offsets[i].rotation.slerp(s, offsets[i + 1].rotation);
+  return out;
+}
+
+std::vector<const StandInKeys*> stand_ins_of(const Shot& shot, const std::string& primary) {
+  const std::vector<std::string> names = stood_in_for(shot, primary);
+  std::vector<const StandInKeys*> out;
+  for (const StandInKeys& keys : shot.standins)
+    if (keys.on == primary || std::find(names.begin(), names.end(), keys.stands_for) != names.end())
+      out.push_back(&keys);
+  return out;
+}
+
 bool is_hybrid(const Shot& shot, const std::string& primary) {
-  return !stood_in_for(shot, primary).empty();
+  return !stood_in_for(shot, primary).empty() || !stand_ins_of(shot, primary).empty();
 }
 
 Result<StandInSpec> stand_in_spec(const StandInKeys& k, const Shot& shot) {
@@ -51,7 +87,7 @@ Result<StandInSpec> stand_in_spec(const StandInKeys& k, const Shot& shot) {
   if (k.limit_force) out.limit_force = *k.limit_force;
   out.shape = k.shape == "cone" ? VolumeShape::k_cone : k.shape == "mesh" ? VolumeShape::k_mesh : VolumeShape::k_box;
   out.position = k.kind == "spring" ? k.anchor : k.position;
-  out.size = k.size;
+  out.size = k.kind == "mat" && k.size.isZero(0) ? Vec3::Constant(k_without_end) : k.size;
   out.radius_top = k.radius_top;
   out.radius_bottom = k.radius_bottom;
   out.height = k.height;
@@ -75,53 +111,58 @@ Result<StandInSpec> stand_in_spec(const StandInKeys& k, const Shot& shot) {
   return out;
 }
 
-Result<HybridPass> hybrid_pass(const Shot& shot, const Prop& prop) {
+Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, DrivenBody body, double longest_step,
+                               const Vec3& turn_axes) {
   const auto located = [&](Error error) {
-    error.where = shot.file.filename().string() + ": primary \"" + prop.name + "\"" +
+    error.where = shot.file.filename().string() + ": primary \"" + spec.name + "\"" +
                   (error.where.empty() ? "" : ": " + error.where);
     return error;
   };
   HybridPass out;
-  out.names = stood_in_for(shot, prop.name);
+  out.names = stood_in_for(shot, spec.name);
   std::vector<std::unique_ptr<StandIn>> stand_ins;
-  for (const StandInKeys& keys : shot.standins) {
-    if (std::find(out.names.begin(), out.names.end(), keys.stands_for) == out.names.end()) continue;
-    auto spec = stand_in_spec(keys, shot);
-    if (!spec) return located(spec.error());
-    auto made = make_stand_in(*spec);
+  for (const StandInKeys* keys : stand_ins_of(shot, spec.name)) {
+    auto made_of = stand_in_spec(*keys, shot);
+    if (!made_of) return located(made_of.error());
+    auto made = make_stand_in(*made_of);
     if (!made) return located(made.error());
     stand_ins.push_back(std::move(*made));
+    if (!keys->on.empty()) out.names.push_back(keys->name);
   }
-  if (!(prop.mass.mass > 0))
+  if (!(body.mass.mass > 0))
     return located(usage_error("a hybrid pass needs the primary's mass", "", "write mass, in kg"));
-  DrivenBody body{prop.mass, prop.track, [samples = prop.samples](double) { return std::span(samples); }};
-  DeviationSettings settings;
-  settings.gravity = shot.solver.gravity;
-  auto deviation = Deviation::make(std::move(body), std::move(stand_ins), settings);
+  out.mass = body.mass.mass;
+  out.settings = settings_of(shot, spec);
+  out.settings.turn_axes = turn_axes;
+  auto deviation = Deviation::make(std::move(body), std::move(stand_ins), out.settings);
   if (!deviation) return located(deviation.error());
 
-  const int pieces = std::max(1, static_cast<int>(std::ceil(1 / (shot.fps * k_longest_step) - 1e-9)));
-  const double dt = 1 / (shot.fps * pieces);
+  const int pieces = std::max(1, static_cast<int>(std::ceil(1 / (shot.fps * longest_step) - 1e-9)));
+  out.dt = 1 / (shot.fps * pieces);
   DeviationState state = deviation->start(0);
-  std::vector<RigidMotion> samples{deviation->adjusted(state)};
+  out.motion.push_back(deviation->adjusted(state));
+  out.offsets.push_back(state.offset);
+  out.frames.push_back({shot.first_frame, {}, 0, 0, {}});
   for (int frame = shot.first_frame; frame < shot.last_frame; ++frame) {
-    Wrench mean;
+    HybridFrame now{frame + 1, {}, 0, 0, {}};
     for (int piece = 1; piece <= pieces; ++piece) {
-      const auto step = deviation->advance(state, (frame - shot.first_frame) / shot.fps + piece * dt);
+      const auto step = deviation->advance(state, (frame - shot.first_frame) / shot.fps + piece * out.dt);
       if (!step) return located(step.error());
-      samples.push_back(step->motion);
-      mean += (1.0 / pieces) * step->wrench;
-      out.work += step->work;
+      out.motion.push_back(step->motion);
+      out.offsets.push_back(state.offset);
+      now.mean += (1.0 / pieces) * step->wrench;
+      now.peak = std::max(now.peak, step->peak);
+      now.work += step->work;
     }
-    if (mean.force.norm() > out.largest.force.norm()) out.largest = mean;
+    now.offset = state.offset;
+    out.work += now.work;
+    if (now.mean.force.norm() > out.largest.force.norm()) out.largest = now.mean;
     out.largest_displacement = std::max(out.largest_displacement, state.offset.position.norm());
+    out.frames.push_back(now);
   }
   for (const std::string& name : deviation->untouched(state))
     out.notes.push_back(
-        fmt::format("standin \"{}\" never touches \"{}\": is it where \"{}\" is?", name, prop.name, out.names.front()));
-  out.track = [before = prop.track, after = sampled_motion(0, dt, std::move(samples))](double time) {
-    return time < 0 ? before(time) : after(time);
-  };
+        fmt::format("standin \"{}\" never touches \"{}\": is it where \"{}\" is?", name, spec.name, out.names.front()));
   return out;
 }
 

@@ -92,6 +92,9 @@ std::string to_text(const Manifest& m) {
   Json systems = Json::array();
   for (const ManifestSystem& s : m.systems) systems.push_back(system_json(s));
   out["systems"] = std::move(systems);
+  Json files = Json::array();
+  for (const ManifestFile& f : m.files) files.push_back({{"file", f.file}, {"bytes", f.bytes}, {"content", f.content}});
+  if (!files.empty()) out["files"] = std::move(files);
   out["notes"] = m.notes;
   out["certificate"] = certificate(m);
   Json incidents = Json::array(), preroll = Json::array(), frames = Json::array();
@@ -133,6 +136,10 @@ Result<Manifest> manifest_from_text(const std::string& text, const std::string& 
     for (const auto& item : in.at("settings").items())
       m.settings.emplace_back(item.key(), item.value().get<std::string>());
     for (const Json& s : in.at("systems")) m.systems.push_back(system_from(s));
+    if (in.contains("files"))
+      for (const Json& f : in.at("files"))
+        m.files.push_back(
+            {f.at("file").get<std::string>(), f.at("bytes").get<std::uint64_t>(), f.at("content").get<std::string>()});
     m.notes = in.at("notes").get<std::vector<std::string>>();
     for (const char* part : {"preroll", "frames"})
       for (const Json& row : in.at(part)) {

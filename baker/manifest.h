@@ -37,6 +37,13 @@ struct ManifestSystem {
   std::vector<ManifestCache> caches;
 };
 
+/// A file beside the caches, of an adjusted motion.
+struct ManifestFile {
+  std::string file;
+  std::uint64_t bytes = 0;
+  std::string content;  ///< 32 hex digits
+};
+
 struct Manifest {
   std::string version, build, fingerprint;
   std::string shot;  ///< name of the shot file
@@ -48,6 +55,7 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::string>> settings;
   std::vector<ManifestSystem> systems;
+  std::vector<ManifestFile> files;
   std::vector<std::string> notes;
   std::vector<FrameReport> frames;  ///< pre-roll frames first; as far as the bake has come
 

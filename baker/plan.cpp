@@ -20,6 +20,8 @@ namespace {
 // [m].
 constexpr double k_smallest_primary = 0.05, k_largest_primary = 30;
 
+constexpr double k_prop_step = 1.0 / 600;  ///< longest between samples of a prop's adjusted track [s]
+
 std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
   return shot.file.filename().string() + ": cloth \"" + cloth.name + "\"";
 }
@@ -42,6 +44,7 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.preroll = shot.preroll / shot.fps;
   request.duration = (shot.last_frame - shot.first_frame) / shot.fps;
   request.cache_folder = cache;
+  request.keep_character = is_hybrid(shot, spec.name);
   return request;
 }
 
@@ -194,7 +197,7 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
   for (const PinSpec& pin_spec : spec.pins) {
     const auto target = std::find_if(garments.begin(), garments.end(),
                                      [&](const ClothGarment& garment) { return garment.name == pin_spec.to; });
-    const bool to_cloth = !pin_spec.to.empty();
+    const bool to_world = pin_spec.to == k_pin_world, to_cloth = !pin_spec.to.empty() && !to_world;
     CHECK(!to_cloth || target != garments.end());  // the shot file was judged
     auto resolved = to_cloth ? resolve_pin(pin_spec, output.mesh, target->mesh.positions, triangulate(target->mesh))
                              : resolve_pin(pin_spec, output.mesh, body, primary.trajectory->surface().triangles);
@@ -202,6 +205,7 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
     ClothPin pin = output.joined_of.empty() ? std::move(*resolved) : on_joined(*resolved, output.joined_of);
     pin.hold = hold_span(pin_spec, shot);
     pin.opens = pin_spec.opens;
+    pin.to_world = to_world;
     if (to_cloth) {
       pin.to = static_cast<int>(target - garments.begin());
       if (const Status held = check_footholds(garments, own, pin, notes); !held) return located(held.error());
@@ -241,9 +245,15 @@ void place_garment(Mesh& mesh, const ClothSpec& spec) {
 
 namespace {
 
+void note_pass(const HybridPass& pass, const std::string& primary, std::vector<std::string>& notes) {
+  notes.push_back(pass.text(primary));
+  notes.insert(notes.end(), pass.notes.begin(), pass.notes.end());
+}
+
 Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, const Importer& importer,
                                    const std::filesystem::path& import_cache, std::vector<std::string>& notes) {
-  auto imported = importer(import_request(shot, spec, import_cache));
+  const ImportRequest request = import_request(shot, spec, import_cache);
+  auto imported = importer(request);
   if (!imported) return imported.error();
   CHECK(imported->trajectory);
   if (const Status checked = check_primary(shot, spec, *imported->trajectory); !checked) return checked.error();
@@ -255,20 +265,29 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   out.mass = primary_mass(spec, *imported->trajectory);
   out.trajectory = std::move(imported->trajectory);
   out.info = std::move(imported->info);
+  if (imported->character && has_joints(*imported->character)) {
+    auto yielded = yield_character(shot, spec, request, imported->character, *out.trajectory, out.mass.kilograms);
+    if (!yielded) return yielded.error();
+    note_pass(yielded->pass, spec.name, notes);
+    notes.insert(notes.end(), yielded->notes.begin(), yielded->notes.end());
+    out.trajectory = std::move(yielded->trajectory);
+    out.hybrid = std::make_shared<const HybridPass>(std::move(yielded->pass));
+    out.yielding = std::make_shared<const YieldingCharacter>(std::move(yielded->character));
+  }
   return out;
 }
 
 /// Whether something asks for a primary that is one rigid body: cords on it, or a coupling that moves it.
-bool has_to_be_rigid(const Shot& shot, const std::string& primary) {
-  return is_hybrid(shot, primary) ||
-         std::any_of(shot.cords.begin(), shot.cords.end(), [&](const CordsSpec& c) { return c.on == primary; });
+bool has_to_be_rigid(const Shot& shot, const PrimaryPlan& primary) {
+  return (is_hybrid(shot, primary.name) && !primary.yielding) ||
+         std::any_of(shot.cords.begin(), shot.cords.end(), [&](const CordsSpec& c) { return c.on == primary.name; });
 }
 
 /// Its prop, and where it goes: along its track or, once stand-ins have been met, the adjusted one.
 Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary, std::vector<std::string>& notes) {
   if (!spec.shape.empty()) {
     primary.prop = std::make_shared<const Prop>(prop_of_shape(spec, shot));
-  } else if (has_to_be_rigid(shot, spec.name)) {
+  } else if (has_to_be_rigid(shot, primary)) {
     auto prop = prop_of_trajectory(spec, shot, primary.trajectory, primary.mass.kilograms);
     if (!prop) return prop.error();
     primary.prop = std::make_shared<const Prop>(std::move(*prop));
@@ -276,12 +295,16 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
     return {};
   }
   primary.track = primary.prop->track;
-  if (is_hybrid(shot, spec.name)) {
-    auto pass = hybrid_pass(shot, *primary.prop);
+  if (is_hybrid(shot, spec.name) && !primary.hybrid) {
+    const Prop& prop = *primary.prop;
+    DrivenBody body{prop.mass, prop.track, [samples = prop.samples](double) { return std::span(samples); }};
+    auto pass = hybrid_pass(shot, spec, std::move(body), k_prop_step, Vec3::Ones());
     if (!pass) return pass.error();
-    primary.track = pass->track;
-    notes.push_back(pass->text(spec.name));
-    notes.insert(notes.end(), pass->notes.begin(), pass->notes.end());
+    primary.track = [before = prop.track, after = sampled_motion(0, pass->dt, pass->motion)](double time) {
+      return time < 0 ? before(time) : after(time);
+    };
+    note_pass(*pass, spec.name, notes);
+    primary.hybrid = std::make_shared<const HybridPass>(std::move(*pass));
   }
   primary.trajectory = prop_trajectory(*primary.prop, primary.track, shot.preroll / shot.fps);
   if (!spec.shape.empty()) {
@@ -336,6 +359,9 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
     if (const Status planned = plan_cloths(shot, p, plan); !planned) return planned.error();
     if (const Status planned = plan_cords(shot, p, plan); !planned) return planned.error();
+    const auto of_it = [&](const GroupPlan& group) { return group.primary == p; };
+    if (plan.primaries[p].hybrid && std::none_of(plan.groups.begin(), plan.groups.end(), of_it))
+      plan.groups.push_back({p, common_setup(shot), {}, {}});
   }
   if (plan.groups.empty()) return usage_error("no cloth or cords are on any primary", shot.file.string());
   return plan;

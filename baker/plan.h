@@ -12,6 +12,7 @@
 #include "baker/inputs.h"
 #include "baker/primary_mass.h"
 #include "baker/prop.h"
+#include "baker/yielding_character.h"
 #include "io/import/import.h"
 #include "io/import/teleport_scan.h"
 #include "solvers/cloth/cloth_solver.h"
@@ -25,8 +26,10 @@ struct PrimaryPlan {
   CharacterInfo info;
   TeleportScan scan;
   PrimaryMass mass;
-  std::shared_ptr<const Prop> prop;  ///< null for a character
-  RigidTrack track;                  ///< of a prop: where `trajectory` has it
+  std::shared_ptr<const Prop> prop;                   ///< null for a character
+  RigidTrack track;                                   ///< of a prop: where `trajectory` has it
+  std::shared_ptr<const HybridPass> hybrid;           ///< null without one; `trajectory` has it
+  std::shared_ptr<const YieldingCharacter> yielding;  ///< of a character with a hybrid pass
 };
 
 /// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation. Cords leave as tubes.
@@ -42,6 +45,7 @@ struct GroupPlan {
   ClothSetup setup;
   std::vector<GarmentOutput> outputs;     ///< one per garment of setup, or cord system of lockstep
   std::optional<LockstepSetup> lockstep;  ///< a group of cords: then `setup` is not used
+  // Without outputs: a hybrid primary alone, whose adjusted motion is cached.
 };
 
 struct BakePlan {

@@ -7,8 +7,6 @@
 namespace ft {
 namespace {
 
-constexpr double k_body_density = 1010;  ///< of a person, between breaths [kg/m3]
-
 constexpr double k_columns = 1.0 / 400;  ///< distance of the columns that measure a volume, of the body's size
 
 }  // namespace

@@ -8,6 +8,8 @@
 
 namespace ft {
 
+inline constexpr double k_body_density = 1010;  ///< of a person, between breaths [kg/m3]
+
 struct PrimaryMass {
   double kilograms = 0;  ///< 0: not known
   bool given = false;    ///< in the shot file

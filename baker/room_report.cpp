@@ -44,7 +44,7 @@ void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report
   const PrimaryPlan& primary = plan.primaries[group.primary];
   const Trajectory& body = *primary.trajectory;
   const auto& parts = body.surface().parts;
-  if (!group.setup.feasible.carve || parts.size() < 2) return;
+  if (!group.setup.feasible.carve || parts.size() < 2 || group.setup.garments.empty()) return;
   std::vector<Vec3> bind(at(body.surface().vertex_count()));
   body.bind_pose(bind);
   const RoomScanner scanner(body.surface(), bind, group.setup.feasible);

@@ -8,27 +8,30 @@
 namespace ft {
 namespace {
 
+/// What happened to a file since it was written; empty: nothing.
+std::string damage(const std::filesystem::path& folder, const std::string& file, std::uint64_t size,
+                   const std::string& content) {
+  std::error_code error;
+  const auto now = std::filesystem::file_size(folder / file, error);
+  if (error) return file + " is gone";
+  if (now == size)
+    if (const auto bytes = read_file(folder / file, size); bytes && hash_bytes(*bytes).hex() == content) return {};
+  return file + " was changed after the bake";
+}
+
 /// What happened to the files of a complete bake since; empty: nothing.
 std::vector<std::string> damage(const BakeFolder& folder, const Manifest& manifest) {
   std::vector<std::string> out;
   for (const ManifestSystem& system : manifest.systems) {
     std::error_code error;
     if (!std::filesystem::exists(folder.path / system.topology, error)) out.push_back(system.topology + " is gone");
-    for (const ManifestCache& cache : system.caches) {
-      const auto path = folder.path / cache.file;
-      const auto size = std::filesystem::file_size(path, error);
-      if (error) {
-        out.push_back(cache.file + " is gone");
-        continue;
-      }
-      bool same = size == cache.bytes;
-      if (same) {
-        const auto bytes = read_file(path, cache.bytes);
-        same = bytes && hash_bytes(bytes.value()).hex() == cache.content;
-      }
-      if (!same) out.push_back(cache.file + " was changed after the bake");
-    }
+    for (const ManifestCache& cache : system.caches)
+      if (std::string fault = damage(folder.path, cache.file, cache.bytes, cache.content); !fault.empty())
+        out.push_back(std::move(fault));
   }
+  for (const ManifestFile& file : manifest.files)
+    if (std::string fault = damage(folder.path, file.file, file.bytes, file.content); !fault.empty())
+      out.push_back(std::move(fault));
   return out;
 }
 

@@ -242,7 +242,11 @@ Result<ImportedPrimary> import_primary(const ImportRequest& request) {
   if (is_geometry_cache(request.file)) return import_geometry_cache(request);
   auto placed = place_character(request);
   if (!placed) return placed.error();
-  return play(std::move(*placed), request);
+  std::shared_ptr<const PlacedCharacter> kept;
+  if (request.keep_character) kept = std::make_shared<const PlacedCharacter>(*placed);
+  auto out = play(std::move(*placed), request);
+  if (out) out->character = std::move(kept);
+  return out;
 }
 
 Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const ImportLimits& limits) {

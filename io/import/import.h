@@ -48,12 +48,17 @@ struct ImportRequest {
   std::vector<std::string> meshes;
   double preroll = 1;                  ///< s
   double duration = 0;                 ///< s of the shot: frames outside the clip are refused
+  bool keep_character = false;         ///< for who changes its motion, see placed_character.h
   std::filesystem::path cache_folder;  ///< import cache; empty: none
   ImportLimits limits;
 };
 
+struct PlacedCharacter;
+
 struct ImportedPrimary {
   std::unique_ptr<Trajectory> trajectory;
+  /// What the trajectory was made of, where `keep_character` asked for it; null for geometry caches.
+  std::shared_ptr<const PlacedCharacter> character;
   CharacterInfo info;
   Hash128 content;  ///< hash of the input bytes
 };

@@ -53,10 +53,18 @@ struct PrimarySpec {
   bool hollow = false;               ///< its mass lies in its surface
   Vec3 inertia = Vec3::Zero();       ///< principal moments about its centre [kg m2]; zero: from shape and mass
   Release release = Release::k_start;
-  double release_frame = 0;  ///< k_frame: from here on only forces move it
+  double release_frame = 0;       ///< k_frame: from here on only forces move it
+  std::string limbs = "rigid";    ///< of a character that yields: "rigid", or "planted": feet on the ground stay there
+  std::string comeback = "free";  ///< to its animation: "free", "spring", "window", "hold"
+  double comeback_frequency = 1;  ///< of the spring that brings it back [Hz]
+  double comeback_damping_ratio = 1;       ///< its damping
+  double comeback_window = 0.5;            ///< in which the spring grows after the last touch [s]
+  std::optional<double> max_displacement;  ///< from its animation [m]
+  std::optional<double> max_acceleration;  ///< by the stand-ins together [m/s2]
 };
 
 /// One way to hold a garment to its primary, or to a garment.
+inline constexpr std::string_view k_pin_world = "world";  ///< PinSpec::to: a place that does not move
 struct PinSpec {
   enum class Select { k_group, k_within, k_vertices, k_file };
   Select select = Select::k_group;
@@ -69,8 +77,8 @@ struct PinSpec {
   double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
   std::optional<double> from, until;  ///< frames of the shot: it holds after the one, and up to and including the other
   double fade = 0;                    ///< frames that its force takes to come after `from` and to go after `until`
-  std::string to;                     ///< name of the cloth that it holds to, on the same primary; empty: the primary
-  Vec3 opens = Vec3::Zero();          ///< direction in which its vertices let go one after another; zero: all together
+  std::string to;  ///< name of the cloth that it holds to, on the same primary, or "world"; empty: the primary
+  Vec3 opens = Vec3::Zero();  ///< direction in which its vertices let go one after another; zero: all together
 };
 
 /// What varies over a garment, and where its values come from: see shot_maps.h for what can vary.
@@ -138,7 +146,8 @@ struct CordsSpec {
 struct StandInKeys {
   std::string name;
   std::string kind;                          ///< "damping", "mat", "water", "spring", "weight", "fitted"
-  std::string stands_for;                    ///< key `for`: name of the secondary
+  std::string stands_for;                    ///< key `for`: name of the secondary; empty: of none, see on
+  std::string on;                            ///< name of the primary, where no secondary is there to be baked
   std::string shape;                         ///< of a volume: "box", "cone", "mesh"
   Vec3 position = Vec3::Zero();              ///< m: centre of a box, of a cone's top; offset of a mesh; level
   Vec3 size = Vec3::Zero();                  ///< box [m]

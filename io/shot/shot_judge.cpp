@@ -39,7 +39,7 @@ void judge_attachments(const Value& root, const ClothSpec& cloth, const std::vec
   std::vector<std::string> names;
   for (const ClothSpec& other : cloths) names.push_back(other.name);
   for (const PinSpec& pin : cloth.pins) {
-    if (pin.to.empty()) continue;
+    if (pin.to.empty() || pin.to == k_pin_world) continue;
     const std::string fault = "cloth " + in_quotes(cloth.name) + ": to = " + in_quotes(pin.to);
     const auto held = std::find(names.begin(), names.end(), pin.to) - names.begin();
     if (held == std::ssize(names))
@@ -151,7 +151,7 @@ void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin
   if (opens && !(pin.fade > 0))
     faults.add(opens->place, owner + ": opens needs fade, the frames that it takes from one end to the other");
   for (const char* key : {"stiffness", "max_pull"})
-    if (const Member* member = value.find(key); member && value.find("to"))
+    if (const Member* member = value.find(key); member && value.find("to") && pin.to != k_pin_world)
       faults.add(member->place, owner + ": " + key + " does not go with to: a cloth is held as firmly as by a seam; " +
                                     "weights below 1 (file, group) hold it less");
 }
@@ -159,7 +159,7 @@ void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin
 void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
   if (root.find("shot") == nullptr) faults.add({}, "has no [shot] section: frames = \"1-100\" is needed");
   if (shot.primaries.empty()) faults.add({}, "has no [primary.NAME] section: the character that the cloth is worn by");
-  if (shot.cloths.empty() && shot.cords.empty())
+  if (shot.cloths.empty() && shot.cords.empty() && shot.standins.empty())
     faults.add({}, "has no [cloth.NAME] or [cords.NAME] section: there is nothing to bake");
   const int low = shot.solver.min_substeps, high = shot.solver.max_substeps;
   if (low > high) {

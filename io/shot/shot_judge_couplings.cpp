@@ -16,7 +16,8 @@ struct ChoiceKeys {
 };
 
 constexpr ChoiceKeys k_primary_shapes[] = {
-    {"", "file", "animation topology clip clip_start speed unit_scale up source_fps body height meshes teleports"},
+    {"", "file",
+     "animation topology clip clip_start speed unit_scale up source_fps body height meshes teleports limbs"},
     {"sphere", "radius", "position rotation velocity spin hollow"},
     {"box", "size", "position rotation velocity spin hollow"},
     {"capsule", "radius length", "position rotation velocity spin hollow"},
@@ -147,6 +148,40 @@ std::string_view lacks(const StandInKeys& s, const Value& table) {
   return {};
 }
 
+/// It stands for a secondary, or for something that is not baked here; then `on` names who meets it.
+void judge_whom_it_meets(const Value& root, const Value& table, std::span<const Secondary> secondaries,
+                         StandInKeys& standin, Shot& shot, FaultList& faults) {
+  const std::string owner = "standin " + in_quotes(standin.name);
+  const Member *stands_for = table.find("for"), *on = table.find("on");
+  if (on && stands_for) {
+    faults.add(on->place, owner + ": has both for and on; on is for what no cloth or cords are there for");
+    return;
+  }
+  std::vector<std::string> names, primaries;
+  for (const Secondary& secondary : secondaries) names.push_back(secondary.name);
+  for (const PrimarySpec& primary : shot.primaries) primaries.push_back(primary.name);
+  if (on || (!stands_for && names.empty())) {
+    if (!on && primaries.size() == 1) standin.on = primaries.front();
+    if (primaries.empty() || std::find(primaries.begin(), primaries.end(), standin.on) != primaries.end()) return;
+    if (!on)
+      faults.add(table.place, owner + ": on is missing; it says who meets it (one of: " + joined(primaries) + ")");
+    else
+      faults.add(on->place, with_hint(owner + ": on = " + in_quotes(standin.on) + " names no primary",
+                                      suggestion(standin.on, primaries)));
+    return;
+  }
+  if (standin.stands_for.empty() && names.size() == 1) standin.stands_for = names.front();
+  const auto found = std::find(names.begin(), names.end(), standin.stands_for);
+  if (standin.stands_for.empty())
+    faults.add(table.place, owner + ": for is missing; it says what it stands for (one of: " + joined(names) + ")");
+  else if (found == names.end())
+    faults.add(place_of(root, {"standin", standin.name, "for"}),
+               with_hint(owner + ": for = " + in_quotes(standin.stands_for) + " names no cloth or cords",
+                         suggestion(standin.stands_for, names)));
+  else if (const Secondary& of = secondaries[static_cast<std::size_t>(found - names.begin())]; of.coupling != "hybrid")
+    shot.notes.push_back(owner + " is not used: " + of.owner() + " has coupling = " + in_quotes(of.coupling));
+}
+
 void judge_standin(const Value& root, const Value& table, std::span<const Secondary> secondaries, StandInKeys& standin,
                    Shot& shot, FaultList& faults) {
   const std::string owner = "standin " + in_quotes(standin.name);
@@ -160,19 +195,7 @@ void judge_standin(const Value& root, const Value& table, std::span<const Second
                                  " is not after from = " + number_text(*standin.from) + ": it would never act");
   if (const Member* ratio = table.find("damping_ratio"); ratio && table.find("damping"))
     faults.add(ratio->place, owner + ": has both damping and damping_ratio; one of them says how it is damped");
-  std::vector<std::string> names;
-  for (const Secondary& secondary : secondaries) names.push_back(secondary.name);
-  if (standin.stands_for.empty() && names.size() == 1) standin.stands_for = names.front();
-  if (names.empty()) return;
-  const auto found = std::find(names.begin(), names.end(), standin.stands_for);
-  if (standin.stands_for.empty())
-    faults.add(table.place, owner + ": for is missing; it says what it stands for (one of: " + joined(names) + ")");
-  else if (found == names.end())
-    faults.add(place_of(root, {"standin", standin.name, "for"}),
-               with_hint(owner + ": for = " + in_quotes(standin.stands_for) + " names no cloth or cords",
-                         suggestion(standin.stands_for, names)));
-  else if (const Secondary& of = secondaries[static_cast<std::size_t>(found - names.begin())]; of.coupling != "hybrid")
-    shot.notes.push_back(owner + " is not used: " + of.owner() + " has coupling = " + in_quotes(of.coupling));
+  judge_whom_it_meets(root, table, secondaries, standin, shot, faults);
 }
 
 void judge_pair(const Value& root, const Shot& shot, const Secondary& pair, FaultList& faults) {
@@ -213,6 +236,11 @@ void judge_couplings(const Value& root, Shot& shot, FaultList& faults) {
     judge_pair(root, shot, pair, faults);
     if (pair.coupling == "one-way") continue;
     const Secondary* other = yields.emplace(pair.on, &pair).first->second;
+    for (const StandInKeys& standin : shot.standins)
+      if (pair.coupling == "two-way" && standin.on == pair.on)
+        faults.add(place_of(root, {"standin", standin.name, "on"}),
+                   "standin " + in_quotes(standin.name) + ": primary " + in_quotes(pair.on) +
+                       " is coupled two-way with " + pair.owner() + ", and cannot yield before it is baked as well");
     if (other->coupling != pair.coupling)
       faults.add(place_of(root, {pair.kind, pair.name, "coupling"}),
                  pair.owner() + ": coupling = " + in_quotes(pair.coupling) + ", and " + other->owner() +

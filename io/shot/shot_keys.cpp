@@ -119,7 +119,8 @@ std::span<const ShotKey<PinSpec>> pin_keys() {
        "Its force takes so long to vanish after `until` and to grow after `from`; 0 is at once"},
       {"to", &PinSpec::to, 0, 0, "", "@cloths", false, "cloth target garment onto other attach_to button zip",
        "Buttons and zips: holds to this cloth, or to another side of the same, instead of the primary; each vertex to "
-       "the nearest point in the bind pose, no farther away than it is there. Both feel it"},
+       "the nearest point in the bind pose, no farther away than it is there. Both feel it. `world`: to the place "
+       "where the mesh has it; the cloth is then not carried along with the primary's start"},
       {"opens", &PinSpec::opens, -1, 1, "", "", false, "open direction unzip opens_from along",
        "A zip: within `fade` its vertices let go one after another in this direction of the bind pose (`[0, -1, 0]` is "
        "down), and take hold the other way round; without it all together"},

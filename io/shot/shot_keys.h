@@ -39,6 +39,7 @@ struct ShotKey {
 std::span<const ShotKey<Shot>> shot_keys();            ///< [shot]
 std::span<const ShotKey<PrimarySpec>> primary_keys();  ///< [primary.NAME]
 std::span<const ShotKey<PrimarySpec>> prop_keys();     ///< [primary.NAME] that is a rigid prop
+std::span<const ShotKey<PrimarySpec>> yield_keys();    ///< [primary.NAME] that meets stand-ins
 std::span<const ShotKey<ClothSpec>> cloth_keys();      ///< [cloth.NAME], beside the fabric's keys
 std::span<const ShotKey<CordsSpec>> cords_keys();      ///< [cords.NAME]
 std::span<const ShotKey<StandInKeys>> standin_keys();  ///< [standin.NAME]
@@ -64,6 +65,7 @@ template <class Visit>
 void for_each_named_section(Visit&& visit) {
   visit("primary", primary_keys());
   visit("primary", prop_keys());
+  visit("primary", yield_keys());
   visit("cloth", cloth_keys());
   visit("cords", cords_keys());
   visit("standin", standin_keys());

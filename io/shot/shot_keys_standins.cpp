@@ -2,6 +2,29 @@
 
 namespace ft {
 
+std::span<const ShotKey<PrimarySpec>> yield_keys() {
+  static const ShotKey<PrimarySpec> keys[] = {
+      {"limbs", &PrimarySpec::limbs, 0, 0, "", "rigid planted", false, "feet legs ik",
+       "A character's: `rigid` goes along as a whole; `planted` keeps feet that stand on the ground, or in the mat, "
+       "where they are, and bends the legs"},
+      {"comeback", &PrimarySpec::comeback, 0, 0, "", "free spring window hold", false,
+       "return back return_to_animation",
+       "How it comes back to its animation: `free`, not at all; `spring`, drawn at all times; `window`, drawn once "
+       "nothing touches it any more; `hold`, it stays where it was pushed to"},
+      {"comeback_frequency", &PrimarySpec::comeback_frequency, 0.01, 100, "Hz", "", false, "frequency return_frequency",
+       "Of the spring: 1 is back within a second or so"},
+      {"comeback_damping_ratio", &PrimarySpec::comeback_damping_ratio, 0, 10, "1", "", false, "return_damping zeta",
+       "Of the spring: at 1 it comes back without overshoot"},
+      {"comeback_window", &PrimarySpec::comeback_window, 0, 100, "s", "", false, "window return_time",
+       "`window`: the spring grows to its full strength in this time after the last touch"},
+      {"max_displacement", &PrimarySpec::max_displacement, 1e-6, 1000, "m", "", false, "displacement_limit",
+       "It is never farther from its animation"},
+      {"max_acceleration", &PrimarySpec::max_acceleration, 1e-6, 1e6, "m/s2", "", false, "acceleration_limit",
+       "Stand-ins never accelerate it more, all together"},
+  };
+  return keys;
+}
+
 std::span<const ShotKey<StandInKeys>> standin_keys() {
   static const ShotKey<StandInKeys> keys[] = {
       {"kind", &StandInKeys::kind, 0, 0, "", "damping mat water spring weight fitted", true, "type model",
@@ -11,6 +34,8 @@ std::span<const ShotKey<StandInKeys>> standin_keys() {
        "forces"},
       {"for", &StandInKeys::stands_for, 0, 0, "", "@secondaries", false, "of secondary cloth cords stands_for",
        "The cloth or cords that it stands for; not needed when there is only one"},
+      {"on", &StandInKeys::on, 0, 0, "", "@primaries", false, "primary",
+       "In the place of `for`: the primary that meets it, when what it stands for is not baked here"},
       {"shape", &StandInKeys::shape, 0, 0, "", "box cone mesh", false, "volume geometry", "Of a volume"},
       {"position", &StandInKeys::position, -1e4, 1e4, "m", "", false, "centre center place level location offset",
        "Centre of a box, of a cone's top; added to a mesh; a mat's and a water's level is its y"},

@@ -20,6 +20,7 @@ constexpr std::uint64_t k_max_shot_bytes = 16 << 20;
 std::vector<ShotKey<PrimarySpec>> every_primary_key() {
   std::vector<ShotKey<PrimarySpec>> out(primary_keys().begin(), primary_keys().end());
   out.insert(out.end(), prop_keys().begin(), prop_keys().end());
+  out.insert(out.end(), yield_keys().begin(), yield_keys().end());
   return out;
 }
 

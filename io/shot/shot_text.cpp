@@ -210,12 +210,12 @@ void append_reference(std::string& out, std::string_view heading, std::span<cons
     else if (!key.choices.empty())
       allowed = known_words(split_words(key.choices), "");
     std::string fallback = key.required ? "**required**" : std::visit(ValueText<Spec>{defaults, nowhere}, key.target);
-    // One of the first keys says which vertices, where values come from, what a primary is.
+    // One of the first keys says which vertices, where values come from, what a primary is; it has no default then.
     const std::ptrdiff_t choosing = std::is_same_v<Spec, PinSpec>       ? 4
                                     : std::is_same_v<Spec, MapSpec>     ? 2
                                     : std::is_same_v<Spec, PrimarySpec> ? 1
                                                                         : 0;
-    const bool chooses = &key < keys.data() + choosing;
+    const bool chooses = &key < keys.data() + choosing && fallback.size() <= 2;
     if (chooses)
       fallback = "one of these";
     else if (fallback == "\"\"" || fallback == "none" || fallback == "[]" || fallback.empty())
@@ -243,6 +243,7 @@ Settings settings(const Shot& shot) {
   for (const PrimarySpec& primary : shot.primaries) {
     append_section(out, "primary." + key_word(primary.name), primary_keys(), primary, folder);
     append_section(out, "primary." + key_word(primary.name), prop_keys(), primary, folder);
+    append_section(out, "primary." + key_word(primary.name), yield_keys(), primary, folder);
   }
   for (const ClothSpec& cloth : shot.cloths) {
     const std::string section = "cloth." + key_word(cloth.name);
@@ -288,6 +289,7 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
   append_reference(out, "[shot]", shot_keys(), vocabulary);
   append_reference(out, "[primary.NAME]", primary_keys(), vocabulary);
   append_reference(out, "[primary.NAME], a rigid prop", prop_keys(), vocabulary);
+  append_reference(out, "[primary.NAME] that meets stand-ins", yield_keys(), vocabulary);
   append_reference(out, "[cloth.NAME]", cloth_keys(), vocabulary);
   out.append("A cloth may also override numbers of its fabric:\n\n| key | allowed |\n|---|---|\n");
   for (const FabricKeyWord& key : vocabulary.fabric_keys)

@@ -99,7 +99,12 @@ void place_and_pin(ClothModel& model) {
     setup.primary->bind_pose(bind);
     body = setup.primary->surface().triangles;
     const Eigen::Isometry3d place = setup.primary->bind_to_start();
-    for (Vec3& x : model.start) x = place * x;
+    for (std::size_t g = 0; g < setup.garments.size(); ++g) {
+      const auto& pins = setup.garments[g].pins;
+      if (std::any_of(pins.begin(), pins.end(), [](const ClothPin& pin) { return pin.to_world; })) continue;
+      for (int v = model.first_vertex[g]; v < model.first_vertex[g + 1]; ++v)
+        model.start[at(v)] = place * model.start[at(v)];
+    }
   }
   for (std::size_t g = 0; g < setup.garments.size(); ++g)
     for (const ClothPin& pin : setup.garments[g].pins) {
@@ -109,7 +114,8 @@ void place_and_pin(ClothModel& model) {
         const int v = model.first_vertex[g] + pin.vertices[k];
         const double weight = pin.weights.empty() ? 1.0 : pin.weights[k];
         if (weight <= 0 || model.unused[at(v)]) continue;
-        PinPoint point = bind_pin(v, model.contact.rest[at(v)], bind, body);
+        const Vec3& x = model.contact.rest[at(v)];
+        PinPoint point = pin.to_world ? bind_pin(v, x, {}, {}) : bind_pin(v, x, bind, body);
         const double area = model.contact.area[at(v)];
         point.stiffness = weight * pin.stiffness * area;
         point.max_pull = weight * pin.max_pull * area;

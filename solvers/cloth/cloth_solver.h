@@ -28,6 +28,7 @@ struct ClothPin {
   double max_pull = 5e3;        ///< Pa: force limit per garment area; contact wins over pins
   HoldSpan hold{};              ///< when
   int to = -1;                  ///< garment of the setup, perhaps its own, which holds it; -1: the body
+  bool to_world = false;        ///< holds where the mesh is; the garment then starts there, too
   /// Not zero: its vertices let go one after another in this direction, and take hold the other way round, the last of
   /// them when hold.fade is over.
   Vec3 opens = Vec3::Zero();
