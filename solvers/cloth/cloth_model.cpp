@@ -120,6 +120,7 @@ void place_and_pin(ClothModel& model) {
         point.stiffness = weight * pin.stiffness * area;
         point.max_pull = weight * pin.max_pull * area;
         point.hold = holds[k];
+        point.to_world = pin.to_world;
         model.pins.push_back(point);
       }
     }

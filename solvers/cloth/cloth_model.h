@@ -28,6 +28,7 @@ struct PinPoint {
   double stiffness = 0;            ///< N/m
   double max_pull = 0;             ///< N
   HoldSpan hold{};                 ///< when
+  bool to_world = false;           ///< at a fixed place although there is a body: the body does not feel it
 };
 
 struct ClothModel {

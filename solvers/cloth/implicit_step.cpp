@@ -118,7 +118,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
 
   s.touches.assign(model_.setup.garments.size(), 0);
   for (std::size_t p = 0; p < model_.pins.size(); ++p)
-    if (s.pin_share[p] > 0) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
+    if (s.pin_share[p] > 0 && !model_.pins[p].to_world) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
 
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
@@ -237,7 +237,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = s.contact.smallest_gap();
-  measure_on_body(inertia, result);
+  measure_on_body(in, inertia, result);
   const std::span<const Vec3> x = cloth(s.all);
   for (std::size_t i = 0; i < n; ++i) {
     x_out[i] = x[i];
@@ -249,8 +249,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
 
 /// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has
 /// settled the cloth gets less of them. What is left of a garment's change of momentum after gravity, air and other
-/// garments came from the body.
-void ImplicitStep::measure_on_body(double inertia, StepResult& result) {
+/// garments and what holds it to the world came from the body.
+void ImplicitStep::measure_on_body(const StepInput& in, double inertia, StepResult& result) {
   Scratch& s = *scratch_;
   const std::size_t garments = model_.setup.garments.size(), n = s.y.size();
   result.on_body.resize(garments);
@@ -260,6 +260,12 @@ void ImplicitStep::measure_on_body(double inertia, StepResult& result) {
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   if (garments > 1) s.contact.add_gradient_between_garments(s.all, s.gradient);
+  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+    const PinPoint& pin = model_.pins[p];
+    if (s.pin_share[p] == 0 || !pin.to_world) continue;
+    const Vec3 d = x[at(pin.vertex)] - in.pin_target[p];
+    s.gradient[at(pin.vertex)] += pin_spring(pin, s.pin_share[p], d.norm()).secant * d;
+  }
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t g = at(model_.contact.garment[i]);
     if (s.touches[g] != 0) result.on_body[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));

@@ -55,7 +55,7 @@ class ImplicitStep {
   StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
 
  private:
-  void measure_on_body(double inertia, StepResult& result);
+  void measure_on_body(const StepInput& in, double inertia, StepResult& result);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;
