@@ -18,44 +18,41 @@ Vec3 middle_of(const Triangle& t, std::span<const Vec3> x) {
   return (x[at(t[0])] + x[at(t[1])] + x[at(t[2])]) / 3;
 }
 
-/// Numbers given at every frame, with a cubic in between whose slopes are central differences.
+/// Places given at every frame. Between the middles of two intervals the acceleration is the second difference, so that
+/// the speed changes by what it does in the clip and swings nowhere beyond it: what a mat is to give in the place of
+/// the floor is read from it. A quadratic B-spline: corners are cut by an eighth of the second difference.
 struct Curve {
-  std::vector<Vec3> value, slope;  ///< one per frame, and per second
+  std::vector<Vec3> place, velocity, acceleration;
 
-  Curve(std::vector<Vec3> values, double fps) : value(std::move(values)), slope(value.size(), Vec3::Zero()) {
-    const std::size_t n = value.size();
-    for (std::size_t i = 0; n > 1 && i < n; ++i) {
-      const std::size_t before = i > 0 ? i - 1 : 0, after = std::min(i + 1, n - 1);
-      slope[i] = fps / static_cast<double>(after - before) * (value[after] - value[before]);
-    }
-    if (n > 2) {  // at the ends a parabola through three
-      slope[0] = fps * (-1.5 * value[0] + 2 * value[1] - 0.5 * value[2]);
-      slope[n - 1] = fps * (1.5 * value[n - 1] - 2 * value[n - 2] + 0.5 * value[n - 3]);
+  Curve(std::span<const Vec3> x, double fps)
+      : place(x.begin(), x.end()), velocity(x.size(), Vec3::Zero()), acceleration(velocity) {
+    const std::size_t n = x.size();
+    if (n < 2) return;
+    for (std::size_t i = 1; i + 1 < n; ++i) acceleration[i] = fps * fps * (x[i + 1] - 2 * x[i] + x[i - 1]);
+    if (n > 2) acceleration[0] = acceleration[1], acceleration[n - 1] = acceleration[n - 2];
+    for (std::size_t i = 0; i < n; ++i) {
+      velocity[i] = i + 1 < n ? Vec3(fps * (x[i + 1] - x[i]) - 0.5 / fps * acceleration[i])
+                              : Vec3(fps * (x[i] - x[i - 1]) + 0.5 / fps * acceleration[i]);
+      place[i] += 0.125 / (fps * fps) * acceleration[i];
     }
   }
 };
 
-struct Place {
+/// The nearest frame, and the time since it [s].
+struct Instant {
   std::size_t frame = 0;
-  double s = 0;  ///< to the next
+  double since = 0;
 };
-Place place_at(double time, double fps, std::size_t count) {
-  const double x = std::clamp(time * fps, 0.0, static_cast<double>(count - 1));
-  const auto frame = std::min(static_cast<std::size_t>(x), count > 1 ? count - 2 : 0);
-  return {frame, x - static_cast<double>(frame)};
+Instant instant_at(double time, double fps, std::size_t count) {
+  const double x = std::clamp(time * fps, 0.0, static_cast<double>(count - 1)), frame = std::round(x);
+  return {static_cast<std::size_t>(frame), (x - frame) / fps};
 }
 
-Vec3 value_at(const Curve& c, const Place& p, double fps) {
-  if (p.s == 0) return c.value[p.frame];
-  const double s = p.s, dt = 1 / fps;
-  const Vec3 &a = c.value[p.frame], &b = c.value[p.frame + 1];
-  return a + s * s * (3 - 2 * s) * (b - a) + s * (1 - s) * dt * ((1 - s) * c.slope[p.frame] - s * c.slope[p.frame + 1]);
+Vec3 place_at(const Curve& c, const Instant& i) {
+  return c.place[i.frame] + i.since * c.velocity[i.frame] + 0.5 * i.since * i.since * c.acceleration[i.frame];
 }
-Vec3 slope_at(const Curve& c, const Place& p, double fps) {
-  if (p.s == 0) return c.slope[p.frame];
-  const double s = p.s;
-  return 6 * s * (1 - s) * fps * (c.value[p.frame + 1] - c.value[p.frame]) + (1 - s) * (1 - 3 * s) * c.slope[p.frame] -
-         s * (2 - 3 * s) * c.slope[p.frame + 1];
+Vec3 velocity_at(const Curve& c, const Instant& i) {
+  return c.velocity[i.frame] + i.since * c.acceleration[i.frame];
 }
 
 /// A point over the frames: where it is from the centre of mass [m], and its area along its normal [m2].
@@ -124,29 +121,30 @@ DrivenBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint
       }
     }
   });
-  const auto centre = std::make_shared<const Curve>(std::move(centres), fps);
+  const auto centre = std::make_shared<const Curve>(centres, fps);
   const auto curves = std::make_shared<std::vector<PointCurve>>();
   for (std::size_t p = 0; p < points.size(); ++p)
-    curves->push_back({Curve(std::move(places[p]), fps), std::move(areas[p]), points[p].volume});
+    curves->push_back({Curve(places[p], fps), std::move(areas[p]), points[p].volume});
 
   DrivenBody out;
   out.mass = {mass, mass * Mat3::Identity()};  // it does not turn: its inertia is not asked for
   out.motion = [centre, fps](double time) {
-    const Place p = place_at(time, fps, centre->value.size());
+    const Instant now = instant_at(time, fps, centre->place.size());
     RigidMotion motion;
-    motion.pose.position = value_at(*centre, p, fps);
-    motion.velocity = slope_at(*centre, p, fps);
+    motion.pose.position = place_at(*centre, now);
+    motion.velocity = velocity_at(*centre, now);
     return motion;
   };
   out.shape = [curves, fps, frames, buffer = std::make_shared<std::vector<ShapeSample>>(points.size())](double time) {
-    const Place p = place_at(time, fps, frames);
+    const Instant now = instant_at(time, fps, frames);
+    const double away = now.since * fps;  // of the interval to the frame before or after
+    const std::size_t beside = away < 0 ? now.frame - 1 : std::min(now.frame + 1, frames - 1);
     for (std::size_t i = 0; i < curves->size(); ++i) {
       const PointCurve& curve = (*curves)[i];
       ShapeSample& sample = (*buffer)[i];
-      sample.place = value_at(curve.place, p, fps);
-      sample.velocity = slope_at(curve.place, p, fps);
-      const Vec3 area =
-          p.s == 0 ? curve.area[p.frame] : Vec3((1 - p.s) * curve.area[p.frame] + p.s * curve.area[p.frame + 1]);
+      sample.place = place_at(curve.place, now);
+      sample.velocity = velocity_at(curve.place, now);
+      const Vec3 area = curve.area[now.frame] + std::abs(away) * (curve.area[beside] - curve.area[now.frame]);
       sample.area = area.norm();
       sample.normal = sample.area > 0 ? Vec3(area / sample.area) : Vec3(Vec3::Zero());
       sample.volume = curve.volume;

@@ -23,7 +23,7 @@ struct BodyPoint {
 std::vector<BodyPoint> body_points(const Surface& surface, std::span<const Vec3> bind, std::span<const Triangle> chosen,
                                    double across, double volume);
 
-/// Its motion over frames from 0 to the last, fps a second; cubic in between. mass: kg, > 0.
+/// Its motion over frames from 0 to the last, fps a second; smooth in between. mass: kg, > 0.
 DrivenBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass, int frame_count,
                        double fps);
 
