@@ -102,6 +102,10 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
   for (CordsSpec& cords : inputs->shot.cords) cords.coupling = "one-way";
   auto plan = make_plan(std::move(*inputs), services.importer, {});
   if (!plan) return plan.error();
+  std::erase_if(plan->groups, [](const GroupPlan& group) { return group.outputs.empty(); });
+  if (plan->groups.empty())
+    return usage_error("has no cloth or cords whose forces could be measured", options.shot_file.string(),
+                       "stand-ins alone are met by bake");
   const Shot& shot = plan->shot();
   AdvicePass out;
   out.shot_frames = shot.last_frame - shot.first_frame + (shot.preroll > 0 ? 1 : 0);  // the very first is not walked to

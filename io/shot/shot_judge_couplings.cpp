@@ -155,6 +155,7 @@ void judge_whom_it_meets(const Value& root, const Value& table, std::span<const 
   const Member *stands_for = table.find("for"), *on = table.find("on");
   if (on && stands_for) {
     faults.add(on->place, owner + ": has both for and on; on is for what no cloth or cords are there for");
+    standin.on.clear();
     return;
   }
   std::vector<std::string> names, primaries;
@@ -166,8 +167,8 @@ void judge_whom_it_meets(const Value& root, const Value& table, std::span<const 
     if (!on)
       faults.add(table.place, owner + ": on is missing; it says who meets it (one of: " + joined(primaries) + ")");
     else
-      faults.add(on->place, with_hint(owner + ": on = " + in_quotes(standin.on) + " names no primary",
-                                      suggestion(standin.on, primaries)));
+      faults.add(on->value.place, with_hint(owner + ": on = " + in_quotes(standin.on) + " names no primary",
+                                            suggestion(standin.on, primaries)));
     return;
   }
   if (standin.stands_for.empty() && names.size() == 1) standin.stands_for = names.front();

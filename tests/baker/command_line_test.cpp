@@ -123,6 +123,21 @@ TEST_F(CommandLine, Wrong_usage_is_exit_code_2) {
   EXPECT_EQ(run({"bake", shot("1-3"), "--frames", "9-3"}).exit_code, 2);
 }
 
+TEST_F(CommandLine, A_mat_that_is_added_to_the_floor_of_the_clip_is_refused_with_the_reason) {
+  const std::string mat = "[standin.mat]\nkind = \"mat\"\non = \"jumper\"\nstiffness = 66e3\n";
+  const Answer a = run({"bake", shot("1-3", "mass = 64", mat), "--out", out()});
+  EXPECT_EQ(a.exit_code, 2);
+  EXPECT_NE(a.err.find("shot.toml: primary \"jumper\": mat: a stand-in of kind \"mat\" holds the body up, and so does "
+                       "the ground that the clip was made on"),
+            std::string::npos)
+      << a.err;
+  EXPECT_NE(a.err.find("(support = \"replace\")"), std::string::npos) << a.err;
+  const Answer replaced = run({"bake", shot("1-3", "mass = 64", mat + "support = \"replace\"\n"), "--out", out()});
+  EXPECT_EQ(replaced.exit_code, 0) << replaced.err;
+  for (const char* file : {"jumper_hybrid.glb", "jumper_hybrid.bvh", "jumper_hybrid.json"})
+    EXPECT_TRUE(std::filesystem::exists(scratch_ / "bake" / file)) << file;
+}
+
 TEST_F(CommandLine, Help_and_version_are_exit_code_0) {
   EXPECT_EQ(run({"--version"}).out.rfind("followthrough 0.", 0), 0u);
   const Answer help = run({"--help"});

@@ -168,6 +168,25 @@ TEST_F(CordsShot, Hybrid_needs_a_stand_in_of_its_own) {
                "shot.toml:18:1: standin \"air\": for is missing; it says what it stands for (one of: cape, net)");
 }
 
+TEST_F(CordsShot, A_stand_in_may_be_on_a_primary_for_what_is_not_baked) {
+  const std::string pool =
+      "[shot]\nframes = 1\n[primary.diver]\nfile = \"walk.fbx\"\nlimbs = \"planted\"\n"
+      "comeback = \"window\"\n[standin.pool]\nkind = \"water\"\n";
+  const auto shot = parse(pool);
+  ASSERT_TRUE(shot.ok()) << shot.error().text();
+  EXPECT_EQ(shot->standins[0].on, "diver") << "the only primary";
+  EXPECT_NE(canonical(*shot).find("primary.diver.comeback = \"window\"\n"), std::string::npos);
+  expect_fault({{"damping = 3.9", "damping = 3.9\non = \"ball\"\nfor = \"net\""}},
+               "shot.toml:25:1: standin \"air\": has both for and on; on is for what no cloth or cords are there for");
+  expect_fault({{"damping = 3.9", "damping = 3.9\non = \"bal\""}},
+               "shot.toml:25:6: standin \"air\": on = \"bal\" names no primary (did you mean \"ball\"?)");
+  expect_fault({{"damping = 3.9", "damping = 3.9\non = \"ball\""}},
+               "shot.toml:25:6: standin \"air\": primary \"ball\" is coupled two-way with cords \"net\", and cannot "
+               "yield before it is baked as well");
+  expect_fault({{"hollow = true", "limbs = \"planted\""}},
+               "shot.toml:8:1: primary \"ball\": limbs goes with file, not with shape = \"sphere\"");
+}
+
 TEST_F(CordsShot, Shapes_and_kinds_say_which_keys_they_need_and_which_are_anothers) {
   expect_fault({{"shape = \"net\"", "shape = \"rope\""}},
                "shot.toml:13:1: cords \"net\": to is missing; shape = \"rope\" needs it");
@@ -335,6 +354,7 @@ TEST_F(CordsShot, Defaults_of_the_structs_lie_within_the_table) {
     }
   };
   check(prop_keys(), PrimarySpec{});
+  check(yield_keys(), PrimarySpec{});
   check(cords_keys(), CordsSpec{});
   check(standin_keys(), StandInKeys{});
 }
