@@ -84,6 +84,34 @@ TEST(InteractionForce, Cloth_that_rests_on_a_ball_presses_on_it_with_its_weight)
   EXPECT_LT(torque.norm(), 0.02 * weight * 0.2);  // a symmetric sheet, about the ball's middle
 }
 
+TEST(InteractionForce, What_the_world_holds_stays_where_it_is_and_is_no_load_on_the_ball) {
+  for (const bool to_world : {false, true}) {
+    ClothSetup setup = sheet_over(ball([](double t) { return Vec3(3 * t, 0, -2); }), 1);
+    ClothPin pin;
+    pin.to_world = to_world;
+    pin.vertices.resize(setup.garments[0].mesh.positions.size());
+    std::iota(pin.vertices.begin(), pin.vertices.end(), 0);
+    setup.garments[0].pins.push_back(pin);
+    auto solver = solver_of(setup);
+    State state = solver->initial_state();
+    FrameReport report;
+    for (int f = 0; f < 12; ++f) report = solver->advance_frame(state);
+    const auto x = as_points(*state.find("x"));
+    double away = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      away = std::max(away, (x[i] - setup.garments[0].mesh.positions[i]).norm());
+    const double sag = setup.garments[0].fabric.mass_per_area * k_gravity / pin.stiffness;
+    if (to_world) {
+      EXPECT_LT(away, 2 * sag);
+      EXPECT_EQ(report.forces[0].contact_share, 0);
+      EXPECT_EQ(report.forces[0].mean.force, Vec3(Vec3::Zero()));
+    } else {
+      EXPECT_GT(away, 0.5);
+      EXPECT_NEAR(report.forces[0].mean.force.y(), -mass_of(setup) * k_gravity, 0.1 * mass_of(setup) * k_gravity);
+    }
+  }
+}
+
 /// Frames in which a ball strikes a sheet from below and carries it; the largest part of a frame's impulse on the ball
 /// that the sheet does not lose.
 double unbalanced_share(double friction, int newton) {
