@@ -5,6 +5,7 @@
 #include "baker/core/file.h"
 #include "baker/report_json.h"
 #include "io/export/motion_files.h"
+#include "io/shot/shot_values.h"
 
 namespace ft {
 namespace {
@@ -18,9 +19,11 @@ Json limit_json(double limit) {
 
 Json standin_json(const StandInKeys& keys, const Shot& shot) {
   Json out = {{"name", keys.name}};
-  const std::string section = "standin." + keys.name + ".";
-  for (const auto& [key, value] : settings(shot))
-    if (key.starts_with(section)) out[key.substr(section.size())] = value;
+  for (const std::string& name : {keys.name, in_quotes(keys.name)}) {  // as settings() spells it
+    const std::string section = "standin." + name + ".";
+    for (const auto& [key, value] : settings(shot))
+      if (key.starts_with(section)) out[key.substr(section.size())] = value;
+  }
   return out;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_longest_step = 1.0 / 240;               ///< between samples of the deviation [s]
 constexpr double k_point = 0.1;                            ///< size of a body point, of the body's height [1]
-constexpr double k_sole_point = 0.025;                     ///< the same of the soles
+constexpr double k_sole_point = 0.035;                     ///< the same of the soles
 constexpr double k_sole_share = 0.3;                       ///< of a foot's height, from below, is sole
 constexpr double k_miss = 1e-3;                            ///< that a planted foot may be off before it is told [m]
 constexpr double k_on_ground = 0.03, k_off_ground = 0.08;  ///< heights of a sole that stands, and that does not [m]
