@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
 #include "baker/core/shapes.h"
@@ -35,23 +34,6 @@ RigidTrack with_flight(RigidTrack before, double release, const RigidMass& mass,
   };
 }
 
-/// The rotation and shift that take one set of points to another, by least squares (Kabsch 1976).
-RigidPose fitted_pose(std::span<const Vec3> body, std::span<const Vec3> placed) {
-  RigidPose out;
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  for (std::size_t i = 0; i < body.size(); ++i) from += body[i], to += placed[i];
-  from /= static_cast<double>(body.size());
-  to /= static_cast<double>(body.size());
-  Mat3 spread = Mat3::Zero();
-  for (std::size_t i = 0; i < body.size(); ++i) spread += (placed[i] - to) * (body[i] - from).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  out.rotation = Quat(u * svd.matrixV().transpose()).normalized();
-  out.position = to - out.rotation * from;
-  return out;
-}
-
 /// An imported surface that moves as one.
 class FittedTrack {
  public:
@@ -61,7 +43,8 @@ class FittedTrack {
   RigidPose pose(double time, double* bending = nullptr) const {
     std::vector<Vec3> placed(body_.size());
     trajectory_->sample(time, placed);
-    const RigidPose out = fitted_pose(body_, placed);
+    const Eigen::Isometry3d fit = rigid_fit(body_, placed);
+    const RigidPose out{fit.translation(), Quat(fit.linear()).normalized()};
     if (bending)
       for (std::size_t i = 0; i < body_.size(); ++i) *bending = std::max(*bending, (out * body_[i] - placed[i]).norm());
     return out;

@@ -2,11 +2,11 @@
 #include "collision/creases.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "baker/core/parallel.h"
+#include "baker/core/rigid.h"
 
 namespace ft {
 namespace {
@@ -21,21 +21,6 @@ Vec3 mean(std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& p : x) sum += p;
   return x.empty() ? sum : (sum / static_cast<double>(x.size())).eval();
-}
-
-/// The rigid motion that takes `from` nearest to `to`, by least squares (Kabsch 1976).
-Eigen::Isometry3d rigid_fit(std::span<const Vec3> from, std::span<const Vec3> to) {
-  const Vec3 from_centre = mean(from), to_centre = mean(to);
-  Mat3 correlation = Mat3::Zero();
-  for (std::size_t i = 0; i < from.size(); ++i)
-    correlation += (to[i] - to_centre) * (from[i] - from_centre).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 mirror = Mat3::Identity();
-  mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  out.linear() = svd.matrixU() * mirror * svd.matrixV().transpose();
-  out.translation() = to_centre - out.linear() * from_centre;
-  return out;
 }
 
 }  // namespace

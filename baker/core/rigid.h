@@ -1,6 +1,8 @@
 // A rigid body's place, motion and mass, about its centre of mass.
 #pragma once
 
+#include <span>
+
 #include "baker/core/types.h"
 
 namespace ft {
@@ -24,5 +26,11 @@ struct RigidMass {
   double mass = 0;              ///< kg
   Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, body axes [kg m2]
 };
+
+/// The rotation nearest to a matrix, by least squares.
+Mat3 nearest_rotation(const Mat3& m);
+
+/// The rigid motion that takes `from` nearest to `to`, by least squares (Kabsch 1976). As many points in both.
+Eigen::Isometry3d rigid_fit(std::span<const Vec3> from, std::span<const Vec3> to);
 
 }  // namespace ft

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +13,7 @@
 #include <span>
 
 #include "baker/core/parallel.h"
+#include "baker/core/rigid.h"
 
 namespace ft {
 namespace {
@@ -72,11 +72,8 @@ Eigen::Isometry3d rigid_fit(const std::vector<Vec3>& from, const std::vector<Vec
   for (const int i : used) from_middle += from[at(i)] / count, to_middle += to[at(i)] / count;
   Mat3 covariance = Mat3::Zero();
   for (const int i : used) covariance += (to[at(i)] - to_middle) * (from[at(i)] - from_middle).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Mat3 u = svd.matrixU(), v = svd.matrixV();
-  const double mirrored = u.determinant() * v.determinant() < 0 ? -1 : 1;
   Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  out.linear() = u * Vec3(1, 1, mirrored).asDiagonal() * v.transpose();
+  out.linear() = nearest_rotation(covariance);
   out.translation() = to_middle - out.linear() * from_middle;
   return out;
 }

@@ -1,21 +1,8 @@
 #include "solvers/cloth/cloth_motion.h"
 
+#include "baker/core/state_points.h"
+
 namespace ft {
-namespace {
-
-std::vector<double> flat(const std::vector<Vec3>& points) {
-  const double* begin = points.empty() ? nullptr : points[0].data();
-  return {begin, begin + 3 * points.size()};
-}
-
-std::vector<Vec3> points(const std::vector<double>* values, std::size_t count) {
-  CHECK(values && values->size() == 3 * count);
-  const auto view = as_points(*values);
-  return {view.begin(), view.end()};
-}
-
-}  // namespace
-
 void carry(const Teleport& teleport, ClothMotion& m) {
   carry(teleport, std::span(m.x));
   carry(teleport, std::span(m.x_previous));
@@ -38,10 +25,10 @@ void store(State& state, const ClothMotion& m) {
 
 ClothMotion load_motion(const State& state, std::size_t count) {
   ClothMotion m;
-  m.x = points(state.find("x"), count);
-  m.v = points(state.find("v"), count);
-  m.x_previous = points(state.find("x_previous"), count);
-  m.v_previous = points(state.find("v_previous"), count);
+  m.x = points_of(state, "x", count);
+  m.v = points_of(state, "v", count);
+  m.x_previous = points_of(state, "x_previous", count);
+  m.v_previous = points_of(state, "v_previous", count);
   const auto* h = state.find("h_previous");
   const auto* released = state.find("released");
   const auto* tangled = state.find("tangled");

@@ -1,10 +1,10 @@
 #include "solvers/cloth/implicit_step.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "baker/core/parallel.h"
+#include "baker/core/stopwatch.h"
 #include "collision/common_motion.h"
 #include "collision/truncate_dat.h"
 #include "solvers/energies/limited_spring.h"
@@ -25,19 +25,6 @@ constexpr int k_most_halvings = 4;
 /// Truncation and lagged friction leave the exact descent direction: a rise by this share is no reason to halve.
 constexpr double k_tolerated_rise = 1e-3;
 constexpr double k_energy_noise = 1e-9;  ///< rounding of the potential [J]
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double s = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return s;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 LimitedSpring pin_spring(const PinPoint& pin, double share, double stretch) {
   return limited_spring(stretch, share * pin.stiffness, share * pin.max_pull);

@@ -8,6 +8,7 @@
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
+#include "baker/core/rigid.h"
 
 namespace ft {
 namespace {
@@ -128,10 +129,7 @@ Quat CordTubes::rotation(const Piece& piece, std::span<const Vec3> points) const
   for (const int i : piece.points) rest_mean += rest_[at(i)] * share, mean += points[at(i)] * share;
   Mat3 sum = Mat3::Zero();
   for (const int i : piece.points) sum += (points[at(i)] - mean) * (rest_[at(i)] - rest_mean).transpose();
-  // The rotation nearest to it (Kabsch 1976).
-  const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double side = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return Quat(svd.matrixU() * Vec3(1, 1, side).asDiagonal() * svd.matrixV().transpose());
+  return Quat(nearest_rotation(sum));  // Kabsch 1976
 }
 
 void CordTubes::place(std::span<const Vec3> points, std::span<Vec3> out) const {

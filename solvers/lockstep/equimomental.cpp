@@ -38,10 +38,7 @@ RigidPose Equimomental::pose(std::span<const Vec3, 4> nodes) const {
   for (const Vec3& p : nodes) out.position += 0.25 * p;
   Mat3 spread = Mat3::Zero();
   for (std::size_t k = 0; k < 4; ++k) spread += (nodes[k] - out.position) * node[k].transpose();
-  const Eigen::JacobiSVD<Mat3> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  out.rotation = Quat(u * svd.matrixV().transpose()).normalized();
+  out.rotation = Quat(nearest_rotation(spread)).normalized();
   return out;
 }
 

@@ -10,23 +10,13 @@
 #include <cmath>
 #include <mutex>
 
-#include "baker/core/edge_strain.h"
+#include "baker/core/state_points.h"
 #include "solvers/cords/tubes.h"
 #include "solvers/lockstep/lockstep_step.h"
 
 namespace ft {
 namespace {
 
-std::vector<double> flat(const std::vector<Vec3>& points) {
-  const double* begin = points.empty() ? nullptr : points[0].data();
-  return {begin, begin + 3 * points.size()};
-}
-std::vector<Vec3> points_of(const State& state, const char* name, std::size_t count) {
-  const auto* values = state.find(name);
-  CHECK(values && values->size() == 3 * count);
-  const auto view = as_points(*values);
-  return {view.begin(), view.end()};
-}
 double number_of(const State& state, const char* name) {
   const auto* values = state.find(name);
   CHECK(values && values->size() == 1);

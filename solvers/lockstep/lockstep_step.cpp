@@ -1,9 +1,9 @@
 #include "solvers/lockstep/lockstep_step.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "baker/core/stopwatch.h"
 #include "solvers/integrator.h"
 
 namespace ft {
@@ -21,19 +21,6 @@ constexpr int k_most_halvings = 24;
 constexpr double k_energy_noise = 1e-12;  ///< rounding of the potential, over its size [1]
 /// Inertia of a driven node, over the stiffest that pulls at it: it yields by so much less.
 constexpr double k_driven = 1e4;
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double s = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return s;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 double longest(std::span<const Vec3> all) {
   double squared = 0;

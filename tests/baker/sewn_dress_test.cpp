@@ -2,9 +2,9 @@
 // their own draped result. Frame 0 of the dance is held still.
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 
+#include "baker/core/rigid.h"
 #include "io/shot/mesh_file.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "tests/support/assets.h"
@@ -30,17 +30,9 @@ double area_of(const Mesh& mesh, std::span<const Vec3> x) {
 
 /// Distances of the vertices after the best rigid motion of a onto b; sorted [m].
 std::vector<double> distances_after_alignment(std::span<const Vec3> a, std::span<const Vec3> b) {
-  const auto count = static_cast<double>(a.size());
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  for (std::size_t i = 0; i < a.size(); ++i) from += a[i] / count, to += b[i] / count;
-  Mat3 covariance = Mat3::Zero();
-  for (std::size_t i = 0; i < a.size(); ++i) covariance += (b[i] - to) * (a[i] - from).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 turn = Mat3::Identity();
-  turn(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  turn = svd.matrixU() * turn * svd.matrixV().transpose();
+  const Eigen::Isometry3d fit = rigid_fit(a, b);
   std::vector<double> out;
-  for (std::size_t i = 0; i < a.size(); ++i) out.push_back((turn * (a[i] - from) + to - b[i]).norm());
+  for (std::size_t i = 0; i < a.size(); ++i) out.push_back((fit * a[i] - b[i]).norm());
   std::sort(out.begin(), out.end());
   return out;
 }
