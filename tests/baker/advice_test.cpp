@@ -204,8 +204,12 @@ TEST(AdvicePass, Measures_every_garment_of_a_shot_and_keeps_to_its_time) {
   EXPECT_EQ(pass->pairs[0].secondary, "sheet");
   EXPECT_NEAR(pass->pairs[0].acceleration_mean, 2.5, 1e-12);
   EXPECT_EQ(pass->pairs[0].strain_p99, 0.03);
+  Evidence stepped_together = pass->pairs[0];
+  stepped_together.two_way_possible = true;
+  EXPECT_EQ(advise(stepped_together, Context::k_none, {}).coupling, Coupling::k_two_way);
   const Json json = to_json(pass->pairs[0], advise(pass->pairs[0], Context::k_none, {}));
-  EXPECT_EQ(json.at("coupling"), "two-way");
+  EXPECT_EQ(json.at("coupling"), "hybrid");  // cloth is not stepped together with what wears it
+  EXPECT_EQ(json.at("evidence").at("two_way_possible"), false);
   EXPECT_EQ(json.at("also"), "one-way");
   EXPECT_NEAR(json.at("evidence").at("effective_acceleration").at("mean").get<double>(), 2.5, 1e-12);
   options.seconds = 1e-9;
