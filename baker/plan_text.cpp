@@ -81,10 +81,11 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
     const PrimaryPlan& primary = plan.primaries[p];
     const PrimarySpec& spec = shot.primaries[p];
-    out.push_back(fmt::format(
-        "primary \"{}\": {}{}, {:.3g} m tall, {} parts, {}", primary.name, spec.file.filename().string(),
-        spec.clip.empty() ? std::string() : ", clip \"" + spec.clip + "\"", primary.info.bind_bounds.size().y(),
-        primary.trajectory->surface().parts.size(), primary.mass.text()));
+    out.push_back(fmt::format("primary \"{}\": {}{}, {:.3g} m tall, {} parts, {}", primary.name,
+                              spec.shape.empty() ? spec.file.filename().string() : spec.shape,
+                              spec.clip.empty() ? std::string() : ", clip \"" + spec.clip + "\"",
+                              primary.info.bind_bounds.size().y(), primary.trajectory->surface().parts.size(),
+                              primary.mass.text()));
     for (const std::string& line : character_lines(primary.info)) out.push_back(line);
   }
   for (const GroupPlan& group : plan.groups)
