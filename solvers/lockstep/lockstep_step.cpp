@@ -9,7 +9,6 @@
 namespace ft {
 namespace {
 
-constexpr double k_settled = 1e-9;           ///< Newton ends when nothing wants to move further [m]
 constexpr int k_most_iterations = 60;        ///< of one look at friction
 constexpr int k_friction_looks = 3;          ///< at most
 constexpr double k_friction_settled = 1e-6;  ///< a new look at friction that moves nothing further was the last [m]
@@ -32,21 +31,21 @@ double longest(std::span<const Vec3> all) {
 
 LockstepStep::LockstepStep(const LockstepModel& model) : model_(model), contact_(model), elements_(model.elements) {}
 
-double LockstepStep::value(std::span<const double> weight, std::span<const Vec3> x) const {
+double LockstepStep::value(std::span<const Vec3> x) const {
   double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += 0.5 * weight[i] * (x[i] - y_[i]).squaredNorm();
+  for (std::size_t i = 0; i < x.size(); ++i) sum += 0.5 * weight_[i] * (x[i] - y_[i]).squaredNorm();
   return sum + elements_.value(x) + contact_.value(x);
 }
 
 /// From x_; false where it did not settle.
-bool LockstepStep::newton(std::span<const double> weight, LockstepStepReport& report) {
+bool LockstepStep::newton(LockstepStepReport& report) {
   const std::size_t n = x_.size();
   Stopwatch watch;
   int stuck = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
     watch.lap();
-    system_.begin(weight);
-    for (std::size_t i = 0; i < n; ++i) gradient_[i] = weight[i] * (y_[i] - x_[i]);
+    system_.begin(weight_);
+    for (std::size_t i = 0; i < n; ++i) gradient_[i] = weight_[i] * (y_[i] - x_[i]);
     terms_.clear();
     elements_.add_terms(x_, terms_);
     contact_.add_terms(x_, terms_);
@@ -63,13 +62,14 @@ bool LockstepStep::newton(std::span<const double> weight, LockstepStepReport& re
       return false;
     }
     report.residual = longest(direction_);
-    const double before = value(weight, x_);
+    const double before = value(x_);
     contact_.find(x_, direction_);
-    double factor = contact_.free_share();
+    double factor = 2 * contact_.free_share();
     bool accepted = false;
-    for (int halving = 0; halving < k_most_halvings && !accepted; ++halving, factor *= 0.5) {
+    for (int halving = 0; halving < k_most_halvings && !accepted; ++halving) {
+      factor *= 0.5;
       for (std::size_t i = 0; i < n; ++i) trial_[i] = x_[i] + factor * direction_[i];
-      const double after = value(weight, trial_);
+      const double after = value(trial_);
       accepted = std::isfinite(after) && after <= before + k_energy_noise * std::abs(before);
     }
     report.seconds_contact += watch.lap();
@@ -114,7 +114,7 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   for (int look = 0; look < k_friction_looks; ++look) {
     contact_.lag_friction(x_, m.x, h);
     before = x_;
-    if (!newton(weight_, report)) break;
+    if (!newton(report)) break;
     if (!contact_.rubs()) break;
     double moved = 0;
     for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, (x_[i] - before[i]).norm());

@@ -33,8 +33,8 @@ class LockstepStep {
   LockstepContact& contact() { return contact_; }
 
  private:
-  bool newton(std::span<const double> weight, LockstepStepReport& report);
-  double value(std::span<const double> weight, std::span<const Vec3> x) const;
+  bool newton(LockstepStepReport& report);
+  double value(std::span<const Vec3> x) const;
 
   const LockstepModel& model_;
   LockstepContact contact_;
