@@ -166,7 +166,9 @@ Result<YieldedCharacter> yield_character(const Shot& shot, const PrimarySpec& sp
     return error;
   };
   const PlacedCharacter& placed = *character;
-  if (placed.clip < 0) return located(usage_error("plays no clip: there is no motion that could yield"));
+  if (placed.clip < 0)
+    return located(usage_error("plays no clip: there is no motion that could yield", {},
+                               "name one of its clips, or the file with its animation"));
   std::vector<Vec3> bind(at(trajectory.surface().vertex_count()));
   trajectory.bind_pose(bind);
   const std::vector<const StandInKeys*> stand_ins = stand_ins_of(shot, spec.name);
