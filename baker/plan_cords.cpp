@@ -114,6 +114,7 @@ Status plan_cords(const Shot& shot, std::size_t p, BakePlan& plan) {
   setup.preroll_frames = shot.preroll;
   setup.gravity = shot.solver.gravity;
   setup.wind = shot.wind.velocity;
+  setup.min_substeps = shot.solver.min_substeps;
   apply_quality(shot, setup);
   setup.bdf2 = shot.solver.integrator == "bdf2";
   plan.groups.push_back(std::move(group));

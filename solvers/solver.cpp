@@ -30,6 +30,7 @@ const char* name(Incident::Kind kind) {
     case Incident::Kind::k_strain: return "strain";
     case Incident::Kind::k_start_inside: return "start inside";
     case Incident::Kind::k_rewind: return "rewind";
+    case Incident::Kind::k_unsettled: return "unsettled";
   }
   return "unknown";
 }

@@ -15,7 +15,7 @@ namespace ft {
 
 /// Something that a user should look at: where, when, how bad.
 struct Incident {
-  enum class Kind { k_crossing, k_penetration, k_released, k_strain, k_start_inside, k_rewind };
+  enum class Kind { k_crossing, k_penetration, k_released, k_strain, k_start_inside, k_rewind, k_unsettled };
   Kind kind = Kind::k_crossing;
   int frame = 0;
   std::string system;         ///< name of the garment

@@ -16,6 +16,9 @@ namespace {
 /// Slip speed below which friction grows to its full force [m/s].
 constexpr double k_sliding_speed = 1e-3;
 
+/// Nearer to rest than so many times the slip at which friction is full, its tangent is what stiffness is made of [1].
+constexpr double k_near = 300;
+
 /// Of what stands in the way, all within so many times the least distance [1].
 constexpr double k_hard = 3;
 
@@ -30,12 +33,15 @@ Barrier barrier(double d, double reach, double k) {
   return {-k * in * in * log, -k * (2 * in * log + in * in / d), -k * (2 * log + 4 * in / d - in * in / (d * d))};
 }
 
-/// Friction's potential by slip, over the full force, and its slope (Li et al. 2020, eq. 15).
+/// Friction's potential by slip, over the full force, with its slope and curvature (Li et al. 2020, eq. 15).
 double friction_energy(double slip, double full) {
   return slip >= full ? slip : slip * slip / full * (1 - slip / (3 * full)) + full / 3;
 }
 double friction_slope(double slip, double full) {
   return slip >= full ? 1 : slip / full * (2 - slip / full);
+}
+double friction_curvature(double slip, double full) {
+  return slip >= full ? 0 : 2 / full * (1 - slip / full);
 }
 
 }  // namespace
@@ -141,7 +147,7 @@ NodeTerm LockstepContact::combination(const Pair& pair, const PairGeometry& geom
   return out;
 }
 
-void LockstepContact::add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out) const {
+void LockstepContact::add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out, double far) const {
   model_.spread(x, places_);
   for (const Pair& pair : pairs_) {
     const auto corner = corners(pair, places_);
@@ -161,6 +167,10 @@ void LockstepContact::add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& 
     NodeTerm& term = out.emplace_back(s.of);
     term.force = s.limit * secant * u;
     term.stiffness = s.limit * secant * s.across;
+    if (size > 0 && far < k_near * sliding_) {
+      const Vec3 along = u / size;
+      term.stiffness -= s.limit * (secant - friction_curvature(size, sliding_)) * along * along.transpose();
+    }
   }
 }
 

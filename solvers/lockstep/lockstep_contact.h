@@ -28,7 +28,9 @@ class LockstepContact {
   bool meets_prop() const;
 
   double value(std::span<const Vec3> x) const;
-  void add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out) const;
+  /// far: how far from rest x may still be [m]. Far from it the stiffness of friction is its secant, which is never
+  /// less than what friction does on the way; near it the tangent, which converges faster.
+  void add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out, double far = 0) const;
   /// Friction from now on acts with the normal forces of x, against motion since x_t0 in a step of h [s].
   void lag_friction(std::span<const Vec3> x, std::span<const Vec3> x_t0, double h);
 

@@ -26,6 +26,8 @@ double number_of(const State& state, const char* name) {
 /// A driven prop that is held back by more than this is not let wait [m].
 constexpr double k_missed = 1e-4;
 constexpr int k_most_attempts = 100;
+/// A substep that does not settle is halved, and its halves too, so many times.
+constexpr int k_most_halvings = 3;
 
 class LockstepSolver final : public Solver {
  public:
@@ -59,7 +61,12 @@ class LockstepSolver final : public Solver {
     std::vector<double> through;  ///< per point: 1 where it is let through the prop
     Vec3 hold_impulse = Vec3::Zero();
   };
-  void substep(double time, double h, double frame_time, Moving& moving, FrameReport& report) const;
+  struct Unsettled {
+    int steps = 0;
+    double residual = 0;  ///< largest of what they still wanted to move [m]
+  };
+  void substep(double time, double h, double frame_time, int halvings, Moving& moving, Unsettled& unsettled,
+               FrameReport& report) const;
   bool is_released(double time, double h, const Moving& moving) const;
   void hold_again(Moving& moving, FrameReport& report) const;
   void judge(const Moving& moving, FrameReport& report) const;
@@ -136,7 +143,8 @@ bool LockstepSolver::is_released(double time, double h, const Moving& m) const {
   return step_.contact().meets_prop();
 }
 
-void LockstepSolver::substep(double time, double h, double frame_time, Moving& m, FrameReport& report) const {
+void LockstepSolver::substep(double time, double h, double frame_time, int halvings, Moving& m, Unsettled& unsettled,
+                             FrameReport& report) const {
   std::array<Vec3, 4> driven;
   bool is_driven = false;
   if (model_.has_prop() && !m.free) {
@@ -145,12 +153,14 @@ void LockstepSolver::substep(double time, double h, double frame_time, Moving& m
       const RigidMotion now = model_.setup.prop->track(time);
       const std::size_t points = at(model_.point_count());
       const auto nodes = model_.frame.place(now.pose);
+      const double back = m.motion.h_previous > 0 ? m.motion.h_previous : h;
       for (std::size_t k = 0; k < 4; ++k) {
         m.motion.x[points + k] = nodes[k];
         m.motion.v[points + k] = now.velocity_at(nodes[k]);
         // Constant acceleration before: BDF2 is exact for the flight from its first step on.
-        m.motion.x_previous[points + k] = nodes[k] - h * m.motion.v[points + k] + 0.5 * h * h * model_.setup.gravity;
-        m.motion.v_previous[points + k] = m.motion.v[points + k] - h * model_.setup.gravity;
+        m.motion.x_previous[points + k] =
+            nodes[k] - back * m.motion.v[points + k] + 0.5 * back * back * model_.setup.gravity;
+        m.motion.v_previous[points + k] = m.motion.v[points + k] - back * model_.setup.gravity;
       }
     } else {
       driven = track(time + h);
@@ -159,6 +169,7 @@ void LockstepSolver::substep(double time, double h, double frame_time, Moving& m
   }
   LockstepStepReport step;
   const LockstepMotion before = m.motion;
+  const std::vector<double> through_before = m.through;
   for (int attempt = 0;; ++attempt) {
     step_.contact().let_through(m.through);
     step = step_.step(h, is_driven ? std::span<const Vec3>(driven) : std::span<const Vec3>(), m.motion);
@@ -171,6 +182,17 @@ void LockstepSolver::substep(double time, double h, double frame_time, Moving& m
     if (blocking.empty()) break;
     for (const int v : blocking) m.through[at(v)] = 1;
     m.motion = before;
+  }
+  if (!(step.finite && step.settled) && halvings < k_most_halvings) {
+    m.motion = before;
+    m.through = through_before;
+    for (const double start : {time, time + 0.5 * h})
+      substep(start, 0.5 * h, frame_time, halvings + 1, m, unsettled, report);
+    return;
+  }
+  if (!step.settled) {
+    ++unsettled.steps;
+    unsettled.residual = std::max(unsettled.residual, step.residual);
   }
   report.finite = report.finite && step.finite;
   report.profile.narrow += step.seconds_contact;
@@ -239,7 +261,8 @@ FrameReport LockstepSolver::advance_frame(State& state) const {
   const auto clock = std::chrono::steady_clock::now();
   const LockstepSetup& setup = model_.setup;
   const int number = state.frame + 1,
-            substeps = std::max(1, static_cast<int>(std::ceil(1 / (setup.fps * setup.longest_step) - 1e-9)));
+            substeps =
+                std::max(setup.min_substeps, static_cast<int>(std::ceil(1 / (setup.fps * setup.longest_step) - 1e-9)));
   const double t0 = (state.frame - setup.first_frame) / setup.fps, t1 = (number - setup.first_frame) / setup.fps;
   Moving moving = load(state);
   FrameReport report;
@@ -247,8 +270,18 @@ FrameReport LockstepSolver::advance_frame(State& state) const {
   if (model_.has_prop())
     for (const CordSystem& c : setup.cords) report.forces.push_back({c.name, {}, 0, 0});
   step_.contact().forget_gap();
+  Unsettled unsettled;
   for (int k = 0; k < substeps && report.finite; ++k)
-    substep(t0 + (t1 - t0) * k / substeps, (t1 - t0) / substeps, t1 - t0, moving, report);
+    substep(t0 + (t1 - t0) * k / substeps, (t1 - t0) / substeps, t1 - t0, 0, moving, unsettled, report);
+  if (unsettled.steps > 0) {
+    Incident& incident = report.incidents.emplace_back();
+    incident.kind = Incident::Kind::k_unsettled;
+    incident.frame = number;
+    incident.system = setup.cords.front().name;
+    incident.depth = unsettled.residual;
+    incident.text = fmt::format("{} of {} steps ended before all was at rest: {:.1e} m were still wanted",
+                                unsettled.steps, report.substeps, unsettled.residual);
+  }
   if (model_.has_prop()) {
     Vec3 centre = Vec3::Zero();
     for (std::size_t k = 0; k < 4; ++k) centre += 0.25 * moving.motion.x[at(model_.point_count()) + k];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/stopwatch.h"
 #include "solvers/integrator.h"
@@ -9,7 +10,7 @@
 namespace ft {
 namespace {
 
-constexpr int k_most_iterations = 60;        ///< of one look at friction
+constexpr int k_most_iterations = 30;        ///< of one look at friction; what takes more wants a shorter step
 constexpr int k_friction_looks = 3;          ///< at most
 constexpr double k_friction_settled = 1e-6;  ///< a new look at friction that moves nothing further was the last [m]
 /// What gets on by so small a share of what it wants, so many times in a row, is in the way of something that is
@@ -17,7 +18,8 @@ constexpr double k_friction_settled = 1e-6;  ///< a new look at friction that mo
 constexpr double k_stuck_share = 1e-3;
 constexpr int k_stuck_iterations = 6;
 constexpr int k_most_halvings = 24;
-constexpr double k_energy_noise = 1e-12;  ///< rounding of the potential, over its size [1]
+constexpr double k_series_from = 0.2, k_series_to = 0.95;  ///< ratios of successive iterations [1]
+constexpr double k_energy_noise = 1e-12;                   ///< rounding of the potential, over its size [1]
 /// Inertia of a driven node, over the stiffest that pulls at it: it yields by so much less.
 constexpr double k_driven = 1e4;
 
@@ -42,13 +44,14 @@ bool LockstepStep::newton(LockstepStepReport& report) {
   const std::size_t n = x_.size();
   Stopwatch watch;
   int stuck = 0;
+  bool whole = false;  // the last iteration went all its way
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
     watch.lap();
     system_.begin(weight_);
     for (std::size_t i = 0; i < n; ++i) gradient_[i] = weight_[i] * (y_[i] - x_[i]);
     terms_.clear();
     elements_.add_terms(x_, terms_);
-    contact_.add_terms(x_, terms_);
+    contact_.add_terms(x_, terms_, iteration > 0 ? report.residual : std::numeric_limits<double>::infinity());
     for (const NodeTerm& t : terms_) {
       system_.add(t);
       for (int k = 0; k < t.count; ++k) gradient_[at(t.node[at(k)])] -= t.weight[at(k)] * t.force;
@@ -62,6 +65,17 @@ bool LockstepStep::newton(LockstepStepReport& report) {
       return false;
     }
     report.residual = longest(direction_);
+    // What the Hessian leaves out makes the last iterations a geometric series: its sum is taken at once.
+    if (whole) {
+      double along = 0, of_last = 0;
+      for (std::size_t i = 0; i < n; ++i) along += direction_[i].dot(last_[i]), of_last += last_[i].squaredNorm();
+      const double ratio = of_last > 0 ? along / of_last : 0;
+      last_ = direction_;
+      if (ratio > k_series_from && ratio < k_series_to)
+        for (Vec3& d : direction_) d /= 1 - ratio;
+    } else {
+      last_ = direction_;
+    }
     const double before = value(x_);
     contact_.find(x_, direction_);
     double factor = 2 * contact_.free_share();
@@ -74,6 +88,7 @@ bool LockstepStep::newton(LockstepStepReport& report) {
     }
     report.seconds_contact += watch.lap();
     if (!accepted) return report.residual < 1e3 * model_.setup.settled;  // rounding decides here
+    whole = factor == 1;
     stuck = factor < k_stuck_share ? stuck + 1 : 0;
     if (stuck >= k_stuck_iterations) return false;
     x_.swap(trial_);
@@ -114,7 +129,8 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   for (int look = 0; look < k_friction_looks; ++look) {
     contact_.lag_friction(x_, m.x, h);
     before = x_;
-    if (!newton(report)) break;
+    report.settled = newton(report);
+    if (!report.settled) break;
     if (!contact_.rubs()) break;
     double moved = 0;
     for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, (x_[i] - before[i]).norm());

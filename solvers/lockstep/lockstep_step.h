@@ -19,6 +19,7 @@ struct LockstepStepReport {
   double residual = 0;  ///< what the last iteration wanted to move [m]
   double missed = 0;    ///< how far a driven prop stayed behind its track [m]
   bool finite = true;
+  bool settled = true;             ///< nothing wanted to move further in the end
   std::vector<Wrench> on_prop;     ///< per cord system, about the origin
   Vec3 hold_force = Vec3::Zero();  ///< on all held points [N]
   double effective_step = 0;       ///< what forces acted for, in the integrator's sense [s]
@@ -40,7 +41,7 @@ class LockstepStep {
   LockstepContact contact_;
   CordElements elements_;
   NodeSystem system_;
-  std::vector<Vec3> x_, y_, trial_, gradient_, direction_;
+  std::vector<Vec3> x_, y_, trial_, gradient_, direction_, last_;
   std::vector<double> weight_;
   std::vector<NodeTerm> terms_;
 };

@@ -42,6 +42,7 @@ Outcome bake_of(const std::string& coupling) {
   while (state.frame < plan->shot().last_frame) {
     const FrameReport r = (*solver)->advance_frame(state);
     EXPECT_TRUE(r.finite);
+    for (const Incident& i : r.incidents) EXPECT_NE(i.kind, Incident::Kind::k_unsettled) << r.frame << ": " << i.text;
     const double force = r.forces.at(0).mean.force.norm();
     out.largest = std::max(out.largest, force);
     if (r.forces[0].contact_share > 0) out.mean += force, ++touched;

@@ -242,6 +242,44 @@ TEST(Lockstep, The_same_bytes_for_any_number_of_threads_and_from_any_checkpoint_
   }
 }
 
+TEST(Lockstep, Steps_that_do_not_settle_are_halved_and_then_said) {
+  RopeMeasures line;
+  line.to = Vec3(0.3, 0, 0);
+  line.pieces = 6;
+  line.hold_from = true;
+  CordSystem swing;
+  swing.name = "swing";
+  swing.graph = rope(line);
+  LockstepSetup setup;
+  setup.cords = {swing};
+  setup.preroll_frames = 0;
+  setup.longest_step = 1.0 / 240;  // ten a frame
+  const auto usual = made(setup);
+  State of_usual = usual->initial_state();
+  for (int f = 0; f < 3; ++f) {
+    const FrameReport r = usual->advance_frame(of_usual);
+    EXPECT_EQ(r.substeps, 10);
+    EXPECT_TRUE(r.incidents.empty());
+  }
+
+  setup.settled = 0;  // what no step can do
+  const auto never = made(setup);
+  setup.settled = LockstepSetup().settled;
+  setup.min_substeps = 80;
+  const auto shorter = made(setup);
+  State of_never = never->initial_state(), of_shorter = shorter->initial_state();
+  for (int f = 0; f < 3; ++f) {
+    const FrameReport r = never->advance_frame(of_never);
+    EXPECT_EQ(r.substeps, 10 * (1 + 2 + 4 + 8));
+    ASSERT_EQ(r.incidents.size(), 1u);
+    EXPECT_EQ(r.incidents[0].kind, Incident::Kind::k_unsettled);
+    EXPECT_LT(r.incidents[0].depth, 1e-8);
+    EXPECT_EQ(shorter->advance_frame(of_shorter).substeps, 80);
+  }
+  const auto x = as_points(*of_never.find("x")), y = as_points(*of_shorter.find("x"));
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - y[i]).norm(), 1e-7) << i;
+}
+
 TEST(Lockstep, A_two_way_prop_without_mass_and_cords_without_length_are_refused) {
   LockstepSetup setup = ball_and_net(true);
   setup.prop->mass.mass = 0;
