@@ -55,7 +55,7 @@ struct LockstepSetup {
   Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
   Vec3 wind = Vec3::Zero();               ///< m/s
   double air_density = 1.225;             ///< drags at cords, not at the prop [kg/m3]; 0: vacuum
-  double longest_step = 1.0 / 600;        ///< s
+  double longest_step = 1.0 / 1200;       ///< s
   int min_substeps = 1;                   ///< of a frame, >= 1
   double settled = 1e-8;                  ///< Newton ends when nothing wants to move further [m]
   bool bdf2 = true;                       ///< false: implicit Euler
