@@ -23,6 +23,7 @@ using FclBox = fcl::AABB<float>;
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
+constexpr double k_sure_margin = 0.98;  ///< of a margin: rounding of the boxes, 1e-7 of a place, is less than the rest
 
 /// A node of FCL's tree without what only its own queries need. Children lie next to each other, behind their parents.
 struct alignas(32) Node {
@@ -130,11 +131,14 @@ struct Walk {
   const char* changed;  ///< per vertex
   const PairElement *ea, *eb;
   bool want_edges;
+  float margin;  ///< boxes of ta are taken for smaller by so much
   Found& out;
+
+  BoxLanes of_a(const Node& node) const { return lanes(node).shrunk(margin); }
 
   bool meets(int a, int b) const {
     if (k_some && !(ma[a] | mb[b])) return false;
-    return overlap(ta[a], tb[b]);
+    return of_a(ta[a]).overlaps(lanes(tb[b]));
   }
 
   /// All pairs below node n of ta, which is tb.
@@ -152,7 +156,7 @@ struct Walk {
     const Node& nb = tb[b];
     const int i = na.first_child, j = nb.first_child;
     if (i < 0 && j < 0) {
-      meet(ea[leaf_element(na)], lanes(na), eb[leaf_element(nb)], lanes(nb));
+      meet(ea[leaf_element(na)], of_a(na), eb[leaf_element(nb)], lanes(nb));
     } else if (j < 0) {
       if (meets(i, b)) between(i, b);
       if (meets(i + 1, b)) between(i + 1, b);
@@ -169,8 +173,8 @@ struct Walk {
 
   /// The feature pairs that a pair of triangles is responsible for.
   void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b, const BoxLanes& box_b) const {
-    vertices_against_face(a, b, box_b);
-    vertices_against_face(b, a, box_a);
+    vertices_against_face(a, b, box_b, margin);
+    vertices_against_face(b, a, box_a, 0);
     if (!want_edges || a.owned_edge_count == 0) return;
     for (int j = 0; j < b.owned_edge_count; ++j) {
       const int rb = b.owned_edge[at(j)];
@@ -180,7 +184,7 @@ struct Walk {
       for (int i = 0; i < a.owned_edge_count; ++i) {
         const int ra = a.owned_edge[at(i)];
         const Edge& va = features.edges[at(ra)];
-        if (!box.overlaps(features.box(va[0]).join(features.box(va[1])))) continue;
+        if (!box.overlaps(features.box(va[0]).join(features.box(va[1])).shrunk(margin))) continue;
         if (va[0] == vb[0] || va[0] == vb[1] || va[1] == vb[0] || va[1] == vb[1]) continue;
         if (!features.present(va[0]) || !features.present(va[1])) continue;
         if (k_some && !(changed[va[0]] | changed[va[1]] | changed[vb[0]] | changed[vb[1]])) continue;
@@ -189,11 +193,13 @@ struct Walk {
     }
   }
 
-  void vertices_against_face(const PairElement& p, const PairElement& f, const BoxLanes& face_box) const {
+  /// Of the two, one has the margin taken off: p's vertices, or the face's box already.
+  void vertices_against_face(const PairElement& p, const PairElement& f, const BoxLanes& face_box,
+                             float own_margin) const {
     if (f.face < 0) return;
     for (int i = 0; i < p.owned_vertex_count; ++i) {
       const int v = p.owned_vertex[at(i)];
-      if (!features.box(v).overlaps(face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
+      if (!features.box(v).shrunk(own_margin).overlaps(face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
       if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) continue;
       if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) continue;
       out.vertex_face.push_back(pair_key(v, f.face));
@@ -214,6 +220,7 @@ struct PairFinder::Impl {
 
   PairFeatures features;
   bool want_edges = true;
+  float self_margin = 0;
   Tree cloth, collider;
 
   // Scratch, kept from search to search.
@@ -267,7 +274,8 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& ou
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
   const Walk<k_some> walk{features, cloth.nodes(),    other.nodes(),    cloth.marks(), other.marks(),
-                          changed,  cloth.elements(), other.elements(), want_edges,    out};
+                          changed,  cloth.elements(), other.elements(), want_edges,    task.self ? self_margin : 0,
+                          out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
 
@@ -276,6 +284,11 @@ PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_t
     : impl_(new Impl(PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles))) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
+
+void PairFinder::set_self_margin(double self_margin) {
+  CHECK(self_margin >= 0);
+  impl_->self_margin = static_cast<float>(k_sure_margin * self_margin);
+}
 
 void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
   search(boxes, self, true, {}, out);

@@ -31,6 +31,11 @@ struct BoxLanes {
   BoxLanes join(const BoxLanes& b) const {
     return {_mm_min_ps(lo, b.lo), _mm_max_ps(hi, b.hi)};
   }
+  /// Smaller by `by` on every side.
+  BoxLanes shrunk(float by) const {
+    const __m128 m = _mm_set1_ps(by);
+    return {_mm_add_ps(lo, m), _mm_sub_ps(hi, m)};
+  }
   bool overlaps(const BoxLanes& b) const {
     return (_mm_movemask_ps(_mm_and_ps(_mm_cmple_ps(lo, b.hi), _mm_cmple_ps(b.lo, hi))) & 7) == 7;
   }
@@ -47,6 +52,11 @@ struct BoxLanes {
   BoxLanes join(const BoxLanes& b) const {
     BoxLanes out = *this;
     out.box.include(b.box);
+    return out;
+  }
+  BoxLanes shrunk(float by) const {
+    BoxLanes out = *this;
+    for (std::size_t k = 0; k < 3; ++k) out.box.lo[k] += by, out.box.hi[k] -= by;
     return out;
   }
   bool overlaps(const BoxLanes& b) const {

@@ -46,6 +46,7 @@ Candidates::Candidates(const ClothModel& model)
               shifted_triangles(model)) {
   for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
   for (const double r : model.contact.self_radius) self_radius_ = std::max(self_radius_, r);
+  finder_.set_self_margin(std::max(0.0, radius_ - self_radius_));
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
 

@@ -106,6 +106,44 @@ TEST(PairFinder, Finds_what_brute_force_finds_between_two_wavy_sheets) {
   }
 }
 
+/// All boxes of the cloth smaller by `by` on every side.
+Scene with_smaller_cloth(Scene scene, double by) {
+  for (int v = 0; v < scene.cloth_vertices; ++v)
+    for (std::size_t k = 0; k < 3; ++k) {
+      scene.boxes[at(v)].lo[k] += static_cast<float>(by);
+      scene.boxes[at(v)].hi[k] -= static_cast<float>(by);
+    }
+  return scene;
+}
+
+TEST(PairFinder, A_margin_leaves_out_cloth_that_hardly_overlaps_cloth_and_nothing_else) {
+  constexpr double k_margin = 0.02;
+  const Scene scene = two_sheets(14, 0.03, 3);
+  PairFinder finder = finder_of(scene);
+  finder.set_self_margin(k_margin);
+  ContactPairs found, all;
+  finder.find(scene.boxes, true, found);
+  // The margin is taken off once a pair: half of it off each of two boxes is as much.
+  const ContactPairs needed = brute_force(with_smaller_cloth(scene, 0.5 * k_margin), true),
+                     allowed = brute_force(with_smaller_cloth(scene, 0.48 * k_margin), true);
+  const auto of_cloth = [&](const Stencil& s) {
+    return std::all_of(s.v.begin(), s.v.end(), [&](int v) { return v < scene.cloth_vertices; });
+  };
+  const auto expect_between = [&](const std::vector<Stencil>& few, const std::vector<Stencil>& some,
+                                  const std::vector<Stencil>& many) {
+    for (const Stencil& s : few) EXPECT_TRUE(std::binary_search(some.begin(), some.end(), s));
+    for (const Stencil& s : some) EXPECT_TRUE(!of_cloth(s) || std::binary_search(many.begin(), many.end(), s));
+    EXPECT_GT(few.size(), 200u);
+  };
+  expect_between(needed.vertex_face, found.vertex_face, allowed.vertex_face);
+  expect_between(needed.edge_edge, found.edge_edge, allowed.edge_edge);
+  all = brute_force(scene, true);
+  EXPECT_LT(found.edge_edge.size(), 0.9 * static_cast<double>(all.edge_edge.size()));
+  for (auto* pairs : {&all.vertex_face, &all.edge_edge, &found.vertex_face, &found.edge_edge})
+    std::erase_if(*pairs, of_cloth);
+  expect_same(found, all);  // cloth and collider
+}
+
 TEST(PairFinder, Finds_what_brute_force_finds_in_random_soups_of_triangles) {
   int pairs = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
