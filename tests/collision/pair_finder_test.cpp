@@ -118,7 +118,7 @@ Scene with_smaller_cloth(Scene scene, double by) {
 
 TEST(PairFinder, A_margin_leaves_out_cloth_that_hardly_overlaps_cloth_and_nothing_else) {
   constexpr double k_margin = 0.02;
-  const Scene scene = two_sheets(14, 0.03, 3);
+  const Scene scene = two_sheets(14, 0.04, 3);
   PairFinder finder = finder_of(scene);
   finder.set_self_margin(k_margin);
   ContactPairs found, all;
