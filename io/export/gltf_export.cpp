@@ -62,8 +62,9 @@ Status join_buffers(gltf::GltfFile& file, Json& json, Bytes& bin) {
 
 void embed_images(const gltf::GltfFile& file, Json& json, Bytes& bin) {
   if (!member(json, "images").is_array()) return;
-  for (Json& image : json["images"]) {
-    const std::string uri = text(member(image, "uri"));
+  for (std::size_t i = 0; i < json["images"].size(); ++i) {
+    const Json& found = json["images"][i];
+    const std::string uri = text(member(found, "uri"));
     std::string ending = std::filesystem::path(uri).extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
@@ -71,9 +72,11 @@ void embed_images(const gltf::GltfFile& file, Json& json, Bytes& bin) {
     if (uri.starts_with("data:") || (!png && !jpeg)) continue;
     const auto bytes = read_file(file.folder() / gltf::decode_percent(uri));
     if (!bytes) continue;
+    const std::size_t view = add_view(json, bin, *bytes);  // a key that the file lacks moves all others
+    Json& image = json["images"][i];
     image.erase("uri");
     image["mimeType"] = png ? "image/png" : "image/jpeg";
-    image["bufferView"] = add_view(json, bin, *bytes);
+    image["bufferView"] = view;
   }
 }
 
@@ -121,18 +124,18 @@ std::size_t time_accessor(gltf::GltfFile& file, Json& json, Bytes& bin, const Js
   return add_accessor(json, bin, track.times, 1, true);
 }
 
-Status change_channel(gltf::GltfFile& file, Json& json, Bytes& bin, Json& animation, int node,
-                      const ChangedChannel& change) {
+Status change_channel(gltf::GltfFile& file, Json& json, Bytes& bin, int clip, int node, const ChangedChannel& change) {
+  const Json& before = json["animations"][at(clip)];
   for (const char* key : {"channels", "samplers"})
-    if (!member(animation, key).is_array()) return input_error("an animation has no channels or samplers");
+    if (!member(before, key).is_array()) return input_error("an animation has no channels or samplers");
   const char* path = path_name(change.path);
-  const int found = find_json_channel(animation, node, path);
+  const int found = find_json_channel(before, node, path);
   std::int64_t sampler = -1, users = 0;
   if (found >= 0) {
-    sampler = integer(member(animation["channels"][at(found)], "sampler"), -1);
-    for (const Json& channel : animation["channels"]) users += integer(member(channel, "sampler"), -1) == sampler;
+    sampler = integer(member(before["channels"][at(found)], "sampler"), -1);
+    for (const Json& channel : before["channels"]) users += integer(member(channel, "sampler"), -1) == sampler;
   }
-  const Json old = element(animation["samplers"], sampler);
+  const Json old = element(before["samplers"], sampler);
   if (found >= 0 && !old.is_object()) return input_error("a channel's sampler does not exist");
   Json next = found >= 0 ? old : Json{{"input", 0}, {"interpolation", "LINEAR"}, {"output", 0}};
   const Track& track = change.track;
@@ -142,6 +145,7 @@ Status change_channel(gltf::GltfFile& file, Json& json, Bytes& bin, Json& animat
     next["interpolation"] = track.interpolation == Interpolation::k_step    ? "STEP"
                             : track.interpolation == Interpolation::k_cubic ? "CUBICSPLINE"
                                                                             : "LINEAR";
+  Json& animation = json["animations"][at(clip)];  // anew: an accessor may be the first, and a new key moves all others
   if (users == 1) {
     animation["samplers"][static_cast<std::size_t>(sampler)] = std::move(next);
     return {};
@@ -172,7 +176,7 @@ Result<Bytes> write_changed(gltf::GltfFile& file, const Character& character, in
       if (found == character_node.end()) return input_error("is not in the file", name);
       const auto node = static_cast<std::size_t>(found - character_node.begin());
       Status s = split_matrix(json["nodes"][node], character.nodes[at(change.node)].local);
-      if (s) s = change_channel(file, json, bin, json["animations"][at(clip)], static_cast<int>(node), change);
+      if (s) s = change_channel(file, json, bin, clip, static_cast<int>(node), change);
       if (!s) return input_error(s.error().what, name);
     }
   }
