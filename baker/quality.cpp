@@ -33,6 +33,7 @@ void apply_quality(const Shot& shot, LockstepSetup& setup) {
   if (!is_preview(shot)) return;
   setup.longest_step *= k_longer_cord_steps;
   setup.settled *= k_looser_cords;
+  setup.most_halvings = 0;
   setup.min_substeps = std::max(1, setup.min_substeps / k_fewer_substeps);
 }
 

@@ -26,8 +26,6 @@ double number_of(const State& state, const char* name) {
 /// A driven prop that is held back by more than this is not let wait [m].
 constexpr double k_missed = 1e-4;
 constexpr int k_most_attempts = 100;
-/// A substep that does not settle is halved, and its halves too, so many times.
-constexpr int k_most_halvings = 3;
 
 class LockstepSolver final : public Solver {
  public:
@@ -183,7 +181,7 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
     for (const int v : blocking) m.through[at(v)] = 1;
     m.motion = before;
   }
-  if (!(step.finite && step.settled) && halvings < k_most_halvings) {
+  if (!(step.finite && step.settled) && halvings < model_.setup.most_halvings) {
     m.motion = before;
     m.through = through_before;
     for (const double start : {time, time + 0.5 * h})

@@ -58,6 +58,7 @@ struct LockstepSetup {
   double longest_step = 1.0 / 1200;       ///< s
   int min_substeps = 1;                   ///< of a frame, >= 1
   double settled = 1e-8;                  ///< Newton ends when nothing wants to move further [m]
+  int most_halvings = 3;                  ///< of a step that does not settle, and of its halves
   bool bdf2 = true;                       ///< false: implicit Euler
 };
 
