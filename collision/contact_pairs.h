@@ -44,13 +44,14 @@ class PairFinder {
   ~PairFinder();
   PairFinder(PairFinder&&) noexcept;
 
+  /// Of all searches from now on: cloth and cloth are a pair only where their boxes overlap by as much, what the boxes
+  /// have for the collider's sake [m], >= 0; 0 at first.
+  void set_self_margin(double self_margin);
+
   /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,
   /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
   /// the list. Pairs that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in
   /// nothing.
-  /// self_margin (of the next searches): cloth and cloth are a pair only where their boxes overlap by as much [m]: what
-  /// the boxes have for the collider's sake.
-  void set_self_margin(double self_margin);
   void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);

@@ -181,6 +181,9 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
     for (const int v : blocking) m.through[at(v)] = 1;
     m.motion = before;
   }
+  report.profile.narrow += step.seconds_contact;
+  report.profile.assembly += step.seconds_assembly;
+  report.profile.linear += step.seconds_linear;
   if (!(step.finite && step.settled) && halvings < model_.setup.most_halvings) {
     m.motion = before;
     m.through = through_before;
@@ -193,9 +196,6 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
     unsettled.residual = std::max(unsettled.residual, step.residual);
   }
   report.finite = report.finite && step.finite;
-  report.profile.narrow += step.seconds_contact;
-  report.profile.assembly += step.seconds_assembly;
-  report.profile.linear += step.seconds_linear;
   if (!step.finite) return;
   m.hold_impulse += step.effective_step * step.hold_force;
   for (std::size_t c = 0; c < report.forces.size(); ++c) {
@@ -277,8 +277,9 @@ FrameReport LockstepSolver::advance_frame(State& state) const {
     incident.frame = number;
     incident.system = setup.cords.front().name;
     incident.depth = unsettled.residual;
-    incident.text = fmt::format("{} of {} steps ended before all was at rest: {:.1e} m were still wanted",
-                                unsettled.steps, report.substeps, unsettled.residual);
+    incident.text = fmt::format(
+        "{} of {} steps ended before all was at rest: {:.1e} m were still wanted; a larger min_substeps helps",
+        unsettled.steps, report.substeps, unsettled.residual);
   }
   if (model_.has_prop()) {
     Vec3 centre = Vec3::Zero();
