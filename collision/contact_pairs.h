@@ -48,6 +48,12 @@ class PairFinder {
   /// have for the collider's sake [m], >= 0; 0 at first.
   void set_self_margin(double self_margin);
 
+  /// Sets of cloth triangles, per patch, for skip_inside(). Before the first search.
+  void set_patches(Adjacency members);
+  /// Of all searches from now on: pairs of features of cloth triangles that are in one patch are left out where the
+  /// patch's `skipped` is not 0. The span has to live on, and may change between searches; empty: none, as at first.
+  void skip_inside(std::span<const char> skipped);
+
   /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,
   /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
   /// the list. Pairs that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in

@@ -13,6 +13,7 @@
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
 #include "collision/contact_pairs.h"
+#include "collision/node_patches.h"
 #include "collision/pair_features.h"
 #include "collision/pair_sort.h"
 
@@ -51,8 +52,12 @@ class Tree {
   const PairElement* elements() const { return elements_.data(); }
   /// Per node: whether an element below it changed in the last refit() of some.
   const char* marks() const { return marks_.data(); }
+  /// Per node: the patches that everything below it is in.
+  const NodePatches& patches() const { return patches_; }
 
-  void build(std::span<const PairElement> elements, std::span<const VertexBox> vertex_boxes) {
+  /// patches_of: per element, ascending; no rows: none.
+  void build(std::span<const PairElement> elements, std::span<const VertexBox> vertex_boxes,
+             const Adjacency& patches_of) {
     std::vector<fcl::Vector3<float>> points;
     std::vector<fcl::Triangle> faces;
     points.reserve(3 * elements.size());
@@ -74,13 +79,19 @@ class Tree {
     CHECK(model.endModel() == fcl::BVH_OK);
     elements_.clear();
     nodes_.clear();
+    std::vector<int> element_of_leaf;
     for (int k = 0; k < model.getNumBVs(); ++k) {
       const auto& node = model.getBV(k);
       nodes_.push_back({{}, node.first_child});
       if (node.first_child >= 0) continue;
       nodes_.back().first_child = -1 - static_cast<int>(elements_.size());
-      elements_.push_back(elements[at(-(node.first_child + 1))]);
+      element_of_leaf.push_back(-(node.first_child + 1));
+      elements_.push_back(elements[at(element_of_leaf.back())]);
     }
+    if (!patches_of.items.empty())
+      patches_.build(
+          nodes_.size(), [&](std::size_t k) { return nodes_[k].first_child; },
+          [&](int leaf) { return patches_of.row(element_of_leaf[at(leaf)]); });
   }
 
   /// changed (per vertex) not empty: all other boxes are those of the last refit. One pass backwards sees children
@@ -113,6 +124,7 @@ class Tree {
   std::vector<Node> nodes_;
   std::vector<PairElement> elements_;  ///< in the order of their leaves
   std::vector<char> marks_;
+  NodePatches patches_;
   bool any_mark_ = false;
 };
 
@@ -131,20 +143,22 @@ struct Walk {
   const char* changed;  ///< per vertex
   const PairElement *ea, *eb;
   bool want_edges;
-  float margin;  ///< boxes of ta are taken for smaller by so much
+  float margin;                ///< boxes of ta are taken for smaller by so much
+  const NodePatches* patches;  ///< of ta and tb; null: none
+  std::span<const char> skipped;
   Found& out;
 
   BoxLanes of_a(const Node& node) const { return lanes(node).shrunk(margin); }
 
   bool meets(int a, int b) const {
     if (k_some && !(ma[a] | mb[b])) return false;
-    return of_a(ta[a]).overlaps(lanes(tb[b]));
+    return of_a(ta[a]).overlaps(lanes(tb[b])) && !(patches && patches->any_common(a, b, skipped));
   }
 
   /// All pairs below node n of ta, which is tb.
   void within(int n) const {
     const int i = ta[n].first_child;
-    if (i < 0 || (k_some && !ma[n])) return;
+    if (i < 0 || (k_some && !ma[n]) || (patches && patches->any(n, skipped))) return;
     within(i);
     within(i + 1);
     if (meets(i, i + 1)) between(i, i + 1);
@@ -219,6 +233,8 @@ struct PairFinder::Impl {
   explicit Impl(PairFeatures f) : features(std::move(f)) {}
 
   PairFeatures features;
+  Adjacency patches_of;  ///< per cloth triangle
+  std::span<const char> skipped;
   bool want_edges = true;
   float self_margin = 0;
   Tree cloth, collider;
@@ -273,8 +289,19 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& ou
   out.vertex_face.clear();
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
-  const Walk<k_some> walk{features, cloth.nodes(),    other.nodes(),    cloth.marks(), other.marks(),
-                          changed,  cloth.elements(), other.elements(), want_edges,    task.self ? self_margin : 0,
+  const NodePatches* patches = task.self && !skipped.empty() && cloth.patches().built() ? &cloth.patches() : nullptr;
+  const Walk<k_some> walk{features,
+                          cloth.nodes(),
+                          other.nodes(),
+                          cloth.marks(),
+                          other.marks(),
+                          changed,
+                          cloth.elements(),
+                          other.elements(),
+                          want_edges,
+                          task.self ? self_margin : 0,
+                          patches,
+                          skipped,
                           out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
@@ -288,6 +315,23 @@ PairFinder::PairFinder(PairFinder&&) noexcept = default;
 void PairFinder::set_self_margin(double self_margin) {
   CHECK(self_margin >= 0);
   impl_->self_margin = static_cast<float>(k_sure_margin * self_margin);
+}
+
+void PairFinder::set_patches(Adjacency members) {
+  Impl& m = *impl_;
+  CHECK(!m.cloth.built());
+  std::vector<int>& start = m.patches_of.start;
+  start.assign(m.features.cloth.size() + 1, 0);
+  for (const int t : members.items) ++start[at(t) + 1];
+  for (std::size_t t = 1; t < start.size(); ++t) start[t] += start[t - 1];
+  m.patches_of.items.resize(members.items.size());
+  std::vector<int> next(start.begin(), start.end() - 1);
+  for (int p = 0; p < members.row_count(); ++p)
+    for (const int t : members.row(p)) m.patches_of.items[at(next[at(t)]++)] = p;
+}
+
+void PairFinder::skip_inside(std::span<const char> skipped) {
+  impl_->skipped = skipped;
 }
 
 void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
@@ -311,8 +355,8 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.want_edges = edges;
   const PairFeatures& features = m.features;
   m.features.set_boxes(boxes, changed);
-  if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes);
-  if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes);
+  if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes, m.patches_of);
+  if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes, {});
   parallel_tasks(2, [&](std::size_t task) {
     Tree& tree = task == 0 ? m.cloth : m.collider;
     tree.refit(features, changed);

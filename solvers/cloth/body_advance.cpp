@@ -90,6 +90,12 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     s.candidates.grow(cloth, s.more, s.piece);
     report.seconds_candidates += seconds_since(clock);
   };
+  step.pairs_suffice = [&](std::span<const Vec3> x) {
+    const auto clock = std::chrono::steady_clock::now();
+    const bool all = s.candidates.keep_flat(cloth, x, s.piece);
+    report.seconds_candidates += seconds_since(clock);
+    return all;
+  };
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
   const StepResult result = s.step.solve(step, s.x, s.v);
   report.newton_iterations += result.newton_iterations;

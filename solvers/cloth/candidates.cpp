@@ -23,6 +23,8 @@ constexpr double k_most_acceleration =
     2e-3;                              ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
 constexpr double k_slack_body = 0.03;  ///< of the body's motion near the cloth: rubbing and the carry's own error
 constexpr double k_slack_least = 3e-4;  ///< m
+/// How far pairs are looked for, typically, in contact radii: patches of flat cloth are cut for that.
+constexpr double k_patch_reach = 1;
 
 /// Collider triangles in the common numbering.
 std::vector<Triangle> shifted_triangles(const ClothModel& model) {
@@ -34,6 +36,10 @@ std::vector<Triangle> shifted_triangles(const ClothModel& model) {
   return out;
 }
 
+double largest(std::span<const double> values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
 std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
   return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
 }
@@ -43,9 +49,12 @@ std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
 Candidates::Candidates(const ClothModel& model)
     : model_(model),
       finder_(model.vertex_count(), model.triangles, model.collider ? model.collider->vertex_count() : 0,
-              shifted_triangles(model)) {
+              shifted_triangles(model)),
+      patches_(model.contact.rest, model.triangles, k_patch_reach * largest(model.contact.self_radius)) {
   for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
-  for (const double r : model.contact.self_radius) self_radius_ = std::max(self_radius_, r);
+  self_radius_ = largest(model.contact.self_radius);
+  finder_.set_patches(patches_.members());
+  finder_.skip_inside(patches_.flat());
   finder_.set_self_margin(std::max(0.0, radius_ - self_radius_));
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
@@ -145,6 +154,24 @@ void Candidates::set_box(std::size_t i, const ClothMotion& cloth, const PieceMot
   boxes_[i].include(VertexBox::swept(centre, centre, piece.slack[i] + 0.5 * radius_));
 }
 
+/// Which patches of cloth are flat in the whole of what this piece may do, as far as is known.
+void Candidates::begin_flat(const ClothMotion& cloth, const PieceMotion& piece) {
+  patches_.begin(cloth.x);
+  lost_.clear();
+  carried_.resize(cloth.x.size());
+  for (const std::vector<Vec3>* way : {&piece.carry, &piece.centre}) {
+    for (std::size_t i = 0; i < carried_.size(); ++i) carried_[i] = cloth.x[i] + (*way)[i];
+    patches_.keep(carried_, true, lost_);
+  }
+}
+
+/// Lost patches' vertices are changed_.
+void Candidates::mark_lost() {
+  for (const int patch : lost_)
+    for (const int t : patches_.members(patch))
+      for (const int v : model_.triangles[at(t)]) changed_[at(v)] = 1;
+}
+
 double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   h_ = h;
@@ -163,6 +190,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
       boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
     }
   });
+  if (any_self_) begin_flat(cloth, piece);
   finder_.find(boxes_, any_self_, found_);
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
@@ -217,6 +245,11 @@ double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
     piece.all[i] = piece.carry[i];
     place(i, cloth, piece);
   }
+  if (any_self_) {
+    lost_.clear();
+    for (std::size_t i = 0; i < carried_.size(); ++i) carried_[i] = cloth.x[i] + piece.carry[i];
+    if (!patches_.keep(carried_, false, lost_)) mark_lost();
+  }
   return renew(cloth, piece);
 }
 
@@ -228,6 +261,20 @@ void Candidates::grow(const ClothMotion& cloth, std::span<const double> more, Pi
     piece.slack[i] += more[i];
     set_box(i, cloth, piece);
   }
+  renew_carried(cloth, piece);
+}
+
+bool Candidates::keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, const PieceMotion& piece) {
+  lost_.clear();
+  if (!any_self_ || patches_.keep(x, false, lost_)) return true;
+  changed_.assign(boxes_.size(), 0);
+  mark_lost();
+  renew_carried(cloth, piece);
+  return false;
+}
+
+/// renew() of a piece that is carried already: what was let pass stays so.
+void Candidates::renew_carried(const ClothMotion& cloth, const PieceMotion& piece) {
   const ContactPairs let_pass = blocked_;  // none, unless there was no room: then release_blocked() has dropped them
   renew(cloth, piece);
   blocked_ = let_pass;

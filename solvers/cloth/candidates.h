@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collision/contact_pairs.h"
+#include "collision/flat_patches.h"
 #include "collision/pair_geometry.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/motion_zones.h"
@@ -43,6 +44,10 @@ class Candidates {
   /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is
   /// carried already. What release_blocked() has dropped stays out.
   void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
+  /// pairs() lacks those inside patches of cloth that are too flat to meet themselves. For a solve that is about to put
+  /// the cloth at x (per cloth vertex [m], straight from where it was last kept): returns true where all are still flat
+  /// there; else it adds to pairs() what is needed now, and returns false.
+  bool keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, const PieceMotion& piece);
   /// Takes out the pairs that collect() or join_blocked() last saw touch. Cloth that is joined between several of the
   /// collider's parts stays with the largest and is let through the others; else the vertices of the pairs are let
   /// through the part (noted in cloth.released; returns how many). Pairs of cloth with cloth are only dropped.
@@ -59,6 +64,9 @@ class Candidates {
   void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);
   void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
+  void begin_flat(const ClothMotion& cloth, const PieceMotion& piece);
+  void mark_lost();
+  void renew_carried(const ClothMotion& cloth, const PieceMotion& piece);
   void drop_blocked();
   void join_zones(const PieceMotion& piece);
   std::vector<int> pinched_through() const;
@@ -67,6 +75,7 @@ class Candidates {
 
   const ClothModel& model_;
   PairFinder finder_;
+  FlatPatches patches_;
   double radius_ = 1e-3, self_radius_ = 0;
   bool any_self_ = false;
 
@@ -86,6 +95,8 @@ class Candidates {
   std::vector<Kept> kept_;
   ContactPairs blocked_;
   MotionZones zones_;
+  std::vector<Vec3> carried_;
+  std::vector<int> lost_;  ///< patches that are flat no longer
 };
 
 }  // namespace ft

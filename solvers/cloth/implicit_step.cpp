@@ -52,7 +52,7 @@ struct ImplicitStep::Scratch {
   LinearSystem system;
   ContactPotential contact;
   CommonMotion common_motion;
-  std::vector<Vec3> y, gradient, direction, common, all, trial;
+  std::vector<Vec3> y, gradient, direction, common, cut, all, trial;
   std::vector<double> share, missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
   std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
@@ -96,6 +96,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.trial = s.all;
   s.gradient.resize(n);
   s.direction.resize(n);
+  s.cut.resize(n);
   s.common.resize(n);
   s.share.resize(n);
   s.missing.resize(n);
@@ -183,16 +184,25 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.seconds_contact += watch.lap();
       in.more_room(s.missing);
       watch.lap();
-      s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
-      s.contact.update(s.all);
-      s.contact.lag_friction();
+      look_again(in);
     }
     for (std::size_t i = 0; i < n; ++i)
       s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
-    s.contact.near_pairs(s.direction, k_floor, s.near);
-    s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack}, s.common);
-    truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
-    for (std::size_t i = 0; i < n; ++i) s.direction[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
+    for (bool complete = false; !complete;) {
+      s.contact.near_pairs(s.direction, k_floor, s.near);
+      s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack}, s.common);
+      truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
+      for (std::size_t i = 0; i < n; ++i) {
+        s.cut[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
+        s.trial[i] = s.all[i] + s.cut[i];
+      }
+      if (!in.pairs_suffice) break;
+      result.seconds_contact += watch.lap();
+      complete = in.pairs_suffice(cloth(s.trial));
+      watch.lap();
+      if (!complete) look_again(in);
+    }
+    s.direction.swap(s.cut);
 
     double factor = 1, of_trial = 0;
     bool accepted = false, finite = true;
@@ -232,6 +242,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   }
   result.finite = result.finite && all_finite(x_out);
   return result;
+}
+
+/// The pairs are others now, the cloth is where it was.
+void ImplicitStep::look_again(const StepInput& in) {
+  Scratch& s = *scratch_;
+  s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
+  s.contact.update(s.all);
+  s.contact.lag_friction();
 }
 
 /// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has

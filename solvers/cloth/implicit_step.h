@@ -35,6 +35,9 @@ struct StepInput {
   /// It may give more: slack and pairs are looked at again. May be empty.
   std::function<void(std::span<const double> missing)> more_room;
   double enough_room = 0;  ///< m
+  /// Called with where an iteration is about to put the cloth, straight from where it is [m]: true where `pairs` holds
+  /// all that can meet on the way. It may add to them and return false: the way is looked at again. May be empty.
+  std::function<bool(std::span<const Vec3> x)> pairs_suffice;
 };
 
 struct StepResult {
@@ -55,6 +58,7 @@ class ImplicitStep {
   StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
 
  private:
+  void look_again(const StepInput& in);
   void measure_on_body(const StepInput& in, double inertia, StepResult& result);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;

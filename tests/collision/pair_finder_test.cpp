@@ -144,6 +144,71 @@ TEST(PairFinder, A_margin_leaves_out_cloth_that_hardly_overlaps_cloth_and_nothin
   expect_same(found, all);  // cloth and collider
 }
 
+TEST(PairFinder, Pairs_inside_a_skipped_patch_are_left_out_and_no_others) {
+  const Scene scene = two_sheets(14, 0.04, 8);
+  Dice dice(9);
+  const int triangles = static_cast<int>(scene.cloth.size());
+  Adjacency members;
+  members.start.assign(1, 0);
+  std::vector<char> skipped;
+  for (int patch = 0; patch < 60; ++patch) {
+    const int first = dice.below(triangles), last = std::min(triangles, first + dice.below(60));
+    for (int t = first; t < last; ++t) members.items.push_back(t);
+    members.start.push_back(static_cast<int>(members.items.size()));
+    skipped.push_back(dice.below(3) != 0 ? 1 : 0);
+  }
+  // A feature that several triangles have is looked at in one of them: what is left out has to be inside the patch,
+  // what is found must not be inside it with all of its triangles.
+  const auto inside_by = [&](int patch, const Stencil& s, bool vertex_face, auto&& quantifier) {
+    const std::span<const int> row = members.row(patch);
+    const auto within = [&](std::span<const int> feature) {
+      std::vector<int> with;
+      for (int t = 0; t < triangles; ++t)
+        if (std::all_of(feature.begin(), feature.end(), [&](int v) {
+              return std::find(scene.cloth[at(t)].begin(), scene.cloth[at(t)].end(), v) != scene.cloth[at(t)].end();
+            }))
+          with.push_back(t);
+      return !with.empty() && quantifier(with, [&](int t) { return std::binary_search(row.begin(), row.end(), t); });
+    };
+    const std::span<const int> v(s.v);
+    const std::size_t split = vertex_face ? 1 : 2;
+    return within(v.first(split)) && within(v.subspan(split));
+  };
+  const auto any = [](const std::vector<int>& with, auto&& in) { return std::any_of(with.begin(), with.end(), in); };
+  const auto all = [](const std::vector<int>& with, auto&& in) { return std::all_of(with.begin(), with.end(), in); };
+  const auto inside = [&](const Stencil& s, bool vertex_face, auto&& quantifier) {
+    for (int patch = 0; patch < 60; ++patch)
+      if (skipped[at(patch)] != 0 && inside_by(patch, s, vertex_face, quantifier)) return true;
+    return false;
+  };
+
+  PairFinder finder = finder_of(scene);
+  finder.set_patches(members);
+  ContactPairs found;
+  finder.find(scene.boxes, true, found);
+  const ContactPairs every = brute_force(scene, true);
+  expect_same(found, every);
+  finder.skip_inside(skipped);
+  std::vector<char> changed(scene.boxes.size(), 1);
+  for (const bool some : {false, true}) {
+    some ? finder.find_changed(scene.boxes, true, changed, found) : finder.find(scene.boxes, true, found);
+    const auto compare = [&](const std::vector<Stencil>& few, const std::vector<Stencil>& many, bool vertex_face) {
+      EXPECT_LT(few.size(), many.size());
+      EXPECT_TRUE(std::includes(many.begin(), many.end(), few.begin(), few.end()));
+      for (const Stencil& s : many) {
+        const bool listed = std::binary_search(few.begin(), few.end(), s);
+        EXPECT_TRUE(listed || inside(s, vertex_face, any));
+        EXPECT_FALSE(listed && inside(s, vertex_face, all));
+      }
+    };
+    compare(found.vertex_face, every.vertex_face, true);
+    compare(found.edge_edge, every.edge_edge, false);
+  }
+  std::fill(skipped.begin(), skipped.end(), 0);  // the finder looks at it anew
+  finder.find(scene.boxes, true, found);
+  expect_same(found, every);
+}
+
 TEST(PairFinder, Finds_what_brute_force_finds_in_random_soups_of_triangles) {
   int pairs = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
