@@ -1,6 +1,7 @@
 // The walk of a frame:
 //   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
-//   2. substeps from the body's speed near the cloth; in each: collider and pins at its end, then BodyAdvance (carry,
+//   2. substeps from the body's speed near the cloth and from how fast the cloth turns; in each: collider and pins at
+//   its end, then BodyAdvance (carry,
 //      CCD, Newton, truncation)
 //   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
 //      the substeps, at most three times and as long as it helps
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "baker/core/parallel.h"
 #include "baker/core/volume.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/body_ahead.h"
@@ -26,6 +28,9 @@ namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
+/// What the ends of an edge may move against each other in one substep, by its length at rest (root mean square of all
+/// edges): cloth that whips about turns and strains by as much, and Newton's method starts that far from the answer.
+constexpr double k_most_turn = 0.2;
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -75,6 +80,8 @@ class ClothSolver final : public Solver {
   bool hold_jumps(double time_t0, double time_t1) const;
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
+  double turning(const ClothMotion& motion) const;
+  int substeps_of_body(const Frame& frame, const ClothMotion& motion) const;
 
   std::unique_ptr<ClothModel> model_;
   // Scratch only: forgotten between frames, one frame at a time.
@@ -126,6 +133,27 @@ State ClothSolver::initial_state() const {
 
 int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const {
   const ClothSetup& setup = model_->setup;
+  const int own = static_cast<int>(std::ceil((frame.t1 - frame.t0) * turning(m) / k_most_turn));
+  return std::clamp(std::max(own, substeps_of_body(frame, m)), setup.min_substeps, setup.max_substeps);
+}
+
+/// How fast the ends of the edges move against each other by their lengths at rest, root mean square [1/s].
+double ClothSolver::turning(const ClothMotion& m) const {
+  const RestEdges& rest = model_->rest_edges;
+  const double squares = parallel_sum(rest.edges.size(), 1024, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto [a, b] = rest.edges[k];
+      sum += (m.v[at(a)] - m.v[at(b)]).squaredNorm() / (rest.lengths[k] * rest.lengths[k]);
+    }
+    return sum;
+  });
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
+}
+
+/// So many that the body moves no farther against the cloth in one than the setup says.
+int ClothSolver::substeps_of_body(const Frame& frame, const ClothMotion& m) const {
+  const ClothSetup& setup = model_->setup;
   const std::vector<Vec3>& body_t0 = body_.start().feasible;
   const std::vector<Vec3>& body_t1 = body_.end().feasible;
   if (body_t0.empty()) return setup.min_substeps;
@@ -170,7 +198,7 @@ int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const
     fastest = -negative_speed;
     break;
   }
-  return std::clamp(static_cast<int>(std::ceil(fastest / travel)), setup.min_substeps, setup.max_substeps);
+  return static_cast<int>(std::ceil(fastest / travel));
 }
 
 /// Adds what a substep did to the body; torques are about the origin until the frame is over.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "baker/core/random.h"
 #include "tests/support/scripted_body.h"
@@ -15,19 +16,19 @@ namespace {
 constexpr double k_step = 0.01;
 constexpr std::uint64_t k_seed = 5;
 
-/// Two sheets, 10 mm above each other; the upper one moves at `speed` along y.
+/// Two sheets of cells x cells, 10 mm above each other; the upper one moves at `speed` along y.
 struct TwoSheets {
   std::unique_ptr<ClothModel> model;
   ClothMotion cloth;
   PieceMotion piece;
 
-  explicit TwoSheets(double speed) {
+  explicit TwoSheets(double speed, int cells = 8) {
     ClothSetup setup;
     setup.preroll_frames = 0;
     for (const double height : {0.0, 0.01}) {
       ClothGarment sheet;
       sheet.name = height > 0 ? "upper" : "lower";
-      sheet.mesh = make_sheet(0.2, 8, height);
+      sheet.mesh = make_sheet(0.2, cells, height);
       setup.garments.push_back(std::move(sheet));
     }
     auto built = build_cloth_model(std::move(setup));
@@ -91,6 +92,35 @@ int missing_in(const ContactPairs& list, const ContactPairs& needed) {
   for (const Stencil& s : needed.vertex_face) out += !contains(list.vertex_face, s);
   for (const Stencil& s : needed.edge_edge) out += !contains(list.edge_edge, s);
   return out;
+}
+
+TEST(Candidates, lists_neighbours_only_where_the_cloth_is_about_to_bend) {
+  TwoSheets s(0, 60);  // edges of 3.3 mm: neighbours are in reach of each other
+  Candidates candidates(*s.model);
+  EXPECT_EQ(s.collect(candidates), 1);
+  const int half = s.model->vertex_count() / 2;
+  const auto of_one_sheet = [&](const std::vector<Stencil>& pairs) {
+    return std::count_if(pairs.begin(), pairs.end(),
+                         [&](const Stencil& p) { return (p.v[0] < half) == (p.v[3] < half); });
+  };
+  EXPECT_EQ(of_one_sheet(candidates.pairs().edge_edge) + of_one_sheet(candidates.pairs().vertex_face), 0);
+  std::vector<Vec3> x = s.cloth.x;
+  for (Vec3& p : x) p.y() += 1e-4 * std::sin(300 * p.x());
+  EXPECT_TRUE(candidates.keep_flat(s.cloth, x, s.piece));
+
+  for (int i = half; i < 2 * half; ++i) {  // a pleat of the upper sheet
+    Vec3& p = x[at(i)];
+    if (p.x() > 0.02) p.x() = p.x() < 0.04 ? 0.04 - p.x() : p.x() - 0.04;
+  }
+  EXPECT_FALSE(candidates.keep_flat(s.cloth, x, s.piece));
+  EXPECT_TRUE(candidates.keep_flat(s.cloth, x, s.piece));
+  EXPECT_GT(of_one_sheet(candidates.pairs().edge_edge), 1000);
+  EXPECT_GT(of_one_sheet(candidates.pairs().vertex_face), 300);
+  for (const Stencil& p : candidates.pairs().edge_edge) {
+    const bool near_the_pleat = std::abs(s.cloth.x[at(p.v[0])].x() - 0.03) < 0.05;
+    EXPECT_TRUE(near_the_pleat || p.v[0] < half || p.v[3] < half);
+  }
+  EXPECT_TRUE(std::is_sorted(candidates.pairs().edge_edge.begin(), candidates.pairs().edge_edge.end()));
 }
 
 TEST(Candidates, are_complete_before_and_after_the_room_grows) {

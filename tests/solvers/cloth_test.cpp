@@ -50,6 +50,26 @@ void expect_clean(const FrameReport& r) {
   EXPECT_EQ(r.released_vertices, 0) << r.frame;
 }
 
+TEST(ClothSolver, takes_shorter_steps_for_cloth_that_turns_fast) {
+  const auto substeps_at = [](double spin) {  // rad/s, in its plane
+    const ClothSetup setup = sheet_on(nullptr, 12, 0);
+    auto solver = solver_of(setup);
+    State state = solver->initial_state();
+    std::vector<Vec3> v, v_previous;
+    for (const Vec3& p : as_points(*state.find("x"))) v.push_back(Vec3(0, spin, 0).cross(p));
+    for (const char* name : {"v", "v_previous"}) {
+      std::vector<double>& block = state.block(name);
+      for (std::size_t i = 0; i < block.size(); ++i) block[i] = v[i / 3][static_cast<int>(i % 3)];
+    }
+    const FrameReport report = solver->advance_frame(state);
+    expect_clean(report);
+    return report.substeps;
+  };
+  EXPECT_EQ(substeps_at(5), 4);    // a turn of 0.05 rad in each
+  EXPECT_EQ(substeps_at(40), 9);   // of 0.185, for 0.42 in four
+  EXPECT_EQ(substeps_at(80), 17);  // of 0.196
+}
+
 TEST(ClothSolver, drapes_over_a_ball_at_rest_without_crossing_it) {
   auto solver = solver_of(sheet_on(spheres({[](double) { return Vec3(0, 0, 0); }}, 0.25), 24, 0.26));
   State state = solver->initial_state();
