@@ -14,6 +14,15 @@ CheckedSurface::CheckedSurface(std::span<const Triangle> triangles)
       all.push_back({{std::min(a, b), std::max(a, b)}, static_cast<int>(3 * i + k)});
     }
   std::sort(all.begin(), all.end());
+  for (std::size_t i = 0; i < all.size();) {
+    int uses = 0, sum = 0;  // of the edge; upwards counts 1, downwards -1
+    const std::size_t first = i;
+    for (; i < all.size() && all[i].first == all[first].first; ++i, ++uses) {
+      const auto corner = static_cast<std::size_t>(all[i].second % 3);
+      sum += triangles[at(all[i].second / 3)][corner] == all[i].first[0] ? 1 : -1;
+    }
+    closed_ = closed_ && uses == 2 && sum == 0;
+  }
   for (std::size_t i = 0; i < all.size(); ++i)
     if (i == 0 || all[i].first != all[i - 1].first)
       owned_[at(all[i].second / 3)] |= static_cast<unsigned char>(1 << (all[i].second % 3));

@@ -16,6 +16,8 @@ class CheckedSurface {
   void move(std::span<const Vec3> positions);
 
   bool empty() const { return triangles_.empty(); }
+  /// Whether every edge is passed once in either direction: it has an inside, and none gets there without a crossing.
+  bool closed() const { return closed_; }
   std::span<const Triangle> triangles() const { return triangles_; }
   std::span<const Vec3> positions() const { return positions_; }
   const TriangleTree& tree() const { return tree_; }
@@ -25,6 +27,7 @@ class CheckedSurface {
  private:
   std::vector<Triangle> triangles_;
   std::vector<unsigned char> owned_;
+  bool closed_ = true;
   std::span<const Vec3> positions_;
   TriangleTree tree_;
 };

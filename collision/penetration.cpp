@@ -1,7 +1,9 @@
 // See penetration.h.
 #include "collision/penetration.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "baker/core/parallel.h"
 
@@ -61,6 +63,42 @@ std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<co
   CheckedSurface checked(triangles);
   checked.move(surface);
   return penetrations(points, checked, least_depth);
+}
+
+std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Edge> edges,
+                                      std::span<const Crossing> crossings, const CheckedSurface& surface,
+                                      double least_depth) {
+  if (!surface.closed()) return penetrations(points, surface, least_depth);
+  std::vector<Edge> crossing;
+  for (const Crossing& c : crossings)
+    if (c.edge_of_first) crossing.push_back({std::min(c.edge[0], c.edge[1]), std::max(c.edge[0], c.edge[1])});
+  std::sort(crossing.begin(), crossing.end());
+  std::vector<int> parent(points.size());  // of sets of points that are on one side; a root is the smallest in its set
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int v) {
+    while (parent[at(v)] != v) v = parent[at(v)] = parent[at(parent[at(v)])];
+    return v;
+  };
+  for (const Edge& e : edges) {
+    if (std::binary_search(crossing.begin(), crossing.end(), e)) continue;
+    const auto [lo, hi] = std::minmax({root(e[0]), root(e[1])});
+    parent[at(hi)] = lo;
+  }
+  const auto places_of = [&](const std::vector<int>& chosen) {
+    std::vector<Vec3> places;
+    for (const int v : chosen) places.push_back(points[at(v)]);
+    return places;
+  };
+  std::vector<int> roots, chosen;
+  for (int v = 0; v < static_cast<int>(points.size()); ++v)
+    if (root(v) == v) roots.push_back(v);
+  std::vector<char> inside(points.size(), 0);  // at the root
+  for (const Penetration& p : penetrations(places_of(roots), surface, 0)) inside[at(roots[at(p.vertex)])] = 1;
+  for (int v = 0; v < static_cast<int>(points.size()); ++v)
+    if (inside[at(root(v))] != 0) chosen.push_back(v);
+  std::vector<Penetration> out = penetrations(places_of(chosen), surface, least_depth);
+  for (Penetration& p : out) p.vertex = chosen[at(p.vertex)];
+  return out;
 }
 
 }  // namespace ft

@@ -10,6 +10,7 @@
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 #include "collision/checked_surface.h"
+#include "collision/crossings.h"
 
 namespace ft {
 
@@ -23,5 +24,12 @@ std::vector<Penetration> penetrations(std::span<const Vec3> points, const Checke
                                       double least_depth = 1e-5);
 std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Vec3> surface,
                                       std::span<const Triangle> triangles, double least_depth = 1e-5);
+
+/// The same for points of a mesh with these edges, when the crossings of a surface over it (first, crossings.h) with
+/// `surface` are known: points that are joined by edges without a crossing are all inside a closed surface or all
+/// outside, so that one of them tells. Of a surface that is not closed every point is asked.
+std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<const Edge> edges,
+                                      std::span<const Crossing> crossings, const CheckedSurface& surface,
+                                      double least_depth = 1e-5);
 
 }  // namespace ft

@@ -107,13 +107,9 @@ void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<c
 /// Where the cloth is inside the body as it is drawn: the body overlaps itself there, or leaves no room.
 void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const CheckedSurface& drawn,
                     const ClothMotion& m, FrameReport& report) {
-  std::vector<Penetration> inside;
-  parallel_tasks(2, [&](std::size_t task) {
-    if (task == 0)
-      report.crossings_drawn = static_cast<int>(crossings_between(cloth, drawn).size());
-    else
-      inside = penetrations(m.x, drawn);
-  });
+  const std::vector<Crossing> crossings = crossings_between(cloth, drawn);
+  report.crossings_drawn = static_cast<int>(crossings.size());
+  const std::vector<Penetration> inside = penetrations(m.x, model.rest_edges.edges, crossings, drawn);
   int worst = -1;
   for (const Penetration& p : inside)
     if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;

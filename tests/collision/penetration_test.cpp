@@ -62,6 +62,50 @@ TEST(Penetration, Inside_and_depth_agree_with_solid_angles_and_all_triangles) {
   EXPECT_GT(inside, 50);
 }
 
+TEST(Penetration, Crossings_of_a_mesh_tell_the_same_as_asking_every_point) {
+  test::Shape body = test::capsule({-0.2, 0, 0}, {0.2, 0.05, 0}, 0.1);
+  const test::Shape other = test::capsule({0, -0.2, 0.03}, {0.02, 0.3, 0}, 0.07);
+  const int first = static_cast<int>(body.positions.size());
+  body.positions.insert(body.positions.end(), other.positions.begin(), other.positions.end());
+  for (const Triangle& t : other.triangles) body.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  // A sheet through both, one beside them, one wholly inside.
+  std::vector<Vec3> x;
+  std::vector<Triangle> triangles;
+  for (const Vec3& centre : {Vec3(0.01, 0.02, 0), Vec3(0, 0.5, 0.3), Vec3(0.1, 0.02, 0)}) {
+    const double side = centre.x() == 0.1 ? 0.05 : 0.5;
+    const int n = 24, start = static_cast<int>(x.size());
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const double u = i / (n - 1.0) - 0.5, v = j / (n - 1.0) - 0.5;
+        x.push_back(centre + side * Vec3(u, 0.3 * std::sin(9 * u + 5 * v), v));
+      }
+    for (int i = 0; i + 1 < n; ++i)
+      for (int j = 0; j + 1 < n; ++j) {
+        const int a = start + i * n + j;
+        triangles.push_back({a, a + 1, a + n});
+        triangles.push_back({a + 1, a + n + 1, a + n});
+      }
+  }
+  CheckedSurface sheets(triangles);
+  sheets.move(x);
+  const std::vector<Edge> edges = unique_edges(triangles);
+  for (const bool open : {false, true}) {
+    if (open) body.triangles.pop_back();
+    CheckedSurface surface(body.triangles);
+    surface.move(body.positions);
+    EXPECT_EQ(surface.closed(), !open);
+    const auto all = penetrations(x, surface);
+    const auto told = penetrations(x, edges, crossings_between(sheets, surface), surface);
+    ASSERT_EQ(told.size(), all.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      EXPECT_EQ(told[k].vertex, all[k].vertex);
+      EXPECT_EQ(told[k].depth, all[k].depth);
+    }
+    EXPECT_GT(all.size(), 650u);
+    EXPECT_LT(all.size(), x.size() - 650u);
+  }
+}
+
 TEST(Penetration, Missing_triangles_do_not_open_the_body) {
   test::Shape s = test::capsule({-0.2, 0, 0}, {0.2, 0, 0}, 0.1, 32, 12);
   const auto points = cloud(6, 800, 0.12);
