@@ -13,9 +13,7 @@
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
 #include "collision/contact_pairs.h"
-#include "collision/node_patches.h"
-#include "collision/pair_features.h"
-#include "collision/pair_sort.h"
+#include "collision/pair_walk.h"
 
 namespace ft {
 namespace {
@@ -26,29 +24,11 @@ constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is s
 constexpr std::size_t k_block = 4096;
 constexpr double k_sure_margin = 0.98;  ///< of a margin: rounding of the boxes, 1e-7 of a place, is less than the rest
 
-/// A node of FCL's tree without what only its own queries need. Children lie next to each other, behind their parents.
-struct alignas(32) Node {
-  VertexBox box;
-  int first_child;  ///< negative: a leaf, of element -1 - first_child
-};
-inline bool is_leaf(const Node& node) {
-  return node.first_child < 0;
-}
-inline std::size_t leaf_element(const Node& node) {
-  return static_cast<std::size_t>(-1 - node.first_child);
-}
-inline BoxLanes lanes(const Node& node) {
-  return BoxLanes::load(node.box);
-}
-inline bool overlap(const Node& a, const Node& b) {
-  return lanes(a).overlaps(lanes(b));
-}
-
 /// The tree of one surface; leaves are its elements.
 class Tree {
  public:
   bool built() const { return !nodes_.empty(); }
-  const Node* nodes() const { return nodes_.data(); }
+  const PairNode* nodes() const { return nodes_.data(); }
   const PairElement* elements() const { return elements_.data(); }
   /// Per node: whether an element below it changed in the last refit() of some.
   const char* marks() const { return marks_.data(); }
@@ -61,9 +41,12 @@ class Tree {
     std::vector<fcl::Vector3<float>> points;
     std::vector<fcl::Triangle> faces;
     points.reserve(3 * elements.size());
+    first_vertex_ = end_vertex_ = elements.empty() ? 0 : elements[0].v[0];
     for (const PairElement& e : elements) {
       const std::size_t first = points.size();
       for (const int v : e.v) {
+        first_vertex_ = std::min(first_vertex_, v);
+        end_vertex_ = std::max(end_vertex_, v + 1);
         const VertexBox& b = vertex_boxes[at(v)];
         fcl::Vector3<float>& p = points.emplace_back();
         for (int i = 0; i < 3; ++i) {
@@ -103,12 +86,14 @@ class Tree {
     };
     if (some) {
       const bool was_marked = any_mark_ || marks_.size() != nodes_.size();
-      any_mark_ = std::any_of(elements_.begin(), elements_.end(), is_changed);
+      any_mark_ =
+          std::any_of(changed.begin() + first_vertex_, changed.begin() + end_vertex_, [](char c) { return c; }) &&
+          std::any_of(elements_.begin(), elements_.end(), is_changed);
       if (was_marked) marks_.assign(nodes_.size(), 0);
       if (!any_mark_) return;
     }
     for (std::size_t k = nodes_.size(); k-- > 0;) {
-      Node& node = nodes_[k];
+      PairNode& node = nodes_[k];
       const bool leaf = is_leaf(node);
       const std::size_t below = leaf ? leaf_element(node) : at(node.first_child);
       if (some) {
@@ -121,104 +106,12 @@ class Tree {
   }
 
  private:
-  std::vector<Node> nodes_;
+  std::vector<PairNode> nodes_;
   std::vector<PairElement> elements_;  ///< in the order of their leaves
   std::vector<char> marks_;
   NodePatches patches_;
   bool any_mark_ = false;
-};
-
-/// Keys of feature pairs (pair_sort.h), by rank.
-struct Found {
-  std::vector<std::uint64_t> vertex_face, edge_edge;
-};
-
-/// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap. k_some: only those
-/// with a changed vertex.
-template <bool k_some>
-struct Walk {
-  const PairFeatures& features;
-  const Node *ta, *tb;
-  const char *ma, *mb;  ///< marks of the trees
-  const char* changed;  ///< per vertex
-  const PairElement *ea, *eb;
-  bool want_edges;
-  float margin;                ///< boxes of ta are taken for smaller by so much
-  const NodePatches* patches;  ///< of ta and tb; null: none
-  std::span<const char> skipped;
-  Found& out;
-
-  BoxLanes of_a(const Node& node) const { return lanes(node).shrunk(margin); }
-
-  bool meets(int a, int b) const {
-    if (k_some && !(ma[a] | mb[b])) return false;
-    return of_a(ta[a]).overlaps(lanes(tb[b])) && !(patches && patches->any_common(a, b, skipped));
-  }
-
-  /// All pairs below node n of ta, which is tb.
-  void within(int n) const {
-    const int i = ta[n].first_child;
-    if (i < 0 || (k_some && !ma[n]) || (patches && patches->any(n, skipped))) return;
-    within(i);
-    within(i + 1);
-    if (meets(i, i + 1)) between(i, i + 1);
-  }
-
-  /// a and b overlap. Both sides descend together: four tests in a row cost less than two visits.
-  void between(int a, int b) const {
-    const Node& na = ta[a];
-    const Node& nb = tb[b];
-    const int i = na.first_child, j = nb.first_child;
-    if (i < 0 && j < 0) {
-      meet(ea[leaf_element(na)], of_a(na), eb[leaf_element(nb)], lanes(nb));
-    } else if (j < 0) {
-      if (meets(i, b)) between(i, b);
-      if (meets(i + 1, b)) between(i + 1, b);
-    } else if (i < 0) {
-      if (meets(a, j)) between(a, j);
-      if (meets(a, j + 1)) between(a, j + 1);
-    } else {
-      if (meets(i, j)) between(i, j);
-      if (meets(i, j + 1)) between(i, j + 1);
-      if (meets(i + 1, j)) between(i + 1, j);
-      if (meets(i + 1, j + 1)) between(i + 1, j + 1);
-    }
-  }
-
-  /// The feature pairs that a pair of triangles is responsible for.
-  void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b, const BoxLanes& box_b) const {
-    vertices_against_face(a, b, box_b, margin);
-    vertices_against_face(b, a, box_a, 0);
-    if (!want_edges || a.owned_edge_count == 0) return;
-    for (int j = 0; j < b.owned_edge_count; ++j) {
-      const int rb = b.owned_edge[at(j)];
-      const Edge& vb = features.edges[at(rb)];
-      const BoxLanes box = features.box(vb[0]).join(features.box(vb[1]));
-      if (!box.overlaps(box_a) || !features.present(vb[0]) || !features.present(vb[1])) continue;
-      for (int i = 0; i < a.owned_edge_count; ++i) {
-        const int ra = a.owned_edge[at(i)];
-        const Edge& va = features.edges[at(ra)];
-        if (!box.overlaps(features.box(va[0]).join(features.box(va[1])).shrunk(margin))) continue;
-        if (va[0] == vb[0] || va[0] == vb[1] || va[1] == vb[0] || va[1] == vb[1]) continue;
-        if (!features.present(va[0]) || !features.present(va[1])) continue;
-        if (k_some && !(changed[va[0]] | changed[va[1]] | changed[vb[0]] | changed[vb[1]])) continue;
-        out.edge_edge.push_back(ra < rb ? pair_key(ra, rb) : pair_key(rb, ra));
-      }
-    }
-  }
-
-  /// Of the two, one has the margin taken off: p's vertices, or the face's box already.
-  void vertices_against_face(const PairElement& p, const PairElement& f, const BoxLanes& face_box,
-                             float own_margin) const {
-    if (f.face < 0) return;
-    for (int i = 0; i < p.owned_vertex_count; ++i) {
-      const int v = p.owned_vertex[at(i)];
-      if (!features.box(v).shrunk(own_margin).overlaps(face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
-      if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) continue;
-      if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) continue;
-      out.vertex_face.push_back(pair_key(v, f.face));
-    }
-  }
+  int first_vertex_ = 0, end_vertex_ = 0;  ///< all vertices of the elements are in here
 };
 
 /// A piece of the search: two nodes that overlap, or a node of the cloth (a) against itself (b -1).
@@ -241,19 +134,19 @@ struct PairFinder::Impl {
 
   // Scratch, kept from search to search.
   std::vector<Task> tasks, next_tasks;
-  std::vector<Found> found;
+  std::vector<FoundPairs> found;
   PairSorter sort_vertex_face, sort_edge_edge;
 
   void split_tasks(bool self);
   template <bool k_some>
-  void run_task(const Task& task, const char* changed, Found& out) const;
+  void run_task(const Task& task, const char* changed, FoundPairs& out) const;
 };
 
 /// Tasks depend on trees and boxes only, never on threads. Every round replaces a task by those of its children.
 void PairFinder::Impl::split_tasks(bool self) {
   tasks.clear();
   if (!cloth.built()) return;
-  const Node* ta = cloth.nodes();
+  const PairNode* ta = cloth.nodes();
   if (collider.built() && overlap(ta[0], collider.nodes()[0])) tasks.push_back({0, 0, false});
   if (self) tasks.push_back({0, -1, true});
   for (bool more = true; more && tasks.size() < k_task_goal;) {
@@ -269,7 +162,7 @@ void PairFinder::Impl::split_tasks(bool self) {
         more = true;
         continue;
       }
-      const Node* tb = task.self ? ta : collider.nodes();
+      const PairNode* tb = task.self ? ta : collider.nodes();
       const int j = tb[task.b].first_child;
       if (i < 0 || j < 0) {
         next_tasks.push_back(task);
@@ -285,24 +178,24 @@ void PairFinder::Impl::split_tasks(bool self) {
 }
 
 template <bool k_some>
-void PairFinder::Impl::run_task(const Task& task, const char* changed, Found& out) const {
+void PairFinder::Impl::run_task(const Task& task, const char* changed, FoundPairs& out) const {
   out.vertex_face.clear();
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
   const NodePatches* patches = task.self && !skipped.empty() && cloth.patches().built() ? &cloth.patches() : nullptr;
-  const Walk<k_some> walk{features,
-                          cloth.nodes(),
-                          other.nodes(),
-                          cloth.marks(),
-                          other.marks(),
-                          changed,
-                          cloth.elements(),
-                          other.elements(),
-                          want_edges,
-                          task.self ? self_margin : 0,
-                          patches,
-                          skipped,
-                          out};
+  const PairWalk<k_some> walk{features,
+                              cloth.nodes(),
+                              other.nodes(),
+                              cloth.marks(),
+                              other.marks(),
+                              changed,
+                              cloth.elements(),
+                              other.elements(),
+                              want_edges,
+                              task.self ? self_margin : 0,
+                              patches,
+                              skipped,
+                              out};
   task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
 }
 
@@ -369,11 +262,11 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   } else {
     parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<true>(m.tasks[i], changed.data(), m.found[i]); });
   }
-  const std::span<const Found> found(m.found.data(), m.tasks.size());
+  const std::span<const FoundPairs> found(m.found.data(), m.tasks.size());
 
   const auto write = [&](PairSorter& sorter, std::size_t first_count, auto keys_of, auto stencil_of, auto& pairs) {
     sorter.begin(static_cast<int>(first_count));
-    for (const Found& f : found) sorter.add(f.*keys_of);
+    for (const FoundPairs& f : found) sorter.add(f.*keys_of);
     const std::span<const std::uint64_t> keys = sorter.sort();
     pairs.resize(keys.size());
     parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
@@ -390,9 +283,9 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   };
   parallel_tasks(2, [&](std::size_t task) {
     if (task == 0)
-      write(m.sort_vertex_face, at(features.vertex_count), &Found::vertex_face, vertex_face, out.vertex_face);
+      write(m.sort_vertex_face, at(features.vertex_count), &FoundPairs::vertex_face, vertex_face, out.vertex_face);
     else
-      write(m.sort_edge_edge, features.edges.size(), &Found::edge_edge, edge_edge, out.edge_edge);
+      write(m.sort_edge_edge, features.edges.size(), &FoundPairs::edge_edge, edge_edge, out.edge_edge);
   });
 }
 
