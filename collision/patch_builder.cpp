@@ -59,9 +59,31 @@ bool cuts(const std::vector<Vec2>& hull, const Vec2& a, const Vec2& b, double to
 
 /// A patch on its way: what can be reached of the mesh inside the circle.
 struct PatchBuilder::Spread {
+  double radius = 0;                         ///< of the circle about the seed, which lies at 0 [m]
   std::vector<int> triangles;                ///< in the order in which they were reached
   std::vector<std::array<Vec2, 3>> corners;  ///< of these, on the plane
+  std::map<int, int> place;                  ///< of a triangle in the list
   std::vector<std::array<Vec2, 2>> ends;     ///< sides inside the circle behind which nothing can be reached
+  std::vector<char> is_member;
+  std::vector<Vec2> hull;  ///< of the members
+
+  bool inside(std::size_t k) const {
+    return std::all_of(corners[k].begin(), corners[k].end(), [&](const Vec2& p) { return p.norm() <= radius; });
+  }
+  bool any_end_cuts_hull() const {
+    return std::any_of(ends.begin(), ends.end(),
+                       [&](const auto& end) { return cuts(hull, end[0], end[1], k_inside * radius); });
+  }
+  /// Whether triangle k is on the other side of one of the hull's sides.
+  bool apart_from_hull(std::size_t k) const {
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Vec2 along = hull[(i + 1) % hull.size()] - hull[i];
+      if (std::all_of(corners[k].begin(), corners[k].end(),
+                      [&](const Vec2& p) { return cross2(along, p - hull[i]) <= 0; }))
+        return true;
+    }
+    return false;
+  }
 };
 
 PatchBuilder::PatchBuilder(std::span<const Vec3> rest, std::span<const Triangle> triangles, double reach)
@@ -126,111 +148,104 @@ bool PatchBuilder::usable(int triangle, const Vec3& normal) const {
   return n.norm() >= k_sliver * longest2 && n.dot(normal) >= k_facing * n.norm() && longest2 > 0;
 }
 
-SpreadPatch PatchBuilder::spread(int seed) const {
-  SpreadPatch patch;
-  Vec3 normal = Vec3::Zero();
-  for (const int t : around_.row(seed)) {
-    const Triangle& v = triangles_[at(t)];
-    normal += (rest_[at(v[1])] - rest_[at(v[0])]).cross(rest_[at(v[2])] - rest_[at(v[0])]);
-  }
-  if (!(normal.norm() > 0)) return patch;
-  normal.normalize();
-  patch.axes[0] = normal.unitOrthogonal();
-  patch.axes[1] = normal.cross(patch.axes[0]);
-  const double radius = spacing(seed) + k_margin * side_[at(seed)] + reach_;
+/// Follows the triangles from `first` on, over every side that comes into the circle.
+void PatchBuilder::reach(int first, int seed, const Vec3& normal, const std::array<Vec3, 2>& axes,
+                         Spread& found) const {
   const auto on_plane = [&](int v) {
     const Vec3 from_seed = rest_[at(v)] - rest_[at(seed)];
-    return Vec2(patch.axes[0].dot(from_seed), patch.axes[1].dot(from_seed));
+    return Vec2(axes[0].dot(from_seed), axes[1].dot(from_seed));
   };
-
-  Spread found;
-  std::map<int, int> place;  // of triangles in `found`
-  const auto reach_triangle = [&](int t) {
-    if (!place.emplace(t, static_cast<int>(found.triangles.size())).second) return;
+  const auto add = [&](int t) {
+    if (!found.place.emplace(t, static_cast<int>(found.triangles.size())).second) return;
     const Triangle& v = triangles_[at(t)];
     found.triangles.push_back(t);
     found.corners.push_back({on_plane(v[0]), on_plane(v[1]), on_plane(v[2])});
   };
-  const int first = *std::find_if(around_.row(seed).begin(), around_.row(seed).end(),
-                                  [&](int t) { return usable(t, normal) || t == around_.row(seed).back(); });
-  if (!usable(first, normal)) return patch;
-  reach_triangle(first);
+  add(first);
   for (std::size_t k = 0; k < found.triangles.size(); ++k)
     for (std::size_t side = 0; side < 3; ++side) {
       const Vec2 a = found.corners[k][side], b = found.corners[k][(side + 1) % 3];
-      if (distance_to_origin(a, b) > radius) continue;
+      if (distance_to_origin(a, b) > found.radius) continue;
       const int next = across_[at(found.triangles[k])][side];
       if (next >= 0 && usable(next, normal))
-        reach_triangle(next);
+        add(next);
       else
         found.ends.push_back({a, b});
     }
+}
 
-  // Around a vertex inside the circle the triangles lie once: a ray meets one of them.
+/// Whether the triangles around every vertex inside the circle lie there once: a ray from it meets one of them.
+bool PatchBuilder::lies_once(const Spread& found) const {
   std::map<int, int> met;
   for (std::size_t k = 0; k < found.triangles.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& c = found.corners[k];
-      if (c[i].norm() <= radius && c[(i + 1) % 3].y() <= c[i].y() && c[(i + 2) % 3].y() > c[i].y() &&
+      if (c[i].norm() <= found.radius && c[(i + 1) % 3].y() <= c[i].y() && c[(i + 2) % 3].y() > c[i].y() &&
           ++met[triangles_[at(found.triangles[k])][i]] > 1)
-        return patch;
+        return false;
     }
+  return true;
+}
 
-  // Members: all that is inside the circle, or as much of it as no end cuts the hull of.
-  std::vector<Vec2> points, hull;
-  std::vector<char> is_member(found.triangles.size(), 0);
-  const auto no_end_cuts = [&] {
-    return std::none_of(found.ends.begin(), found.ends.end(),
-                        [&](const auto& end) { return cuts(hull, end[0], end[1], k_inside * radius); });
-  };
-  const auto inside = [&](std::size_t k) {
-    return std::all_of(found.corners[k].begin(), found.corners[k].end(),
-                       [&](const Vec2& p) { return p.norm() <= radius; });
-  };
-  const auto take = [&](std::size_t k) {
-    is_member[k] = 1;
-    points.insert(points.end(), found.corners[k].begin(), found.corners[k].end());
-  };
-  const auto connected = [&](std::size_t k) {
-    if (k == 0) return true;
-    for (const int t : across_[at(found.triangles[k])])
-      if (const auto it = place.find(t); t >= 0 && it != place.end() && is_member[at(it->second)] != 0) return true;
-    return false;
-  };
-  for (std::size_t k = 0; k < found.triangles.size(); ++k)
-    if (inside(k) && connected(k)) take(k);
-  if (points.empty()) return patch;
-  hull = convex_hull(points);
-  if (!no_end_cuts()) {
-    points.clear();
-    is_member.assign(is_member.size(), 0);
-    std::vector<Vec2> good_hull;
+/// Members: all that is inside the circle; and where an end cuts the hull of that, triangle by triangle as many as have
+/// one that none cuts. Each has a side in common with one before it.
+void PatchBuilder::choose_members(Spread& found) const {
+  const auto choose = [&](bool one_by_one) {
+    found.is_member.assign(found.triangles.size(), 0);
+    found.hull.clear();
+    std::vector<Vec2> points;
     for (std::size_t k = 0; k < found.triangles.size(); ++k) {
-      if (!inside(k) || !connected(k)) continue;
-      std::vector<Vec2> more = good_hull;
-      more.insert(more.end(), found.corners[k].begin(), found.corners[k].end());
-      hull = convex_hull(more);
-      if (!no_end_cuts()) continue;
-      good_hull = hull;
-      is_member[k] = 1;
+      const auto& across = across_[at(found.triangles[k])];
+      const bool joins = k == 0 || std::any_of(across.begin(), across.end(), [&](int t) {
+                           const auto it = found.place.find(t);
+                           return it != found.place.end() && found.is_member[at(it->second)] != 0;
+                         });
+      if (!joins || !found.inside(k)) continue;
+      found.is_member[k] = 1;
+      points.insert(points.end(), found.corners[k].begin(), found.corners[k].end());
+      if (!one_by_one) continue;
+      std::vector<Vec2> before = convex_hull(points);
+      found.hull.swap(before);
+      if (found.any_end_cuts_hull()) found.hull.swap(before), found.is_member[k] = 0;
+      points = found.hull;
     }
-    hull = good_hull;
-  }
+    if (!one_by_one && !points.empty()) found.hull = convex_hull(std::move(points));
+  };
+  choose(false);
+  if (found.any_end_cuts_hull()) choose(true);
+}
+
+SpreadPatch PatchBuilder::spread(int seed) const {
+  SpreadPatch patch;
+  const auto around = around_.row(seed);
+  const auto area_normal = [&](int t) {
+    const Triangle& v = triangles_[at(t)];
+    return (rest_[at(v[1])] - rest_[at(v[0])]).cross(rest_[at(v[2])] - rest_[at(v[0])]).eval();
+  };
+  Vec3 normal = Vec3::Zero();
+  for (const int t : around) normal += area_normal(t);
+  if (!(normal.norm() > 0)) return patch;
+  normal.normalize();
+  const auto first = std::find_if(around.begin(), around.end(), [&](int t) { return usable(t, normal); });
+  if (first == around.end()) return patch;
+  patch.axes[0] = normal.unitOrthogonal();
+  patch.axes[1] = normal.cross(patch.axes[0]);
+
+  Spread found;
+  found.radius = spacing(seed) + k_margin * side_[at(seed)] + reach_;
+  reach(*first, seed, normal, patch.axes, found);
+  if (!lies_once(found)) return patch;
+  choose_members(found);
 
   double least_facing = 1;
   for (std::size_t k = 0; k < found.triangles.size(); ++k) {
-    const auto& c = found.corners[k];
-    bool apart = false;  // on the other side of one of the hull's sides
-    for (std::size_t i = 0; i < hull.size() && !apart; ++i) {
-      const Vec2 along = hull[(i + 1) % hull.size()] - hull[i];
-      apart = std::all_of(c.begin(), c.end(), [&](const Vec2& p) { return cross2(along, p - hull[i]) <= 0; });
-    }
-    if (is_member[k] == 0 && apart) continue;
     const int t = found.triangles[k];
-    if (is_member[k] != 0) patch.members.push_back(t);
+    if (found.is_member[k] != 0)
+      patch.members.push_back(t);
+    else if (found.apart_from_hull(k))
+      continue;
     patch.cover.push_back(t);
-    const Triangle& v = triangles_[at(t)];
-    const Vec3 n = (rest_[at(v[1])] - rest_[at(v[0])]).cross(rest_[at(v[2])] - rest_[at(v[0])]);
+    const Vec3 n = area_normal(t);
     least_facing = std::min(least_facing, n.dot(normal) / n.norm());
   }
   patch.stretch = 1 / least_facing;

@@ -33,6 +33,9 @@ class PatchBuilder {
   double spacing(int vertex) const;
   bool usable(int triangle, const Vec3& normal) const;
   struct Spread;
+  void reach(int first, int seed, const Vec3& normal, const std::array<Vec3, 2>& axes, Spread& found) const;
+  bool lies_once(const Spread& found) const;
+  void choose_members(Spread& found) const;
 
   std::span<const Vec3> rest_;
   std::span<const Triangle> triangles_;
