@@ -28,7 +28,7 @@ namespace ft {
 class FlatPatches {
  public:
   /// Of triangles over `rest` [m]; cords ({a, b, b}) and slivers are in none. Patches reach as far beyond the middle of
-  /// what they are made for as pairs are looked for: `reach` [m], > 0.
+  /// what they are made for as pairs are looked for: `reach` [m], >= 0.
   FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> triangles, double reach);
 
   /// Per patch: its triangles, ascending.
@@ -43,14 +43,11 @@ class FlatPatches {
   /// Only what is flat at x, too, stays so. Returns whether all did, and appends those that did not to `lost`.
   /// to_spare: by as much as in begin(), not only just.
   bool keep(std::span<const Vec3> x, bool to_spare, std::vector<int>& lost);
-  /// Nothing is flat, as before the first begin().
-  void forget() { flat_.assign(flat_.size(), 0); }
 
  private:
   struct Sides {
     std::array<float, 3> a, b;  ///< from the first corner to the others [m]
   };
-  struct Builder;
   void measure(std::span<const Vec3> x);
   float flatness(std::size_t patch) const;
 
