@@ -48,27 +48,26 @@ class PairFinder {
   /// have for the collider's sake [m], >= 0; 0 at first.
   void set_self_margin(double self_margin);
 
-  /// Sets of cloth triangles, per patch, for skip_inside(). Before the first search.
-  void set_patches(Adjacency members);
-  /// Of all searches from now on: pairs of features of cloth triangles that are in one patch are left out where the
-  /// patch's `skipped` is not 0. The span has to live on, and may change between searches; empty: none, as at first.
-  void skip_inside(std::span<const char> skipped);
+  /// Patches: sets of cloth triangles, for `skipped`. Before the first search.
+  void set_patches(const Adjacency& members);
 
   /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,
   /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
   /// the list. Pairs that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in
-  /// nothing.
-  void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
+  /// nothing. skipped (per patch; empty: none): where it is not 0, pairs of features of two triangles in the patch are
+  /// left out.
+  void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped = {});
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
   /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when
   /// only their boxes have grown or moved. All other boxes must be those of the last search. Costs little where few
   /// have changed.
-  void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out);
+  void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out,
+                    std::span<const char> skipped = {});
 
  private:
   void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
-              ContactPairs& out);
+              std::span<const char> skipped, ContactPairs& out);
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

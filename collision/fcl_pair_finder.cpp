@@ -127,8 +127,8 @@ struct PairFinder::Impl {
 
   PairFeatures features;
   Adjacency patches_of;  ///< per cloth triangle
-  std::span<const char> skipped;
   bool want_edges = true;
+  std::span<const char> skipped;  ///< of the search at hand
   float self_margin = 0;
   Tree cloth, collider;
 
@@ -210,7 +210,7 @@ void PairFinder::set_self_margin(double self_margin) {
   impl_->self_margin = static_cast<float>(k_sure_margin * self_margin);
 }
 
-void PairFinder::set_patches(Adjacency members) {
+void PairFinder::set_patches(const Adjacency& members) {
   Impl& m = *impl_;
   CHECK(!m.cloth.built());
   std::vector<int>& start = m.patches_of.start;
@@ -223,29 +223,26 @@ void PairFinder::set_patches(Adjacency members) {
     for (const int t : members.row(p)) m.patches_of.items[at(next[at(t)]++)] = p;
 }
 
-void PairFinder::skip_inside(std::span<const char> skipped) {
-  impl_->skipped = skipped;
-}
-
-void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
-  search(boxes, self, true, {}, out);
+void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped) {
+  search(boxes, self, true, {}, skipped, out);
 }
 
 void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
-  search(boxes, self, false, {}, out);
+  search(boxes, self, false, {}, {}, out);
 }
 
 void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed,
-                              ContactPairs& out) {
+                              ContactPairs& out, std::span<const char> skipped) {
   CHECK(changed.size() == boxes.size());
-  search(boxes, self, true, changed, out);
+  search(boxes, self, true, changed, skipped, out);
 }
 
 /// changed empty: all pairs. Not empty: the boxes of all others are those of the last search.
 void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
-                        ContactPairs& out) {
+                        std::span<const char> skipped, ContactPairs& out) {
   Impl& m = *impl_;
   m.want_edges = edges;
+  m.skipped = skipped;
   const PairFeatures& features = m.features;
   m.features.set_boxes(boxes, changed);
   if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes, m.patches_of);

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/parallel.h"
 #include "collision/patch_builder.h"
@@ -159,7 +160,7 @@ bool FlatPatches::keep(std::span<const Vec3> x, bool to_spare, std::vector<int>&
   const std::size_t before = lost.size();
   for (std::size_t p = 0; p < flat_.size(); ++p)
     if (flat_[p] != still_[p]) lost.push_back(static_cast<int>(p));
-  std::copy(still_.begin(), still_.end(), flat_.begin());  // who looks at flat() goes on to see it
+  flat_.swap(still_);
   return lost.size() == before;
 }
 

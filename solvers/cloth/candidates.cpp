@@ -54,7 +54,6 @@ Candidates::Candidates(const ClothModel& model)
   for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
   self_radius_ = largest(model.contact.self_radius);
   finder_.set_patches(patches_.members());
-  finder_.skip_inside(patches_.flat());
   finder_.set_self_margin(std::max(0.0, radius_ - self_radius_));
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
@@ -191,7 +190,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
     }
   });
   if (any_self_) begin_flat(cloth, piece);
-  finder_.find(boxes_, any_self_, found_);
+  finder_.find(boxes_, any_self_, found_, patches_.flat());
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
   const double t =
@@ -202,7 +201,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
 
 /// The pairs of changed_ vertices anew, all others as they are.
 double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
-  finder_.find_changed(boxes_, any_self_, changed_, found_);
+  finder_.find_changed(boxes_, any_self_, changed_, found_, patches_.flat());
   double t = 1;
   const auto renew_kind = [&](PairKind kind, const std::vector<Stencil>& found, std::vector<Stencil>& pairs,
                               std::vector<Stencil>& blocked) {

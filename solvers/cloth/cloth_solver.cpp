@@ -27,8 +27,9 @@ namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
-/// What the ends of an edge may move against each other in one substep, by its length at rest (root mean square of all
-/// edges): cloth that whips about turns and strains by as much, and Newton's method starts that far from the answer.
+/// What the ends of an edge may move against each other in one substep, by its length at rest (of all edges, see
+/// turning()): cloth that whips about turns and strains by as much, and Newton's method starts that far from the
+/// answer.
 constexpr double k_most_turn = 0.2;
 
 double elapsed(std::chrono::steady_clock::time_point since) {
@@ -80,7 +81,7 @@ class ClothSolver final : public Solver {
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
   double turning(const ClothMotion& motion) const;
-  int substeps_of_body(const Frame& frame, const ClothMotion& motion) const;
+  double substeps_of_body(const Frame& frame, const ClothMotion& motion) const;
 
   std::unique_ptr<ClothModel> model_;
   // Scratch only: forgotten between frames, one frame at a time.
@@ -132,30 +133,33 @@ State ClothSolver::initial_state() const {
 
 int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const {
   const ClothSetup& setup = model_->setup;
-  const int own = static_cast<int>(std::ceil((frame.t1 - frame.t0) * turning(m) / k_most_turn));
-  return std::clamp(std::max(own, substeps_of_body(frame, m)), setup.min_substeps, setup.max_substeps);
+  const double own = (frame.t1 - frame.t0) * turning(m) / k_most_turn;
+  const double wanted = std::ceil(std::max(own, substeps_of_body(frame, m)));
+  return static_cast<int>(std::clamp<double>(wanted, setup.min_substeps, setup.max_substeps));
 }
 
-/// How fast the ends of the edges move against each other by their lengths at rest, root mean square [1/s].
+/// How fast the ends of the edges move against each other, by their lengths at rest; both root mean square [1/s], so
+/// that an edge counts as much as the cloth that it is in, and tiny ones hardly.
 double ClothSolver::turning(const ClothMotion& m) const {
   const RestEdges& rest = model_->rest_edges;
-  const double squares = parallel_sum(rest.edges.size(), 1024, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto [a, b] = rest.edges[k];
-      sum += (m.v[at(a)] - m.v[at(b)]).squaredNorm() / (rest.lengths[k] * rest.lengths[k]);
-    }
-    return sum;
-  });
-  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
+  const Vec2 squares =
+      parallel_sum(rest.edges.size(), 1024, Vec2(0, 0), [&](std::size_t begin, std::size_t end) -> Vec2 {
+        Vec2 sum(0, 0);
+        for (std::size_t k = begin; k < end; ++k) {
+          const auto [a, b] = rest.edges[k];
+          sum += Vec2((m.v[at(a)] - m.v[at(b)]).squaredNorm(), rest.lengths[k] * rest.lengths[k]);
+        }
+        return sum;
+      });
+  return squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
 }
 
 /// So many that the body moves no farther against the cloth in one than the setup says.
-int ClothSolver::substeps_of_body(const Frame& frame, const ClothMotion& m) const {
+double ClothSolver::substeps_of_body(const Frame& frame, const ClothMotion& m) const {
   const ClothSetup& setup = model_->setup;
   const std::vector<Vec3>& body_t0 = body_.start().feasible;
   const std::vector<Vec3>& body_t1 = body_.end().feasible;
-  if (body_t0.empty()) return setup.min_substeps;
+  if (body_t0.empty()) return 0;
   // Speed of the body relative to the cloth's own mean motion, where cloth is near.
   const double dt = frame.t1 - frame.t0, cell = 0.06;
   Vec3 mean = Vec3::Zero();
@@ -197,7 +201,7 @@ int ClothSolver::substeps_of_body(const Frame& frame, const ClothMotion& m) cons
     fastest = -negative_speed;
     break;
   }
-  return static_cast<int>(std::ceil(fastest / travel));
+  return fastest / travel;
 }
 
 /// Adds what a substep did to the body; torques are about the origin until the frame is over.

@@ -27,7 +27,7 @@ struct StepInput {
   std::span<const double> slack;        ///< its radius [m]
   std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
   double friction_share = 1;            ///< of all friction [1]
-  const ContactPairs* pairs = nullptr;  ///< complete within the slack
+  const ContactPairs* pairs = nullptr;  ///< complete within the slack, but for what pairs_suffice adds
   int newton_iterations = 3;            ///< at least, unless nothing moves; more where the cloth is still strained
   /// Root mean square of what an iteration may still change the edges' lengths by at the end, over their rest lengths.
   double settled_strain = 5e-3;

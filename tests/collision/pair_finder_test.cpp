@@ -9,6 +9,7 @@
 
 #include "baker/core/parallel.h"
 #include "collision/contact_pairs.h"
+#include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"
 #include "tests/support/assets.h"
 #include "tests/support/pair_brute_force.h"
@@ -30,12 +31,7 @@ void add_grid(int n, int first, double height, double wave, Dice& dice, std::vec
       const double u = i / (n - 1.0), v = j / (n - 1.0);
       x.emplace_back(u, height + wave * std::sin(7 * u + 3 * v) + 0.1 * wave * dice.uniform(), v);
     }
-  for (int i = 0; i + 1 < n; ++i)
-    for (int j = 0; j + 1 < n; ++j) {
-      const int a = first + i * n + j;
-      triangles.push_back({a, a + 1, a + n});
-      triangles.push_back({a + 1, a + n + 1, a + n});
-    }
+  test::add_grid_triangles(n, first, triangles);
 }
 
 Scene two_sheets(int n, double reach, std::uint64_t seed) {

@@ -10,6 +10,7 @@
 #include "baker/core/random.h"
 #include "capsule_scene.h"
 #include "collision/triangle_tree.h"
+#include "tests/collision/grid.h"
 
 namespace ft {
 namespace {
@@ -41,13 +42,18 @@ double slow_distance(const Vec3& p, std::span<const Vec3> x, std::span<const Tri
   return std::sqrt(best);
 }
 
-TEST(Penetration, Inside_and_depth_agree_with_solid_angles_and_all_triangles) {
-  // Two capsules that overlap: the union, whose inner walls count as surface for the depth.
+/// Two capsules that overlap: the union, whose inner walls count as surface for the depth.
+test::Shape two_capsules() {
   test::Shape s = test::capsule({-0.2, 0, 0}, {0.2, 0.05, 0}, 0.1);
   const test::Shape other = test::capsule({0, -0.2, 0.03}, {0.02, 0.3, 0}, 0.07);
   const int first = static_cast<int>(s.positions.size());
   s.positions.insert(s.positions.end(), other.positions.begin(), other.positions.end());
   for (const Triangle& t : other.triangles) s.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  return s;
+}
+
+TEST(Penetration, Inside_and_depth_agree_with_solid_angles_and_all_triangles) {
+  const test::Shape s = two_capsules();
   const auto points = cloud(5, 1500, 0.35);
   std::map<int, double> found;
   for (const Penetration& p : penetrations(points, s.positions, s.triangles)) found[p.vertex] = p.depth;
@@ -63,11 +69,7 @@ TEST(Penetration, Inside_and_depth_agree_with_solid_angles_and_all_triangles) {
 }
 
 TEST(Penetration, Crossings_of_a_mesh_tell_the_same_as_asking_every_point) {
-  test::Shape body = test::capsule({-0.2, 0, 0}, {0.2, 0.05, 0}, 0.1);
-  const test::Shape other = test::capsule({0, -0.2, 0.03}, {0.02, 0.3, 0}, 0.07);
-  const int first = static_cast<int>(body.positions.size());
-  body.positions.insert(body.positions.end(), other.positions.begin(), other.positions.end());
-  for (const Triangle& t : other.triangles) body.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  test::Shape body = two_capsules();
   // A sheet through both, one beside them, one wholly inside.
   std::vector<Vec3> x;
   std::vector<Triangle> triangles;
@@ -79,12 +81,7 @@ TEST(Penetration, Crossings_of_a_mesh_tell_the_same_as_asking_every_point) {
         const double u = i / (n - 1.0) - 0.5, v = j / (n - 1.0) - 0.5;
         x.push_back(centre + side * Vec3(u, 0.3 * std::sin(9 * u + 5 * v), v));
       }
-    for (int i = 0; i + 1 < n; ++i)
-      for (int j = 0; j + 1 < n; ++j) {
-        const int a = start + i * n + j;
-        triangles.push_back({a, a + 1, a + n});
-        triangles.push_back({a + 1, a + n + 1, a + n});
-      }
+    test::add_grid_triangles(n, start, triangles);
   }
   CheckedSurface sheets(triangles);
   sheets.move(x);
