@@ -3,14 +3,27 @@
 #include <algorithm>
 
 #include "baker/core/check.h"
+#include "baker/core/parallel.h"
 
 namespace ft {
+namespace {
+
+constexpr std::size_t k_block = 8192;
+
+}  // namespace
 
 int BlockPattern::find(int row, int col) const {
   const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
   const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
   const auto it = std::lower_bound(begin, end, col);
   return it != end && *it == col ? static_cast<int>(it - column.begin()) : -1;
+}
+
+void BlockMatrix::reset(const BlockPattern& p) {
+  pattern = &p;
+  blocks.resize(p.column.size());
+  parallel_for(blocks.size(), k_block,
+               [&](std::size_t begin, std::size_t end) { std::fill_n(&blocks[begin], end - begin, Mat3f::Zero()); });
 }
 
 BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::array<int, 4>>> stencil_lists) {

@@ -28,7 +28,8 @@ BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::arr
 struct BlockMatrix {
   const BlockPattern* pattern = nullptr;
   std::vector<Mat3f> blocks;  ///< as pattern->column
-  void reset(const BlockPattern& p) { pattern = &p, blocks.assign(p.column.size(), Mat3f::Zero()); }
+  /// All zero.
+  void reset(const BlockPattern& p);
 };
 
 /// K spread over up to four vertices: block (a, b) of the Hessian is weight[a] * weight[b] * stiffness. A contact with

@@ -10,22 +10,22 @@
 namespace ft {
 namespace {
 
-constexpr std::size_t k_rows = 512;  ///< rows per block of work
-
-Vec4f row_product(const Level& level, std::size_t row, const Vec4f* x) {
-  Vec4f sum = Vec4f::Zero();
-  const int end = level.pattern->row_start[row + 1];
-  for (int k = level.pattern->row_start[row]; k < end; ++k) {
-    const float* block = level.blocks.data() + 9 * at(k);
-    const Vec4f& v = x[at(level.pattern->column[at(k)])];
-    sum += Eigen::Map<const Vec4f>(block) * v[0] + Eigen::Map<const Vec4f>(block + 3) * v[1] +
-           Eigen::Map<const Vec4f>(block + 6) * v[2];
-  }
-  sum[3] = 0;  // the loads overlap the next column
-  return sum;
-}
+constexpr std::size_t k_rows = 256;  ///< rows per block of work
 
 }  // namespace
+
+void Level::build() {
+  const std::size_t n = at(size());
+  matrix.build(*pattern);
+  for (int i = 0; i < size(); ++i) diagonal.push_back(matrix.place(*pattern, i, pattern->diagonal[at(i)]));
+  inverse.resize(n);
+  for (auto* v : {&x, &r, &b}) v->assign(n, Vec4f::Zero());
+  for (std::size_t i = 0; i < n; ++i) {
+    probe.push_back(Vec4f::Zero());
+    for (int c = 0; c < 3; ++c)
+      probe[i][c] = static_cast<float>(2 * random_uniform({.element = i}, static_cast<std::uint64_t>(c)) - 1);
+  }
+}
 
 bool link_levels(Level& fine, Level& coarse) {
   fine.interpolation = make_interpolation(*fine.pattern, fine.rest);
@@ -54,7 +54,8 @@ bool link_levels(Level& fine, Level& coarse) {
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b) {
           if (row.coarse[a] < 0 || col.coarse[b] < row.coarse[a]) continue;
-          upper[at(row.coarse[a])][col.coarse[b]].push_back({k, row.weight[a] * col.weight[b]});
+          upper[at(row.coarse[a])][col.coarse[b]].push_back(
+              {fine.matrix.place(*fine.pattern, static_cast<int>(i), k), row.weight[a] * col.weight[b]});
         }
     }
   std::vector<std::vector<std::array<int, 4>>> stencils(1);
@@ -62,14 +63,16 @@ bool link_levels(Level& fine, Level& coarse) {
     for (const auto& [j, list] : upper[i]) stencils[0].push_back({static_cast<int>(i), j, -1, -1});
   coarse.own_pattern = make_pattern(static_cast<int>(nc), stencils);
   coarse.pattern = &coarse.own_pattern;
+  coarse.build();
   fine.gather_start.assign(1, 0);
   for (std::size_t i = 0; i < nc; ++i)
     for (auto& [j, list] : upper[i]) {
-      std::sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.block < y.block; });
+      std::sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.place < y.place; });
       fine.gather.insert(fine.gather.end(), list.begin(), list.end());
       fine.gather_start.push_back(static_cast<int>(fine.gather.size()));
-      fine.upper.push_back(coarse.pattern->find(static_cast<int>(i), j));
-      fine.lower.push_back(coarse.pattern->find(j, static_cast<int>(i)));
+      const int row = static_cast<int>(i);
+      fine.upper.push_back(coarse.matrix.place(*coarse.pattern, row, coarse.pattern->find(row, j)));
+      fine.lower.push_back(coarse.matrix.place(*coarse.pattern, j, coarse.pattern->find(j, row)));
     }
   return true;
 }
@@ -77,22 +80,18 @@ bool link_levels(Level& fine, Level& coarse) {
 void galerkin(const Level& fine, Level& coarse) {
   parallel_for(fine.upper.size(), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      Vec4f c0 = Vec4f::Zero(), c1 = Vec4f::Zero();
-      float c2 = 0;
+      Vec4f c0 = Vec4f::Zero(), c1 = Vec4f::Zero(), c2 = Vec4f::Zero();
       for (int k = fine.gather_start[e]; k < fine.gather_start[e + 1]; ++k) {
         const Level::Contribution& g = fine.gather[at(k)];
-        const float* block = fine.blocks.data() + 9 * at(g.block);
-        c0 += g.weight * Eigen::Map<const Vec4f>(block);
-        c1 += g.weight * Eigen::Map<const Vec4f>(block + 4);
-        c2 += g.weight * block[8];
+        c0 += g.weight * fine.matrix.column(g.place, 0);
+        c1 += g.weight * fine.matrix.column(g.place, 1);
+        c2 += g.weight * fine.matrix.column(g.place, 2);
       }
       Mat3f sum;
-      Eigen::Map<Vec4f>(sum.data()) = c0;
-      Eigen::Map<Vec4f>(sum.data() + 4) = c1;
-      sum.data()[8] = c2;
+      sum << c0.head<3>(), c1.head<3>(), c2.head<3>();
       if (fine.upper[e] == fine.lower[e]) sum = (0.5f * (sum + sum.transpose())).eval();
-      Eigen::Map<Mat3f>(coarse.blocks.data() + 9 * at(fine.upper[e])) = sum;
-      Eigen::Map<Mat3f>(coarse.blocks.data() + 9 * at(fine.lower[e])) = sum.transpose();
+      coarse.matrix.set(fine.upper[e], sum);
+      coarse.matrix.set(fine.lower[e], sum.transpose());
     }
   });
 }
@@ -100,49 +99,55 @@ void galerkin(const Level& fine, Level& coarse) {
 void invert_diagonal(Level& level) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Map<const Mat3f> block(level.blocks.data() + 9 * at(level.pattern->diagonal[i]));
+      const Mat3f block = level.matrix.get(level.diagonal[i]);
       const float scale = block.trace();
-      level.inverse[i].setZero();
+      level.inverse[i] = PaddedBlock();
       if (!(scale > 0)) continue;
       const Eigen::Matrix3d shifted = block.cast<double>() + Eigen::Matrix3d::Identity() * (1e-7 * scale);
       const Eigen::Matrix3d inverse = shifted.inverse();
-      if (inverse.allFinite()) level.inverse[i] = (0.5 * (inverse + inverse.transpose())).cast<float>();
+      if (inverse.allFinite()) level.inverse[i] = PaddedBlock((0.5 * (inverse + inverse.transpose())).cast<float>());
     }
   });
 }
 
 void estimate_damping(Level& level) {
-  const std::size_t n = at(level.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int c = 0; c < 3; ++c)
-      level.x[i][c] = static_cast<float>(2 * random_uniform({.element = i}, static_cast<std::uint64_t>(c)) - 1);
-    level.x[i][3] = 0;
-  }
+  level.x = level.probe;
   // Largest eigenvalue of D^-1 A through its Rayleigh quotient in the D inner product, (A x).(D^-1 A x) / x.(A x).
   double eigenvalue = 0;
   for (int step = 0; step < 4; ++step) {
-    multiply(level, level.x, level.r);
-    double top = 0, bottom = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec3f next = level.inverse[i] * level.r[i].head<3>();
-      top += static_cast<double>(level.r[i].head<3>().dot(next));
-      bottom += static_cast<double>(level.r[i].head<3>().dot(level.x[i].head<3>()));
-      level.x[i].head<3>() = next;
-    }
-    if (bottom > 0) eigenvalue = std::max(eigenvalue, top / bottom);
+    const Vec2 quotient =
+        parallel_sum(at(level.size()), k_rows, Vec2(0, 0), [&](std::size_t begin, std::size_t end) -> Vec2 {
+          Vec2 sum(0, 0);
+          for (std::size_t i = begin; i < end; ++i) {
+            const Vec4f product = level.product(i, level.x);
+            level.r[i] = level.inverse[i] * product;
+            sum += Vec2(product.dot(level.r[i]), product.dot(level.x[i]));
+          }
+          return sum;
+        });
+    level.x.swap(level.r);
+    if (quotient[1] > 0) eigenvalue = std::max(eigenvalue, quotient[0] / quotient[1]);
   }
   level.damping = static_cast<float>(1.6 / (1.25 * std::max(eigenvalue, 1.0)));
 }
 
-void multiply(const Level& level, std::span<const Vec4f> x, std::span<Vec4f> y) {
+void smooth_first(Level& level) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) y[i] = row_product(level, i, x.data());
+    for (std::size_t i = begin; i < end; ++i) level.x[i] = level.damping * (level.inverse[i] * level.b[i]);
   });
 }
 
-void residual(const Level& level, std::span<const Vec4f> x, std::span<const Vec4f> b, std::span<Vec4f> r) {
+void smooth(Level& level) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) r[i] = b[i] - row_product(level, i, x.data());
+    for (std::size_t i = begin; i < end; ++i)
+      level.r[i] = level.x[i] + level.damping * (level.inverse[i] * (level.b[i] - level.product(i, level.x)));
+  });
+  level.x.swap(level.r);
+}
+
+void residual(Level& level) {
+  parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) level.r[i] = level.b[i] - level.product(i, level.x);
   });
 }
 

@@ -6,48 +6,65 @@
 #include <span>
 #include <vector>
 
+#include "solvers/linear/extra_rows.h"
 #include "solvers/linear/interpolation.h"
+#include "solvers/linear/level_matrix.h"
 
 namespace ft {
 
-using Vec4f = Eigen::Vector4f;  ///< a 3-vector padded for aligned loads; the fourth entry is always zero or ignored
-
 struct Level {
   const BlockPattern* pattern = nullptr;
-  BlockPattern own_pattern;    ///< of coarse levels
-  std::vector<float> blocks;   ///< 9 per block, column by column, one block of padding at the end
-  std::vector<Mat3f> inverse;  ///< of the diagonal blocks; zero for rows that are held
-  float damping = 0.45f;       ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
+  BlockPattern own_pattern;  ///< of coarse levels
+  LevelMatrix matrix;
+  ExtraRows extra;                   ///< of the finest: what contacts couple besides
+  std::vector<int> diagonal;         ///< places of the diagonal blocks
+  std::vector<PaddedBlock> inverse;  ///< of the diagonal blocks; zero for rows that are held
+  float damping = 0.45f;             ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
   std::vector<Vec3> rest;
   std::vector<Vec4f> x, r, b;
+  std::vector<Vec4f> probe;  ///< where estimate_damping() starts
 
   // Towards the next level (absent on the coarsest).
   Interpolation interpolation;
   std::vector<int> children_start, children;  ///< fine vertices of each coarse one, ascending
   std::vector<float> children_weight;
   struct Contribution {
-    int block;
+    int place;
     float weight;
   };
   std::vector<int> gather_start;  ///< per coarse block of the upper triangle
   std::vector<Contribution> gather;
-  std::vector<int> upper, lower;  ///< positions in the coarse matrix that each gathered block goes to
+  std::vector<int> upper, lower;  ///< places in the coarse matrix that each gathered block goes to
 
   int size() const { return pattern->vertex_count(); }
+  /// Places for everything above, once the pattern is known.
+  void build();
+  /// Row times v, with what is extra.
+  Vec4f product(std::size_t row, std::span<const Vec4f> v) const;
 };
+
+inline Vec4f Level::product(std::size_t row, std::span<const Vec4f> v) const {
+  Vec4f sum = matrix.row_product(row, v.data());
+  if (!extra.value.empty())
+    for (int k = extra.start[row]; k < extra.start[row] + extra.used[row]; ++k)
+      sum.head<3>() += extra.value[at(k)] * v[at(extra.column[at(k)])].head<3>();
+  return sum;
+}
 
 /// Interpolation, coarse pattern and gather plan; false when coarsening gains too little.
 bool link_levels(Level& fine, Level& coarse);
-/// coarse.blocks = P^T fine.blocks P.
+/// coarse.matrix = P^T fine.matrix P.
 void galerkin(const Level& fine, Level& coarse);
 /// Inverts the diagonal blocks; singular ones (held rows) get zero.
 void invert_diagonal(Level& level);
 /// Damping from a few power steps on a fixed start vector.
 void estimate_damping(Level& level);
-/// y = A x.
-void multiply(const Level& level, std::span<const Vec4f> x, std::span<Vec4f> y);
+/// x = damping D^-1 b: a smoothing step from zero.
+void smooth_first(Level& level);
+/// x += damping D^-1 (b - A x); r is scratch.
+void smooth(Level& level);
 /// r = b - A x.
-void residual(const Level& level, std::span<const Vec4f> x, std::span<const Vec4f> b, std::span<Vec4f> r);
+void residual(Level& level);
 /// coarse b = P^T fine r.
 void restrict_residual(const Level& fine, Level& coarse);
 /// fine x += P coarse x.
