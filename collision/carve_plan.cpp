@@ -12,17 +12,6 @@ namespace {
 /// Bind distance from which on vertices of touching parts keep the full gap [m].
 constexpr double k_touching_zone = 30e-3;
 
-Adjacency neighbours_of(std::size_t vertex_count, std::span<const Edge> edges) {
-  std::vector<std::array<int, 2>> both;
-  for (const Edge& e : edges) both.insert(both.end(), {{e[0], e[1]}, {e[1], e[0]}});
-  std::sort(both.begin(), both.end());
-  Adjacency out;
-  out.start.assign(vertex_count + 1, 0);
-  for (const auto& b : both) ++out.start[at(b[0]) + 1], out.items.push_back(b[1]);
-  std::partial_sum(out.start.begin(), out.start.end(), out.start.begin());
-  return out;
-}
-
 /// Orders points by median splits down to clusters.
 void sort_in_space(std::span<int> vertices, std::span<const Vec3> x) {
   if (vertices.size() <= k_cluster) return;
@@ -60,7 +49,7 @@ void share_out_vertices(CarvePlan& plan, const PartSurface& surface, std::span<c
     if (e[0] != e[1] && part == part_of_vertex[at(e[1])])
       plan.yielding[at(part)].edges.push_back({local[at(e[0])], local[at(e[1])]});
   }
-  for (Yielding& part : plan.yielding) part.neighbours = neighbours_of(part.vertices.size(), part.edges);
+  for (Yielding& part : plan.yielding) part.neighbours = vertex_neighbours(part.vertices.size(), part.edges);
 }
 
 void find_opponents(CarvePlan& plan, const PartSurface& surface) {

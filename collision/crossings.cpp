@@ -4,10 +4,13 @@
 
 #include <algorithm>
 
+#include "baker/core/parallel.h"
 #include "collision/crossing_predicates.h"
 
 namespace ft {
 namespace {
+
+constexpr std::size_t k_tasks = 128;  ///< that a search is split into, about
 
 Vec2 drop(const Vec3& v, int axis) {
   return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
@@ -77,9 +80,19 @@ Box box_of(const Triangle& t, std::span<const Vec3> x) {
   return box;
 }
 
-void sort_unique(std::vector<Crossing>& crossings) {
-  std::sort(crossings.begin(), crossings.end());
-  crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
+/// What visit(i, j, found) finds for all pairs of triangles that may meet, of two surfaces or one with itself.
+template <class Visit>
+std::vector<Crossing> crossings_of_pairs(const CheckedSurface& a, const CheckedSurface& b, Visit&& visit) {
+  const auto tasks = a.tree().pair_tasks(b.tree(), k_tasks);
+  std::vector<std::vector<Crossing>> found(tasks.size());
+  parallel_tasks(tasks.size(), [&](std::size_t task) {
+    a.tree().for_each_pair(tasks[task], b.tree(), [&](int i, int j) { visit(i, j, found[task]); });
+  });
+  std::vector<Crossing> out;
+  for (const auto& part : found) out.insert(out.end(), part.begin(), part.end());
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
 
 }  // namespace
@@ -98,30 +111,24 @@ bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Ve
 }
 
 std::vector<Crossing> crossings_between(const CheckedSurface& a, const CheckedSurface& b) {
-  std::vector<Crossing> out;
-  if (a.empty() || b.empty()) return out;
-  a.tree().for_each_pair(b.tree(), [&](int i, int j) {
+  if (a.empty() || b.empty()) return {};
+  return crossings_of_pairs(a, b, [&](int i, int j, std::vector<Crossing>& out) {
     const Triangle &s = a.triangles()[at(i)], &t = b.triangles()[at(j)];
     if (!box_of(s, a.positions()).overlaps(box_of(t, b.positions()))) return;
     edges_through<false>(s, a.owned_edges(i), a.positions(), t, b.positions(), true, out);
     edges_through<false>(t, b.owned_edges(j), b.positions(), s, a.positions(), false, out);
   });
-  sort_unique(out);
-  return out;
 }
 
 std::vector<Crossing> crossings_within(const CheckedSurface& a) {
-  std::vector<Crossing> out;
-  if (a.empty()) return out;
+  if (a.empty()) return {};
   const auto x = a.positions();
-  a.tree().for_each_own_pair([&](int i, int j) {
+  return crossings_of_pairs(a, a, [&](int i, int j, std::vector<Crossing>& out) {
     const Triangle &s = a.triangles()[at(i)], &t = a.triangles()[at(j)];
     if (!box_of(s, x).overlaps(box_of(t, x))) return;
     edges_through<true>(s, a.owned_edges(i), x, t, x, true, out);
     edges_through<true>(t, a.owned_edges(j), x, s, x, true, out);
   });
-  sort_unique(out);
-  return out;
 }
 
 std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::span<const Triangle> triangles_a,

@@ -22,6 +22,7 @@ using FclBox = fcl::AABB<float>;
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
+constexpr std::size_t k_limb = 1024;    ///< most nodes of a sub-tree that is refitted as one
 constexpr double k_sure_margin = 0.98;  ///< of a margin: rounding of the boxes, 1e-7 of a place, is less than the rest
 
 /// The tree of one surface; leaves are its elements.
@@ -71,33 +72,48 @@ class Tree {
       element_of_leaf.push_back(-(node.first_child + 1));
       elements_.push_back(elements[at(element_of_leaf.back())]);
     }
+    share_out();
     if (!patches_of.items.empty())
       patches_.build(
           nodes_.size(), [&](std::size_t k) { return nodes_[k].first_child; },
           [&](int leaf) { return patches_of.row(element_of_leaf[at(leaf)]); });
   }
 
-  /// changed (per vertex) not empty: all other boxes are those of the last refit. One pass backwards sees children
-  /// first.
-  void refit(const PairFeatures& features, std::span<const char> changed) {
+  /// A refit is begin_refit(), refit_below() for all limbs in any order, end_refit(). changed (per vertex) not empty:
+  /// all other boxes are those of the last refit.
+  void begin_refit(std::span<const char> changed) {
+    any_mark_now_ = true;
+    if (changed.empty()) return;
+    const bool was_marked = any_mark_ || marks_.size() != nodes_.size();
+    any_mark_ = any_mark_now_ =
+        std::any_of(changed.begin() + first_vertex_, changed.begin() + end_vertex_, [](char c) { return c; }) &&
+        std::any_of(elements_.begin(), elements_.end(), [&](const PairElement& e) { return is_changed(e, changed); });
+    if (was_marked) marks_.assign(nodes_.size(), 0);
+  }
+  std::size_t limb_count() const { return limbs_.empty() ? 0 : limbs_.size() - 1; }
+  void refit_below(std::size_t limb, const PairFeatures& features, std::span<const char> changed) {
+    if (any_mark_now_) refit(at(limbs_[limb]), at(limbs_[limb + 1]), features, changed);
+  }
+  void end_refit(const PairFeatures& features, std::span<const char> changed) {
+    if (any_mark_now_ && !nodes_.empty()) refit(0, at(limbs_[0]), features, changed);
+  }
+
+ private:
+  static bool is_changed(const PairElement& e, std::span<const char> changed) {
+    return (changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]) != 0;
+  }
+
+  /// Nodes in_order_[begin, end), backwards: children come behind their parents there.
+  void refit(std::size_t begin, std::size_t end, const PairFeatures& features, std::span<const char> changed) {
     const bool some = !changed.empty();
-    const auto is_changed = [&](const PairElement& e) {
-      return static_cast<char>(changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]);
-    };
-    if (some) {
-      const bool was_marked = any_mark_ || marks_.size() != nodes_.size();
-      any_mark_ =
-          std::any_of(changed.begin() + first_vertex_, changed.begin() + end_vertex_, [](char c) { return c; }) &&
-          std::any_of(elements_.begin(), elements_.end(), is_changed);
-      if (was_marked) marks_.assign(nodes_.size(), 0);
-      if (!any_mark_) return;
-    }
-    for (std::size_t k = nodes_.size(); k-- > 0;) {
+    for (std::size_t i = end; i-- > begin;) {
+      const std::size_t k = at(in_order_[i]);
       PairNode& node = nodes_[k];
       const bool leaf = is_leaf(node);
       const std::size_t below = leaf ? leaf_element(node) : at(node.first_child);
       if (some) {
-        marks_[k] = leaf ? is_changed(elements_[below]) : static_cast<char>(marks_[below] | marks_[below + 1]);
+        marks_[k] = leaf ? static_cast<char>(is_changed(elements_[below], changed))
+                         : static_cast<char>(marks_[below] | marks_[below + 1]);
         if (marks_[k] == 0) continue;
       }
       const BoxLanes box = leaf ? features.box(elements_[below]) : lanes(nodes_[below]).join(lanes(nodes_[below + 1]));
@@ -105,12 +121,35 @@ class Tree {
     }
   }
 
- private:
+  /// The trunk, nodes with many below them, comes first in in_order_; then the limbs, which have no node in common.
+  void share_out() {
+    std::vector<std::size_t> below(nodes_.size(), 1);
+    for (std::size_t k = nodes_.size(); k-- > 0;)
+      if (!is_leaf(nodes_[k])) below[k] += below[at(nodes_[k].first_child)] + below[at(nodes_[k].first_child) + 1];
+    std::vector<int> limb(nodes_.size(), 0);  // 0: trunk
+    int count = 1;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      if (limb[k] == 0 && (below[k] <= k_limb || is_leaf(nodes_[k]))) limb[k] = count++;
+      if (is_leaf(nodes_[k]) || limb[k] == 0) continue;
+      limb[at(nodes_[k].first_child)] = limb[at(nodes_[k].first_child) + 1] = limb[k];
+    }
+    limbs_.assign(at(count) + 1, 0);
+    for (const int l : limb) ++limbs_[at(l) + 1];
+    for (std::size_t l = 1; l < limbs_.size(); ++l) limbs_[l] += limbs_[l - 1];
+    in_order_.resize(nodes_.size());
+    std::vector<int> next(limbs_.begin(), limbs_.end() - 1);
+    for (std::size_t k = 0; k < nodes_.size(); ++k) in_order_[at(next[at(limb[k])]++)] = static_cast<int>(k);
+    limbs_.erase(limbs_.begin());  // the trunk begins at 0
+  }
+
   std::vector<PairNode> nodes_;
   std::vector<PairElement> elements_;  ///< in the order of their leaves
   std::vector<char> marks_;
   NodePatches patches_;
+  std::vector<int> in_order_;  ///< nodes, as refit() takes them
+  std::vector<int> limbs_;     ///< where each limb begins in in_order_, and the end
   bool any_mark_ = false;
+  bool any_mark_now_ = true;               ///< in the refit at hand, or all
   int first_vertex_ = 0, end_vertex_ = 0;  ///< all vertices of the elements are in here
 };
 
@@ -137,10 +176,22 @@ struct PairFinder::Impl {
   std::vector<FoundPairs> found;
   PairSorter sort_vertex_face, sort_edge_edge;
 
+  void refit(std::span<const char> changed);
   void split_tasks(bool self);
   template <bool k_some>
   void run_task(const Task& task, const char* changed, FoundPairs& out) const;
 };
+
+void PairFinder::Impl::refit(std::span<const char> changed) {
+  parallel_tasks(2, [&](std::size_t task) { (task == 0 ? cloth : collider).begin_refit(changed); });
+  const std::size_t of_cloth = cloth.limb_count();
+  parallel_tasks(of_cloth + collider.limb_count(), [&](std::size_t limb) {
+    limb < of_cloth ? cloth.refit_below(limb, features, changed)
+                    : collider.refit_below(limb - of_cloth, features, changed);
+  });
+  cloth.end_refit(features, changed);
+  collider.end_refit(features, changed);
+}
 
 /// Tasks depend on trees and boxes only, never on threads. Every round replaces a task by those of its children.
 void PairFinder::Impl::split_tasks(bool self) {
@@ -247,10 +298,7 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.features.set_boxes(boxes, changed);
   if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes, m.patches_of);
   if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes, {});
-  parallel_tasks(2, [&](std::size_t task) {
-    Tree& tree = task == 0 ? m.cloth : m.collider;
-    tree.refit(features, changed);
-  });
+  m.refit(changed);
 
   m.split_tasks(self);
   if (m.found.size() < m.tasks.size()) m.found.resize(m.tasks.size());

@@ -6,11 +6,14 @@
 #include <numeric>
 #include <utility>
 
+#include "baker/core/parallel.h"
+
 namespace ft {
 namespace {
 
 constexpr int k_leaf_size = 4;
-constexpr double k_sliver = 1e-12;  ///< squared sine of an angle below which a triangle is answered as its edges
+constexpr std::size_t k_limb = 512;  ///< most nodes that are refitted as one
+constexpr double k_sliver = 1e-12;   ///< squared sine of an angle below which a triangle is answered as its edges
 /// Of a triangle's size: a ray may pass beside it by so much and hits it still, so that none slips through between two
 /// [1].
 constexpr double k_edge = 1e-9;
@@ -98,6 +101,39 @@ TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Tria
   refit(positions, triangles);
 }
 
+std::vector<TriangleTree::PairTask> TriangleTree::pair_tasks(const TriangleTree& other, std::size_t wanted) const {
+  std::vector<PairTask> tasks, next;
+  if (empty() || other.empty()) return tasks;
+  tasks.push_back({0, &other == this ? -1 : 0});
+  for (bool more = true; more && tasks.size() < wanted; tasks.swap(next)) {
+    more = false;
+    next.clear();
+    for (const PairTask& task : tasks) {
+      const Node& m = nodes_[static_cast<std::size_t>(task.a)];
+      if (task.b < 0) {
+        if (m.count > 0) {
+          next.push_back(task);
+          continue;
+        }
+        next.insert(next.end(), {{task.a + 1, -1}, {m.first, -1}, {task.a + 1, m.first}});
+      } else {
+        const Node& n = other.nodes_[static_cast<std::size_t>(task.b)];
+        if (!m.box.overlaps(n.box)) continue;
+        if (m.count > 0 && n.count > 0) {
+          next.push_back(task);
+          continue;
+        }
+        if (descends(m, n))
+          next.insert(next.end(), {{task.a + 1, task.b}, {m.first, task.b}});
+        else
+          next.insert(next.end(), {{task.a, task.b + 1}, {task.a, n.first}});
+      }
+      more = true;
+    }
+  }
+  return tasks;
+}
+
 int TriangleTree::build(std::span<const Vec3> centres, int begin, int end) {
   const auto self = nodes_.size();
   nodes_.push_back({});
@@ -124,20 +160,33 @@ int TriangleTree::build(std::span<const Vec3> centres, int begin, int end) {
 }
 
 void TriangleTree::refit(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-  for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    if (node.count > 0) {
-      Box box;
-      for (int k = 0; k < node.count; ++k)
-        for (const int v : triangles[static_cast<std::size_t>(order_[static_cast<std::size_t>(node.first + k)])])
-          box.include(positions[static_cast<std::size_t>(v)]);
-      node.box = TreeBox::around(box.lo, box.hi);
-    } else {
-      const TreeBox &left = nodes_[n + 1].box, &right = nodes_[static_cast<std::size_t>(node.first)].box;
-      for (int k = 0; k < 3; ++k) {
-        node.box.lo[k] = std::min(left.lo[k], right.lo[k]);
-        node.box.hi[k] = std::max(left.hi[k], right.hi[k]);
-      }
+  // Children lie behind their parents, and what is below a node side by side: limbs, and the trunk that bears them.
+  std::vector<std::size_t> trunk, limbs;
+  for (std::size_t n = 0; n < nodes_.size();) {
+    const auto end = static_cast<std::size_t>(next_[n]);
+    const bool limb = end - n <= k_limb;
+    (limb ? limbs : trunk).push_back(n);
+    n = limb ? end : n + 1;
+  }
+  parallel_tasks(limbs.size(), [&](std::size_t i) {
+    for (auto n = static_cast<std::size_t>(next_[limbs[i]]); n-- > limbs[i];) refit_node(n, positions, triangles);
+  });
+  for (std::size_t i = trunk.size(); i-- > 0;) refit_node(trunk[i], positions, triangles);
+}
+
+void TriangleTree::refit_node(std::size_t n, std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  Node& node = nodes_[n];
+  if (node.count > 0) {
+    Box box;
+    for (int k = 0; k < node.count; ++k)
+      for (const int v : triangles[static_cast<std::size_t>(order_[static_cast<std::size_t>(node.first + k)])])
+        box.include(positions[static_cast<std::size_t>(v)]);
+    node.box = TreeBox::around(box.lo, box.hi);
+  } else {
+    const TreeBox &left = nodes_[n + 1].box, &right = nodes_[static_cast<std::size_t>(node.first)].box;
+    for (int k = 0; k < 3; ++k) {
+      node.box.lo[k] = std::min(left.lo[k], right.lo[k]);
+      node.box.hi[k] = std::max(left.hi[k], right.hi[k]);
     }
   }
 }

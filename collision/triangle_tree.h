@@ -92,15 +92,20 @@ class TriangleTree {
       ++i;
     }
   }
-  /// Calls visit(i, j) for triangles of overlapping leaves of two trees.
+  /// A share of the search for pairs of two trees, or of one with itself: two nodes, or one against itself (b -1).
+  struct PairTask {
+    int a, b;
+  };
+  /// Shares that make up the whole, about as many as wanted or fewer; other may be this tree.
+  std::vector<PairTask> pair_tasks(const TriangleTree& other, std::size_t wanted) const;
+  /// Calls visit(i, j) for triangles of overlapping leaves; within one tree every unordered pair at most once, no
+  /// triangle with itself.
   template <class Visit>
-  void for_each_pair(const TriangleTree& other, Visit&& visit) const {
-    if (!empty() && !other.empty()) walk(0, other, 0, visit);
-  }
-  /// The same within one tree: every unordered pair at most once, no triangle with itself.
-  template <class Visit>
-  void for_each_own_pair(Visit&& visit) const {
-    if (!empty()) walk_own(0, visit);
+  void for_each_pair(const PairTask& task, const TriangleTree& other, Visit&& visit) const {
+    if (task.b < 0)
+      walk_own(task.a, visit);
+    else
+      walk(task.a, other, task.b, visit);
   }
 
   struct Hit {
@@ -143,6 +148,7 @@ class TriangleTree {
   }
 
  private:
+  void refit_node(std::size_t n, std::span<const Vec3> positions, std::span<const Triangle> triangles);
   static bool meets(const TreeBox& box, const Vec3& origin, const Vec3& direction, double length);
   int build(std::span<const Vec3> centres, int begin, int end);
   template <class Visit>
@@ -154,7 +160,7 @@ class TriangleTree {
       for (int i = 0; i < m.count; ++i)
         for (int j = 0; j < n.count; ++j)
           visit(order_[static_cast<std::size_t>(m.first + i)], other.order_[static_cast<std::size_t>(n.first + j)]);
-    } else if (n.count > 0 || (m.count == 0 && extent(m.box) >= extent(n.box))) {
+    } else if (descends(m, n)) {
       walk(a + 1, other, b, visit);
       walk(m.first, other, b, visit);
     } else {
@@ -174,6 +180,10 @@ class TriangleTree {
     walk_own(a + 1, visit);
     walk_own(m.first, visit);
     walk(a + 1, *this, m.first, visit);
+  }
+  /// Whether a walk goes on with m's children; else with n's.
+  static bool descends(const Node& m, const Node& n) {
+    return n.count > 0 || (m.count == 0 && extent(m.box) >= extent(n.box));
   }
   static float extent(const TreeBox& b) { return (b.hi[0] - b.lo[0]) + (b.hi[1] - b.lo[1]) + (b.hi[2] - b.lo[2]); }
 

@@ -32,9 +32,10 @@ StrainSummary summary(std::vector<double> strains) {
   double sum = 0;
   for (const double s : strains) sum += s;
   out.mean = sum / static_cast<double>(strains.size());
-  std::sort(strains.begin(), strains.end());
-  out.max = strains.back();
-  out.p99 = strains[strains.size() * 99 / 100];
+  out.max = *std::max_element(strains.begin(), strains.end());
+  const auto p99 = strains.begin() + static_cast<std::ptrdiff_t>(strains.size() * 99 / 100);
+  std::nth_element(strains.begin(), p99, strains.end());
+  out.p99 = *p99;
   return out;
 }
 

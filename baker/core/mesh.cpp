@@ -1,6 +1,7 @@
 #include "baker/core/mesh.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace ft {
 
@@ -48,6 +49,17 @@ std::vector<Edge> unique_edges(std::span<const Triangle> triangles) {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
+}
+
+Adjacency vertex_neighbours(std::size_t vertex_count, std::span<const Edge> edges) {
+  std::vector<std::array<int, 2>> both;
+  for (const Edge& e : edges) both.insert(both.end(), {{e[0], e[1]}, {e[1], e[0]}});
+  std::sort(both.begin(), both.end());
+  Adjacency out;
+  out.start.assign(vertex_count + 1, 0);
+  for (const auto& b : both) ++out.start[at(b[0]) + 1], out.items.push_back(b[1]);
+  std::partial_sum(out.start.begin(), out.start.end(), out.start.begin());
+  return out;
 }
 
 Adjacency vertex_triangles(int vertex_count, std::span<const Triangle> triangles) {

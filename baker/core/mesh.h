@@ -62,6 +62,8 @@ struct Adjacency {
   int row_count() const { return static_cast<int>(start.size()) - 1; }
 };
 
+/// Row i lists the vertices that an edge joins to vertex i.
+Adjacency vertex_neighbours(std::size_t vertex_count, std::span<const Edge> edges);
 /// Row i lists the triangles around vertex i.
 Adjacency vertex_triangles(int vertex_count, std::span<const Triangle> triangles);
 

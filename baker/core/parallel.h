@@ -2,6 +2,7 @@
 // Everything parallel in the program goes through here (TBB underneath).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -62,6 +63,16 @@ T parallel_sum(std::size_t count, std::size_t block_size, T zero, Body&& body) {
   T total = zero;
   for (const T& p : partial) total = total + p;
   return total;
+}
+
+/// Largest of zero and of body(begin, end) per block.
+template <class T, class Body>
+T parallel_max(std::size_t count, std::size_t block_size, T zero, Body&& body) {
+  std::vector<T> partial(block_count(count, block_size), zero);
+  parallel_for(count, block_size,
+               [&](std::size_t begin, std::size_t end) { partial[begin / block_size] = body(begin, end); });
+  for (const T& p : partial) zero = std::max(zero, p);
+  return zero;
 }
 
 /// Runs independent tasks, task(i) for i in [0, count).

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/core/parallel.h"
 #include "solvers/cloth/candidates.h"
 
 namespace ft {
 namespace {
 
+constexpr std::size_t k_block = 2048;  ///< of a loop over vertices
 /// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
@@ -136,12 +138,14 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     std::copy(cloth.x.begin(), cloth.x.end(), piece.start.begin());
     piece.body_motion.resize(nb);
     s.end.resize(nc + nb);
-    for (std::size_t i = 0; i < nb; ++i) {
-      const Vec3 motion = in.body_t1[i] - in.body_t0[i];
-      piece.start[nc + i] = in.body_t0[i] + done * motion;
-      s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
-      piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
-    }
+    parallel_for(nb, k_block, [&](std::size_t begin, std::size_t stop) {
+      for (std::size_t i = begin; i < stop; ++i) {
+        const Vec3 motion = in.body_t1[i] - in.body_t0[i];
+        piece.start[nc + i] = in.body_t0[i] + done * motion;
+        s.end[nc + i] = end >= 1 ? in.body_t1[i] : (in.body_t0[i] + end * motion).eval();
+        piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
+      }
+    });
     double free = plan(cloth, h);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {

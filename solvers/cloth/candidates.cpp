@@ -10,7 +10,7 @@
 namespace ft {
 namespace {
 
-constexpr std::size_t k_block = 2048;
+constexpr std::size_t k_block = 512;
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 
 // Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity
@@ -40,6 +40,15 @@ double largest(std::span<const double> values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
+Vec3 mean_of(std::span<const Vec3> values) {
+  const Vec3 sum = parallel_sum(values.size(), k_block, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
+    Vec3 own(0, 0, 0);
+    for (std::size_t i = begin; i < end; ++i) own += values[i];
+    return own;
+  });
+  return sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+}
+
 std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
   return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
 }
@@ -50,7 +59,8 @@ Candidates::Candidates(const ClothModel& model)
     : model_(model),
       finder_(model.vertex_count(), model.triangles, model.collider ? model.collider->vertex_count() : 0,
               shifted_triangles(model)),
-      patches_(model.contact.rest, model.triangles, k_patch_reach * largest(model.contact.self_radius)) {
+      patches_(model.contact.rest, model.triangles, k_patch_reach * largest(model.contact.self_radius)),
+      neighbours_(vertex_neighbours(at(model.vertex_count()), model.rest_edges.edges)) {
   for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
   self_radius_ = largest(model.contact.self_radius);
   finder_.set_patches(patches_.members());
@@ -88,30 +98,38 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
   near_body_.vertex_face.clear();
   fastest_ = 0;
   if (nb == 0) return;
-  Vec3 mean = Vec3::Zero();
+  const Vec3 mean = h * mean_of(cloth.v);
   Box box = bounds(cloth.x);
-  for (std::size_t i = 0; i < nc; ++i) {
-    mean += cloth.v[i] * (h / static_cast<double>(nc));
-    box.include((cloth.x[i] + h * cloth.v[i]).eval());
-  }
+  for (std::size_t i = 0; i < nc; ++i) box.include((cloth.x[i] + h * cloth.v[i]).eval());
   box.inflate(2 * radius_);
-  for (std::size_t i = 0; i < nb; ++i) {
-    Box swept;
-    swept.include(piece.start[nc + i]);
-    swept.include((piece.start[nc + i] + piece.body_motion[i]).eval());
-    if (swept.overlaps(box)) fastest_ = std::max(fastest_, (piece.body_motion[i] - mean).norm());
-  }
+  const auto way_of = [&](std::size_t i) { return (piece.body_motion[i] - mean).norm(); };
+  fastest_ = parallel_max(nb, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+    double fastest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      Box swept;
+      swept.include(piece.start[nc + i]);
+      swept.include((piece.start[nc + i] + piece.body_motion[i]).eval());
+      if (swept.overlaps(box)) fastest = std::max(fastest, way_of(i));
+    }
+    return fastest;
+  });
   range_ = 2 * radius_ + std::min(fastest_, k_farthest_range);
   boxes_.resize(nc + nb);
   // A surface matters from as far away as it comes itself; what stands still with the cloth only where it is near.
-  for (std::size_t i = 0; i < nc; ++i) boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], radius_);
-  for (std::size_t i = 0; i < nb; ++i) {
-    const double way = std::min((piece.body_motion[i] - mean).norm(), k_farthest_range);
-    boxes_[nc + i] = VertexBox::swept(piece.start[nc + i], piece.start[nc + i], radius_ + way);
-  }
+  parallel_for(nc + nb, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double way = i < nc ? 0 : std::min(way_of(i - nc), k_farthest_range);
+      boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], radius_ + way);
+    }
+  });
   finder_.find_vertex_face(boxes_, false, found_);
-  for (const Stencil& stencil : found_.vertex_face)  // cloth with the body only, either way round
-    if (counts(cloth, PairKind::k_vertex_face, stencil)) near_body_.vertex_face.push_back(stencil);
+  const std::vector<Stencil>& found = found_.vertex_face;  // cloth with the body only, either way round
+  counted_.resize(found.size());
+  parallel_for(found.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) counted_[i] = counts(cloth, PairKind::k_vertex_face, found[i]) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (counted_[i] != 0) near_body_.vertex_face.push_back(found[i]);
 }
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
@@ -125,7 +143,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   input.x = piece.start;
   input.body_motion = piece.body_motion;
   input.inertia = inertia_;
-  input.edges = model_.rest_edges.edges;
+  input.neighbours = &neighbours_;
   input.pairs = &near_body_;
   input.part_of_body_vertex = model_.collider->part_of_vertex();
   input.range = range_;
@@ -159,7 +177,9 @@ void Candidates::begin_flat(const ClothMotion& cloth, const PieceMotion& piece) 
   lost_.clear();
   carried_.resize(cloth.x.size());
   for (const std::vector<Vec3>* way : {&piece.carry, &piece.centre}) {
-    for (std::size_t i = 0; i < carried_.size(); ++i) carried_[i] = cloth.x[i] + (*way)[i];
+    parallel_for(carried_.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) carried_[i] = cloth.x[i] + (*way)[i];
+    });
     patches_.keep(carried_, true, lost_);
   }
 }
@@ -174,8 +194,7 @@ void Candidates::mark_lost() {
 double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   h_ = h;
-  frame_.setZero();
-  for (std::size_t i = 0; i < nc; ++i) frame_ += piece.carry[i] / static_cast<double>(nc);
+  frame_ = mean_of(piece.carry);
   piece.slack.resize(nc);
   piece.centre.resize(nc + nb);
   boxes_.resize(nc + nb);

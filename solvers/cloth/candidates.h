@@ -76,6 +76,7 @@ class Candidates {
   const ClothModel& model_;
   PairFinder finder_;
   FlatPatches patches_;
+  Adjacency neighbours_;  ///< of cloth vertices along edges
   double radius_ = 1e-3, self_radius_ = 0;
   bool any_self_ = false;
 
@@ -88,6 +89,7 @@ class Candidates {
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;
   std::vector<Vec3> inertia_;
+  std::vector<char> counted_;
   std::vector<double> earliest_;
   struct Kept {
     std::vector<Stencil> pairs, blocked;

@@ -10,7 +10,8 @@
 namespace ft {
 namespace {
 
-constexpr std::size_t k_block = 4096;
+constexpr std::size_t k_block = 2048;    ///< pairs
+constexpr std::size_t k_vertices = 256;  ///< per block of a loop
 
 struct Pull {
   std::array<int, 4> vertex;
@@ -64,56 +65,94 @@ std::vector<Pull> find_pulls(const CarryInput& in) {
   return pulls;
 }
 
+/// Which pulls have hold of each cloth vertex, in their order.
+struct Holds {
+  struct Hold {
+    int pull, corner;
+  };
+  std::vector<int> start;
+  std::vector<Hold> items;
+
+  Holds(std::span<const Pull> pulls, int vertex_count) : start(at(vertex_count) + 1, 0) {
+    const auto each = [&](auto&& visit) {
+      for (int p = 0; p < static_cast<int>(pulls.size()); ++p)
+        for (int k = 0; k < 4; ++k)
+          if (const int v = pulls[at(p)].vertex[at(k)]; v < vertex_count) visit(v, Hold{p, k});
+    };
+    each([&](int v, const Hold&) { ++start[at(v) + 1]; });
+    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+    items.resize(at(start.back()));
+    std::vector<int> next(start.begin(), start.end() - 1);
+    each([&](int v, const Hold& hold) { items[at(next[at(v)]++)] = hold; });
+  }
+  std::span<const Hold> of(std::size_t v) const { return {items.data() + start[v], items.data() + start[v + 1]}; }
+};
+
+/// Inverses of the diagonal blocks. l1-Jacobi: they carry the absolute row sum, so that shared contacts cannot make the
+/// sweeps diverge.
+std::vector<Mat3> inverse_blocks(const CarryInput& in, std::span<const Pull> pulls, const Holds& holds, double g) {
+  const auto row_sum = [&](const Pull& p) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (p.vertex[k] < in.cloth_vertex_count) sum += std::abs(p.weight[k]);
+    return sum;
+  };
+  std::vector<Mat3> out(at(in.cloth_vertex_count));
+  parallel_for(out.size(), k_vertices, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto degree = static_cast<double>(in.neighbours->row(static_cast<int>(i)).size());
+      const double free = g * (1 + 8 * degree);
+      Mat3 block = Mat3::Identity() * free;
+      for (const Holds::Hold& hold : holds.of(i)) {
+        const Pull& p = pulls[at(hold.pull)];
+        block += (p.strength * std::abs(p.weight[at(hold.corner)]) * row_sum(p)) * p.normal * p.normal.transpose();
+      }
+      out[i] = holds.of(i).empty() ? Mat3(Mat3::Identity() / free) : Mat3(block.inverse());
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 void carry_field(const CarryInput& in, std::span<Vec3> carry) {
   const int n = in.cloth_vertex_count;
   const double g = 1.0 / (in.range * in.range);
   const std::vector<Pull> pulls = find_pulls(in);
+  const Holds holds(pulls, n);
+  const std::vector<Mat3> inverse = inverse_blocks(in, pulls, holds, g);
+  std::vector<double> missing(pulls.size());
+  std::vector<Vec3> now(in.inertia.begin(), in.inertia.end()), next(at(n));
+  for (int sweep = 0; sweep < in.sweeps; ++sweep) {
+    parallel_for(pulls.size(), k_vertices, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Pull& p = pulls[i];
+        double here = 0;
+        for (std::size_t k = 0; k < 4; ++k)
+          if (p.vertex[k] < n) here += p.weight[k] * p.normal.dot(now[at(p.vertex[k])]);
+        missing[i] = p.strength * (p.target - here);
+      }
+    });
+    parallel_for(next.size(), k_vertices, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Vec3 residual = g * (in.inertia[i] - now[i]);
+        for (const int j : in.neighbours->row(static_cast<int>(i))) residual -= (4 * g) * (now[i] - now[at(j)]);
+        for (const Holds::Hold& hold : holds.of(i)) {
+          const Pull& p = pulls[at(hold.pull)];
+          residual += (missing[at(hold.pull)] * p.weight[at(hold.corner)]) * p.normal;
+        }
+        next[i] = now[i] + inverse[i] * residual;
+      }
+    });
+    now.swap(next);
+  }
   double fastest = 0;
   for (const Pull& p : pulls) fastest = std::max(fastest, p.body_motion);
-  double fastest_own = 0;
-  for (int i = 0; i < n; ++i) fastest_own = std::max(fastest_own, in.inertia[at(i)].norm());
-
-  std::vector<Mat3> block(at(n), Mat3::Identity() * g);
-  for (const Edge& e : in.edges) {
-    block[at(e[0])] += Mat3::Identity() * (8 * g);
-    block[at(e[1])] += Mat3::Identity() * (8 * g);
-  }
-  // l1-Jacobi: the diagonal carries the absolute row sum, so that shared contacts cannot make the sweeps diverge.
-  for (const Pull& p : pulls) {
-    double row = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      if (p.vertex[k] < n) row += std::abs(p.weight[k]);
-    for (std::size_t k = 0; k < 4; ++k)
-      if (p.vertex[k] < n)
-        block[at(p.vertex[k])] += (p.strength * std::abs(p.weight[k]) * row) * p.normal * p.normal.transpose();
-  }
-  for (Mat3& b : block) b = b.inverse().eval();
-
-  for (int i = 0; i < n; ++i) carry[at(i)] = in.inertia[at(i)];
-  std::vector<Vec3> residual(at(n));
-  for (int sweep = 0; sweep < in.sweeps; ++sweep) {
-    for (int i = 0; i < n; ++i) residual[at(i)] = g * (in.inertia[at(i)] - carry[at(i)]);
-    for (const Edge& e : in.edges) {
-      const Vec3 d = (4 * g) * (carry[at(e[0])] - carry[at(e[1])]);
-      residual[at(e[0])] -= d;
-      residual[at(e[1])] += d;
-    }
-    for (const Pull& p : pulls) {
-      double here = 0;
-      for (std::size_t k = 0; k < 4; ++k)
-        if (p.vertex[k] < n) here += p.weight[k] * p.normal.dot(carry[at(p.vertex[k])]);
-      const double missing = p.strength * (p.target - here);
-      for (std::size_t k = 0; k < 4; ++k)
-        if (p.vertex[k] < n) residual[at(p.vertex[k])] += (missing * p.weight[k]) * p.normal;
-    }
-    for (int i = 0; i < n; ++i) carry[at(i)] += block[at(i)] * residual[at(i)];
-  }
-  const double cap = 1.2 * std::max(fastest, fastest_own);
+  for (int i = 0; i < n; ++i) fastest = std::max(fastest, in.inertia[at(i)].norm());
+  const double cap = 1.2 * fastest;
   for (int i = 0; i < n; ++i) {
-    const double length = carry[at(i)].norm();
-    if (length > cap) carry[at(i)] *= cap / length;
+    const double length = now[at(i)].norm();
+    carry[at(i)] = length > cap ? Vec3(now[at(i)] * (cap / length)) : now[at(i)];
   }
 }
 

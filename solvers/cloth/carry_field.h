@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/mesh.h"
 #include "collision/contact_pairs.h"
 
 namespace ft {
@@ -18,7 +19,7 @@ struct CarryInput {
   std::span<const Vec3> x;                   ///< all positions at the start: cloth, then body [m]
   std::span<const Vec3> body_motion;         ///< per body vertex [m]
   std::span<const Vec3> inertia;             ///< beta h v per cloth vertex [m]
-  std::span<const Edge> edges;               ///< of the cloth
+  const Adjacency* neighbours = nullptr;     ///< of each cloth vertex along edges
   const ContactPairs* pairs = nullptr;       ///< cloth-body pairs at least within `range`
   std::span<const int> part_of_body_vertex;  ///< of each body vertex: the nearest face of each part pulls
   double range = 0;                          ///< R: 2 r + largest body motion [m]

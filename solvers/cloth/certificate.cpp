@@ -129,13 +129,12 @@ Certificate::Certificate(const ClothModel& model)
 int Certificate::certify(std::span<const Vec3> body, ClothMotion& m, FrameReport& report) {
   std::vector<Crossing> with_body, own;
   cloth_.move(m.x);
+  collider_.move(body);
   parallel_tasks(2, [&](std::size_t task) {
-    if (task == 0) {
-      collider_.move(body);
+    if (task == 0)
       with_body = crossings_between(cloth_, collider_);
-    } else {
+    else
       own = own_crossings(model_, crossings_within(cloth_));
-    }
   });
   int avoidable = 0;
   std::vector<char> touched;

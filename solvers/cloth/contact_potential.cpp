@@ -146,8 +146,14 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x) {
 
 void ContactPotential::update(std::span<const Vec3> x) {
   const std::size_t n = way_.size();
-  for (std::size_t i = 0; i < x_last_.size(); ++i) way_[i] += static_cast<float>((x[i] - x_last_[i]).norm());
-  x_last_.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n));
+  const bool first = x_last_.empty();
+  x_last_.resize(n);
+  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!first) way_[i] += static_cast<float>((x[i] - x_last_[i]).norm());
+      x_last_[i] = x[i];
+    }
+  });
   contacts_.clear();
   update_kind(true, x);
   update_kind(false, x);
@@ -257,8 +263,10 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
 void ContactPotential::near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) {
   const int n = model_.cloth_vertex_count;
   reach_.resize(at(n));
-  for (std::size_t i = 0; i < reach_.size(); ++i)
-    reach_[i] = static_cast<float>(k_truncation_reach * dx[i].norm() + floor) + 1e-6f;
+  parallel_for(reach_.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      reach_[i] = static_cast<float>(k_truncation_reach * dx[i].norm() + floor) + 1e-6f;
+  });
   const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, bool vertex_face,
                         std::vector<Stencil>& to) {
     const std::size_t blocks = block_count(list.size(), k_block);

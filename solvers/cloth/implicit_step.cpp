@@ -12,12 +12,14 @@
 namespace ft {
 namespace {
 
+constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 /// Distance that truncation always keeps [m].
 constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
 /// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still strains the edges
-/// by more than StepInput::settled_strain: cloth that is pulled tight or has edges of all lengths needs it.
+/// by more than StepInput::settled_strain, or had to be halved: cloth that is pulled tight or has edges of all lengths
+/// needs it, and cloth that falls along cloth would hang in the air.
 constexpr int k_most_times = 5;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
@@ -88,10 +90,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   for (const auto& energy : model_.energies) energy->begin_step(context);
 
   s.y.resize(n);
-  for (std::size_t i = 0; i < n; ++i)
-    s.y[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i]) +
-             bh * bh * model_.setup.gravity;
-  for (std::size_t i = 0; i < in.push.size(); ++i) s.y[i] += bh * bh * in.push[i];
+  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      s.y[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i]) +
+               bh * bh * model_.setup.gravity;
+      if (!in.push.empty()) s.y[i] += bh * bh * in.push[i];
+    }
+  });
   s.all.assign(in.all_begin.begin(), in.all_begin.end());
   s.trial = s.all;
   s.gradient.resize(n);
@@ -111,7 +116,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
   const auto potential_of_cloth = [&](std::span<const Vec3> x) {
-    double e = parallel_sum(n, 1024, 0.0, [&](std::size_t begin, std::size_t end) {
+    double e = parallel_sum(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i) sum += model_.mass[i] * (x[i] - s.y[i]).squaredNorm();
       return sum;
@@ -138,12 +143,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     s.contact.lag_friction();
     s.contact.mark_touching(s.touches);
     const std::span<const Vec3> x(s.all.data(), n);
-    parallel_for(n, 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) s.gradient[i] = (model_.mass[i] * inertia) * (x[i] - s.y[i]);
-    });
     BlockMatrix& hessian = s.system.begin();
-    for (std::size_t i = 0; i < n; ++i)
-      hessian.blocks[at(model_.pattern.diagonal[i])].diagonal().array() += static_cast<float>(model_.mass[i] * inertia);
+    parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const double m = model_.mass[i] * inertia;
+        s.gradient[i] = m * (x[i] - s.y[i]);
+        hessian.blocks[at(model_.pattern.diagonal[i])].diagonal().array() += static_cast<float>(m);
+      }
+    });
     for (const auto& energy : model_.energies) {
       energy->add_gradient(x, s.gradient);
       energy->add_hessian(x, hessian);
@@ -175,27 +182,34 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     for (Vec3& d : s.direction)
       if (!d.allFinite()) d.setZero(), result.finite = false;
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
-    double most_missing = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      s.missing[i] = std::max(0.0, (s.all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
-      most_missing = std::max(most_missing, s.missing[i]);
-    }
+    const double most_missing = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+      double most = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        s.missing[i] = std::max(0.0, (s.all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
+        most = std::max(most, s.missing[i]);
+      }
+      return most;
+    });
     if (in.more_room && most_missing > in.enough_room) {
       result.seconds_contact += watch.lap();
       in.more_room(s.missing);
       watch.lap();
       look_again(in);
     }
-    for (std::size_t i = 0; i < n; ++i)
-      s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
+    parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
+    });
     for (bool complete = false; !complete;) {
       s.contact.near_pairs(s.direction, k_floor, s.near);
       s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack}, s.common);
       truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
-      for (std::size_t i = 0; i < n; ++i) {
-        s.cut[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
-        s.trial[i] = s.all[i] + s.cut[i];
-      }
+      parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          s.cut[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
+          s.trial[i] = s.all[i] + s.cut[i];
+        }
+      });
       if (!in.pairs_suffice) break;
       result.seconds_contact += watch.lap();
       complete = in.pairs_suffice(cloth(s.trial));
@@ -205,25 +219,28 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     s.direction.swap(s.cut);
 
     double factor = 1, of_trial = 0;
-    bool accepted = false, finite = true;
+    bool accepted = false, finite = true, whole = true;
     for (int halving = 0; halving <= k_most_halvings && !accepted; ++halving, factor *= 0.5) {
-      double step = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 d = factor * s.direction[i];
-        s.trial[i] = s.all[i] + d;
-        step = std::max(step, d.norm());
-      }
+      result.last_move = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+        double most = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Vec3 d = factor * s.direction[i];
+          s.trial[i] = s.all[i] + d;
+          most = std::max(most, d.norm());
+        }
+        return most;
+      });
       s.contact.update(s.trial);
       of_trial = potential_of_cloth(cloth(s.trial));
       const double after = of_trial + s.contact.value(s.trial);
       finite = std::isfinite(after);
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
-      if (!accepted) ++result.backtracks;
-      result.last_move = step;
+      if (!accepted) ++result.backtracks, whole = false;
     }
-    settled =
-        !finite || result.last_move < k_still * smallest_radius ||
-        (iteration + 1 >= in.newton_iterations && strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain);
+    // A halved step is small because it was halved, and settles nothing.
+    settled = !finite || result.last_move < k_still * smallest_radius ||
+              (iteration + 1 >= in.newton_iterations && whole &&
+               strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain);
     if (finite) {
       std::copy_n(s.trial.begin(), n, s.all.begin());
       of_cloth = of_trial;

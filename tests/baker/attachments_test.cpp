@@ -66,7 +66,7 @@ TEST_F(Buttoned, A_vest_hangs_on_its_buttons_is_opened_from_one_end_and_falls) {
   const auto half = gaps(8);
   for (int i = 4; i < k_row; ++i) EXPECT_LT(half[at(i)], k_gap + 1e-3) << i;
   EXPECT_GT(gaps(12)[0], 2 * k_gap);  // it hangs on its neighbours at first; 60 mm where Newton converges
-  for (const double gap : gaps(16)) EXPECT_GT(gap, 0.05);
+  for (const double gap : gaps(16)) EXPECT_GT(gap, 0.1);  // 180 to 320 mm where Newton converges
   const auto judged = judge_caches(scene_.folder().path);
   ASSERT_TRUE(judged) << judged.error().text();
   for (const FrameReport& frame : judged->frames) EXPECT_EQ(frame.crossings_self + frame.crossings_body, 0);

@@ -1,7 +1,7 @@
 // Linear solvers on the systems of a cloth step: a square metre of cotton, two corners held, sagging and wrinkled, 8
 // substeps per frame at 24 fps. Prints for each size and tolerance the iterations and the time of a solve, set-up of
 // the preconditioner included.
-//   linear_bench [threads]
+//   linear_bench [threads [cells]]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
