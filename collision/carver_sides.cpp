@@ -3,7 +3,6 @@
 
 #include "baker/core/parallel.h"
 #include "collision/carver.h"
-#include "collision/nearby_leaves.h"
 
 namespace ft {
 
@@ -69,13 +68,13 @@ void Carver::resolve_unknown(const Carving& carving, const Opponent& opponent, c
 
 /// Sides and contacts of one cluster of vertices [begin, end) with respect to one opponent.
 void Carver::look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin,
-                         std::size_t end, std::vector<Side>& side) const {
+                         std::size_t end, NearbyLeaves& leaves, std::vector<Side>& side) const {
   const Yielding& part = carving.part;
   Box box;
   for (std::size_t i = begin; i < end; ++i) box.include(scratch.x[at(part.vertices[i])]);
   box.inflate(near);
   const TreeBox cluster = TreeBox::around(box.lo, box.hi);
-  NearbyLeaves leaves(0.5 * (box.lo + box.hi));
+  leaves.begin(0.5 * (box.lo + box.hi));
   bool in_box = false;
   for (const int other : opponent.parts) {
     const TriangleTree& tree = scratch.trees[at(other)];
@@ -113,8 +112,9 @@ void Carver::find_active(Carving& carving, const Scratch& scratch) const {
   std::vector<Side> side(count);
   for (const Opponent& opponent : carving.opponents) {
     parallel_for(count, k_carve_block, [&](std::size_t begin, std::size_t end) {
+      NearbyLeaves leaves;
       for (std::size_t i = begin; i < end; i += k_cluster)
-        look_around(carving, opponent, scratch, i, std::min(end, i + k_cluster), side);
+        look_around(carving, opponent, scratch, i, std::min(end, i + k_cluster), leaves, side);
     });
     if (std::find(side.begin(), side.end(), Side::k_unknown) == side.end()) continue;
     resolve_unknown(carving, opponent, scratch, side);

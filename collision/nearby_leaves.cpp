@@ -11,6 +11,12 @@ constexpr float k_rounding = 2e-6f;
 
 }  // namespace
 
+void NearbyLeaves::begin(const Vec3& centre) {
+  centre_ = centre;
+  for (std::vector<float>* side : {&lo_[0], &lo_[1], &lo_[2], &hi_[0], &hi_[1], &hi_[2]}) side->clear();
+  leaves_.clear();
+}
+
 void NearbyLeaves::add(const TriangleTree& tree, const TriangleTree::Node& leaf) {
   for (int k = 0; k < 3; ++k) {
     lo_[k].push_back(static_cast<float>(leaf.box.lo[k] - centre_[k]) - k_rounding);

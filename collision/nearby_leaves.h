@@ -11,16 +11,16 @@ namespace ft {
 
 class NearbyLeaves {
  public:
-  /// centre: of the points that will be asked for; boxes are kept relative to it, in single precision.
-  explicit NearbyLeaves(const Vec3& centre) : centre_(centre) {}
-
+  /// Forgets all leaves. centre: of the points that will be asked for; boxes are kept relative to it, in single
+  /// precision.
+  void begin(const Vec3& centre);
   void add(const TriangleTree& tree, const TriangleTree::Node& leaf);
   /// The closest triangle of all leaves no farther than reach [m]; ties go to the lowest triangle.
   TriangleTree::Hit closest(const Vec3& p, double reach, std::span<const Vec3> positions,
                             std::span<const Triangle> triangles);
 
  private:
-  Vec3 centre_;
+  Vec3 centre_ = Vec3::Zero();
   std::vector<float> lo_[3], hi_[3];
   std::vector<float> distance2_;
   std::vector<std::pair<const TriangleTree*, const TriangleTree::Node*>> leaves_;

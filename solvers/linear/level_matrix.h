@@ -62,8 +62,8 @@ class LevelMatrix {
 };
 
 inline Vec4f LevelMatrix::row_product(std::size_t row, const Vec4f* x) const {
-  using Four = float __attribute__((vector_size(16)));
-  using Eight = float __attribute__((vector_size(32)));
+  using Four = float __attribute__((vector_size(16), may_alias));
+  using Eight = float __attribute__((vector_size(32), may_alias));
   const Pair* pair = pairs_.data() + first_pair_[row];
   const Pair* const end = pairs_.data() + first_pair_[row + 1];
   const int* column = column_.data() + 2 * first_pair_[row];

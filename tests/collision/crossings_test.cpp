@@ -206,6 +206,16 @@ std::vector<Crossing> slowly_within(const Soup& s) {
   return out;
 }
 
+TEST(Crossings, Large_soups_are_searched_in_shares_that_make_up_the_whole) {
+  Dice dice{15};
+  const Soup a = soup(dice, 0, 600, 0, 0.15), b = soup(dice, 0, 500, 0, 0.15);
+  const auto between = crossings_between(a.x, a.t, b.x, b.t);
+  EXPECT_EQ(between, slowly_between(a, b));
+  const auto within = crossings_within(a.x, a.t);
+  EXPECT_EQ(within, slowly_within(a));
+  EXPECT_GT(std::min(between.size(), within.size()), 50u);
+}
+
 TEST(Crossings, Trees_find_what_all_pairs_find) {
   Dice dice{14};
   std::size_t found = 0;

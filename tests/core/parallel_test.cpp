@@ -26,6 +26,19 @@ TEST(Parallel, Sum_has_the_same_bits_for_any_thread_count) {
   }
 }
 
+TEST(Parallel, Maximum_is_that_of_all_blocks_and_at_least_zero) {
+  for (const std::size_t largest : {0, 9, 10, 500, 999}) {
+    const auto of = [&](double sign) {
+      return parallel_max(std::size_t{1000}, 10, 0.0, [&](std::size_t begin, std::size_t end) {
+        return begin <= largest && largest < end ? sign * 7 : -1.0;
+      });
+    };
+    EXPECT_EQ(of(1), 7);
+    EXPECT_EQ(of(-1), 0);
+  }
+  EXPECT_EQ(parallel_max(std::size_t{0}, 10, 3, [](std::size_t, std::size_t) { return 5; }), 3);
+}
+
 TEST(Parallel, Loop_visits_every_index_once) {
   std::vector<int> seen(1001, 0);
   parallel_for(seen.size(), 10, [&](std::size_t begin, std::size_t end) {

@@ -7,6 +7,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "solvers/linear/interpolation.h"
+#include "solvers/linear/level_matrix.h"
 #include "solvers/linear/linear_system.h"
 
 namespace ft {
@@ -104,6 +105,40 @@ std::vector<PairTerm> contacts(const Sheet& sheet) {
     terms.push_back(t);
   }
   return terms;
+}
+
+TEST(LevelMatrix, Multiplies_rows_of_even_and_odd_length) {
+  std::vector<std::array<int, 4>> springs;
+  for (int i = 1; i < 12; ++i)
+    for (int j = 0; j < i; j += 1 + i % 3) springs.push_back({i, j, -1, -1});
+  const BlockPattern pattern = make_pattern(12, std::array{springs});
+  LevelMatrix matrix;
+  matrix.build(pattern);
+  Eigen::MatrixXf dense = Eigen::MatrixXf::Zero(36, 36);
+  std::vector<Vec4f> x(12);
+  Eigen::VectorXf flat(36);
+  int odd = 0;
+  for (int i = 0; i < 12; ++i) {
+    odd += (pattern.row_start[at(i) + 1] - pattern.row_start[at(i)]) % 2;
+    x[at(i)] = Vec4f(float(noise(at(i), 90)), float(noise(at(i), 91)), float(noise(at(i), 92)), 0);
+    flat.segment<3>(3 * i) = x[at(i)].head<3>();
+    for (int k = pattern.row_start[at(i)]; k < pattern.row_start[at(i) + 1]; ++k) {
+      Mat3f block;
+      for (int c = 0; c < 9; ++c) block.data()[c] = float(noise(at(k), static_cast<std::uint64_t>(c)));
+      const int place = matrix.place(pattern, i, k);
+      matrix.set(place, block);
+      EXPECT_EQ(matrix.get(place), block);
+      dense.block<3, 3>(3 * i, 3 * pattern.column[at(k)]) = block;
+    }
+  }
+  EXPECT_GT(odd, 0);
+  EXPECT_LT(odd, 12);
+  const Eigen::VectorXf expected = dense * flat;
+  for (int i = 0; i < 12; ++i) {
+    const Vec4f row = matrix.row_product(at(i), x.data());
+    EXPECT_LT((row.head<3>() - expected.segment<3>(3 * i)).norm(), 1e-5f);
+    EXPECT_EQ(row[3], 0);
+  }
 }
 
 class Solves : public testing::TestWithParam<LinearSettings::Preconditioner> {};
