@@ -28,7 +28,6 @@ class LevelMatrix {
   /// Zero, with the places of pattern.
   void build(const BlockPattern& pattern);
 
-  int row_count() const { return static_cast<int>(first_pair_.size()) - 1; }
   /// Where the k-th block of the pattern is, which must be in this row.
   int place(const BlockPattern& pattern, int row, int k) const {
     return 2 * first_pair_[at(row)] + k - pattern.row_start[at(row)];
