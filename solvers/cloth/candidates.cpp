@@ -10,7 +10,7 @@
 namespace ft {
 namespace {
 
-constexpr std::size_t k_block = 512;
+constexpr std::size_t k_block = 512;       ///< of a loop over vertices or pairs
 constexpr double k_farthest_range = 0.05;  ///< body motion that the search for near surfaces covers at most [m]
 
 // Where the solve may put a vertex: a ball that holds both its carried place and where it would fly with its velocity

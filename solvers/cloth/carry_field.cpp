@@ -11,7 +11,7 @@ namespace ft {
 namespace {
 
 constexpr std::size_t k_block = 2048;    ///< pairs
-constexpr std::size_t k_vertices = 256;  ///< per block of a loop
+constexpr std::size_t k_vertices = 256;  ///< or pulls, per block of a loop
 
 struct Pull {
   std::array<int, 4> vertex;

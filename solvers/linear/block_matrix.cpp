@@ -8,7 +8,7 @@
 namespace ft {
 namespace {
 
-constexpr std::size_t k_block = 8192;
+constexpr std::size_t k_block = 8192;  ///< blocks of the matrix per block of a loop
 
 }  // namespace
 
