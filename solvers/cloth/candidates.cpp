@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/parallel.h"
 #include "collision/ccd_li2021.h"
@@ -23,6 +24,9 @@ constexpr double k_most_acceleration =
     2e-3;                              ///< that share is at most this [m]: what hit the cloth once seldom hits it twice
 constexpr double k_slack_body = 0.03;  ///< of the body's motion near the cloth: rubbing and the carry's own error
 constexpr double k_slack_least = 3e-4;  ///< m
+/// All but the share of the way is at most so many typical edges of the garment: pairs of fine cloth in folds grow with
+/// the cube of it, and whoever needs more asks for it.
+constexpr double k_slack_edges = 0.1;
 /// How far pairs are looked for, typically, in contact radii: patches of flat cloth are cut for that.
 constexpr double k_patch_reach = 1;
 
@@ -38,6 +42,14 @@ std::vector<Triangle> shifted_triangles(const ClothModel& model) {
 
 double largest(std::span<const double> values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+/// Infinite without any.
+double median(std::vector<double>& values) {
+  if (values.empty()) return std::numeric_limits<double>::infinity();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 Vec3 mean_of(std::span<const Vec3> values) {
@@ -65,6 +77,10 @@ Candidates::Candidates(const ClothModel& model)
   self_radius_ = largest(model.contact.self_radius);
   finder_.set_patches(patches_.members());
   finder_.set_self_margin(std::max(0.0, radius_ - self_radius_));
+  std::vector<std::vector<double>> lengths(model.setup.garments.size());
+  for (std::size_t k = 0; k < model.rest_edges.edges.size(); ++k)
+    lengths[at(model.garment_of(model.rest_edges.edges[k][0]))].push_back(model.rest_edges.lengths[k]);
+  for (std::vector<double>& of_garment : lengths) most_spare_.push_back(k_slack_edges * median(of_garment));
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
 
@@ -159,9 +175,10 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
   if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
   const Vec3 way = h_ * cloth.v[i] + acceleration - piece.carry[i];
   piece.centre[i] = piece.carry[i] + 0.5 * way;
-  piece.slack[i] = k_slack_way * way.norm() + k_slack_acceleration * std::min(pull, k_most_acceleration) +
-                   k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() +
-                   k_slack_body * std::min(fastest_, k_farthest_range) + k_slack_least;
+  const double spare = k_slack_acceleration * std::min(pull, k_most_acceleration) +
+                       k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() +
+                       k_slack_body * std::min(fastest_, k_farthest_range) + k_slack_least;
+  piece.slack[i] = k_slack_way * way.norm() + std::min(spare, most_spare_[at(model_.contact.garment[i])]);
   set_box(i, cloth, piece);
 }
 
@@ -184,13 +201,6 @@ void Candidates::begin_flat(const ClothMotion& cloth, const PieceMotion& piece) 
   }
 }
 
-/// Lost patches' vertices are changed_.
-void Candidates::mark_lost() {
-  for (const int patch : lost_)
-    for (const int t : patches_.members(patch))
-      for (const int v : model_.triangles[at(t)]) changed_[at(v)] = 1;
-}
-
 double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   h_ = h;
@@ -210,38 +220,36 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   });
   if (any_self_) begin_flat(cloth, piece);
   finder_.find(boxes_, any_self_, found_, patches_.flat());
+  runs_vertex_face_.begin();
+  runs_edge_edge_.begin();
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
   const double t =
-      filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face, blocked_.vertex_face);
+      filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face, &blocked_.vertex_face);
   return std::min(t,
-                  filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, blocked_.edge_edge));
+                  filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, &blocked_.edge_edge));
 }
 
-/// The pairs of changed_ vertices anew, all others as they are.
+/// The pairs of changed_ vertices anew, behind all others, which are as they were.
 double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
   finder_.find_changed(boxes_, any_self_, changed_, found_, patches_.flat());
   double t = 1;
-  const auto renew_kind = [&](PairKind kind, const std::vector<Stencil>& found, std::vector<Stencil>& pairs,
-                              std::vector<Stencil>& blocked) {
-    const auto is_changed = [&](const Stencil& s) {
-      return std::any_of(s.v.begin(), s.v.end(), [&](int v) { return changed_[at(v)] != 0; });
-    };
-    std::vector<Stencil> fresh, fresh_blocked, joined;
-    t = std::min(t, filter(kind, found, cloth, piece, fresh, fresh_blocked));
+  const auto is_changed = [&](const Stencil& s) {
+    return (changed_[at(s.v[0])] | changed_[at(s.v[1])] | changed_[at(s.v[2])] | changed_[at(s.v[3])]) != 0;
+  };
+  const auto renew_kind = [&](PairKind kind, const std::vector<Stencil>& found, PairRuns& runs,
+                              std::vector<Stencil>& pairs, std::vector<Stencil>& blocked) {
+    std::vector<Stencil> fresh_blocked, joined;
+    t = std::min(t, filter(kind, found, cloth, piece, fresh_, &fresh_blocked));
     std::erase_if(blocked, is_changed);
     for (const Stencil& s : blocked) t = std::min(t, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
-    const auto join = [&](std::vector<Stencil>& old, const std::vector<Stencil>& added) {
-      joined.clear();
-      std::merge(old.begin(), old.end(), added.begin(), added.end(), std::back_inserter(joined));
-      old.swap(joined);
-    };
-    std::erase_if(pairs, is_changed);
-    join(pairs, fresh);
-    join(blocked, fresh_blocked);
+    std::merge(blocked.begin(), blocked.end(), fresh_blocked.begin(), fresh_blocked.end(), std::back_inserter(joined));
+    blocked.swap(joined);
+    runs.erase_if(pairs, is_changed);
+    runs.add(fresh_, {}, pairs);
   };
-  renew_kind(PairKind::k_vertex_face, found_.vertex_face, pairs_.vertex_face, blocked_.vertex_face);
-  renew_kind(PairKind::k_edge_edge, found_.edge_edge, pairs_.edge_edge, blocked_.edge_edge);
+  renew_kind(PairKind::k_vertex_face, found_.vertex_face, runs_vertex_face_, pairs_.vertex_face, blocked_.vertex_face);
+  renew_kind(PairKind::k_edge_edge, found_.edge_edge, runs_edge_edge_, pairs_.edge_edge, blocked_.edge_edge);
   return t;
 }
 
@@ -271,37 +279,10 @@ double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
   return renew(cloth, piece);
 }
 
-void Candidates::grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece) {
-  changed_.assign(boxes_.size(), 0);
-  for (std::size_t i = 0; i < more.size(); ++i) {
-    if (!(more[i] > 0)) continue;
-    changed_[i] = 1;
-    piece.slack[i] += more[i];
-    set_box(i, cloth, piece);
-  }
-  renew_carried(cloth, piece);
-}
-
-bool Candidates::keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, const PieceMotion& piece) {
-  lost_.clear();
-  if (!any_self_ || patches_.keep(x, false, lost_)) return true;
-  changed_.assign(boxes_.size(), 0);
-  mark_lost();
-  renew_carried(cloth, piece);
-  return false;
-}
-
-/// renew() of a piece that is carried already: what was let pass stays so.
-void Candidates::renew_carried(const ClothMotion& cloth, const PieceMotion& piece) {
-  const ContactPairs let_pass = blocked_;  // none, unless there was no room: then release_blocked() has dropped them
-  renew(cloth, piece);
-  blocked_ = let_pass;
-  drop_blocked();
-}
-
-/// Keeps what can come nearer than the contact radius, and finds the first time of contact among it.
+/// Keeps what can come nearer than the contact radius. With `blocked` it finds what touches on its way there, and the
+/// first time of contact.
 double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth,
-                          const PieceMotion& piece, std::vector<Stencil>& kept, std::vector<Stencil>& blocked) {
+                          const PieceMotion& piece, std::vector<Stencil>& kept, std::vector<Stencil>* blocked) {
   const std::size_t blocks = block_count(found.size(), k_block);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
   if (kept_.size() < blocks) kept_.resize(blocks);
@@ -331,7 +312,7 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;
       mine.pairs.push_back(found[p]);
-      if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
+      if (blocked == nullptr || (g.distance * 0.9 > relative && g.distance > 1e-4)) continue;  // cannot meet
       const double touch = ccd_time(kind, x, d);
       if (touch < 1) mine.blocked.push_back(found[p]);
       first = std::min(first, touch);
@@ -339,11 +320,11 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
     earliest_[begin / k_block] = first;
   });
   kept.clear();
-  blocked.clear();
+  if (blocked != nullptr) blocked->clear();
   double t = 1;
   for (std::size_t b = 0; b < blocks; ++b) {
     kept.insert(kept.end(), kept_[b].pairs.begin(), kept_[b].pairs.end());
-    blocked.insert(blocked.end(), kept_[b].blocked.begin(), kept_[b].blocked.end());
+    if (blocked != nullptr) blocked->insert(blocked->end(), kept_[b].blocked.begin(), kept_[b].blocked.end());
     t = std::min(t, earliest_[b]);
   }
   return t;
@@ -357,13 +338,12 @@ bool Candidates::cloth_blocks_cloth() const {
 }
 
 void Candidates::drop_blocked() {
-  const auto drop = [](std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
+  const auto drop = [](PairRuns& runs, std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
     if (blocked.empty()) return;
-    std::erase_if(pairs,
-                  [&](const Stencil& stencil) { return std::binary_search(blocked.begin(), blocked.end(), stencil); });
+    runs.erase_if(pairs, [&](const Stencil& s) { return std::binary_search(blocked.begin(), blocked.end(), s); });
   };
-  drop(pairs_.vertex_face, blocked_.vertex_face);
-  drop(pairs_.edge_edge, blocked_.edge_edge);
+  drop(runs_vertex_face_, pairs_.vertex_face, blocked_.vertex_face);
+  drop(runs_edge_edge_, pairs_.edge_edge, blocked_.edge_edge);
 }
 
 }  // namespace ft

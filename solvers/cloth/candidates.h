@@ -9,6 +9,7 @@
 #include "collision/contact_pairs.h"
 #include "collision/flat_patches.h"
 #include "collision/pair_geometry.h"
+#include "collision/pair_runs.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/motion_zones.h"
 
@@ -37,16 +38,16 @@ class Candidates {
   /// After carry().
   double collect(const ClothMotion& cloth, double h, PieceMotion& piece);
   /// After a collect() or join_blocked() that gave less than 1: carries the cloth of the pairs that would touch as one,
-  /// brings pairs() up to it and returns the share anew.
+  /// brings pairs() up to it, no longer in order, and returns the share anew.
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
   /// Whether cloth is about to touch cloth, by the last collect() or join_blocked().
   bool cloth_blocks_cloth() const;
-  /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), for a piece that is
-  /// carried already. What release_blocked() has dropped stays out.
+  /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), behind those that are
+  /// there, for a piece that is carried already. What release_blocked() has dropped stays out.
   void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
   /// pairs() lacks those inside patches of cloth that are too flat to meet themselves. For a solve that is about to put
   /// the cloth at x (per cloth vertex [m], straight from where it was last kept): returns true where all are still flat
-  /// there; else it adds to pairs() what is needed now, and returns false.
+  /// there; else it adds what is needed now behind pairs(), and returns false.
   bool keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, const PieceMotion& piece);
   /// Takes out the pairs that collect() or join_blocked() last saw touch. Cloth that is joined between several of the
   /// collider's parts stays with the largest and is let through the others; else the vertices of the pairs are let
@@ -66,12 +67,12 @@ class Candidates {
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
   void begin_flat(const ClothMotion& cloth, const PieceMotion& piece);
   void mark_lost();
-  void renew_carried(const ClothMotion& cloth, const PieceMotion& piece);
+  void add_missing(const ClothMotion& cloth, const PieceMotion& piece);
   void drop_blocked();
   void join_zones(const PieceMotion& piece);
   std::vector<int> pinched_through() const;
   double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
-                std::vector<Stencil>& kept, std::vector<Stencil>& blocked);
+                std::vector<Stencil>& kept, std::vector<Stencil>* blocked);
 
   const ClothModel& model_;
   PairFinder finder_;
@@ -79,6 +80,7 @@ class Candidates {
   Adjacency neighbours_;  ///< of cloth vertices along edges
   double radius_ = 1e-3, self_radius_ = 0;
   bool any_self_ = false;
+  std::vector<double> most_spare_;  ///< per garment, of the slack that is not for the way [m]
 
   // Of the piece.
   double range_ = 0;           ///< of near_body_ [m]
@@ -88,6 +90,7 @@ class Candidates {
   std::vector<char> changed_;  ///< per vertex: what renew() has to look at
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;
+  PairRuns runs_vertex_face_, runs_edge_edge_;  ///< of pairs_
   std::vector<Vec3> inertia_;
   std::vector<char> counted_;
   std::vector<double> earliest_;
@@ -99,6 +102,7 @@ class Candidates {
   MotionZones zones_;
   std::vector<Vec3> carried_;
   std::vector<int> lost_;  ///< patches that are flat no longer
+  std::vector<Stencil> fresh_;
 };
 
 }  // namespace ft

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/check.h"
 #include "baker/core/parallel.h"
 
 namespace ft {
@@ -107,16 +108,17 @@ float ContactPotential::way_of(const std::array<int, 4>& v, bool vertex_face, bo
   return side[0] + side[1];
 }
 
-void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x) {
+/// The pairs from the first on.
+void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first) {
   const auto& list = vertex_face ? pairs_->vertex_face : pairs_->edge_edge;
   auto& state = vertex_face ? state_vf_ : state_ee_;
   const int n = model_.cloth_vertex_count;
-  const std::size_t blocks = block_count(list.size(), k_block);
+  const std::size_t count = list.size() - first, blocks = block_count(count, k_block);
   if (block_contacts_.size() < blocks) block_contacts_.resize(blocks);
-  parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
     auto& out = block_contacts_[begin / k_block];
     out.clear();
-    for (std::size_t p = begin; p < end; ++p) {
+    for (std::size_t p = first + begin; p < first + end; ++p) {
       const auto& v = list[p].v;
       PairState& s = state[p];
       const bool self = v[0] < n && v[3] < n;
@@ -155,13 +157,27 @@ void ContactPotential::update(std::span<const Vec3> x) {
     }
   });
   contacts_.clear();
-  update_kind(true, x);
-  update_kind(false, x);
+  update_kind(true, x, 0);
+  update_kind(false, x, 0);
+}
+
+void ContactPotential::extend(std::span<const Vec3> x) {
+  const std::size_t first_vf = state_vf_.size(), first_ee = state_ee_.size(), first_contact = contacts_.size();
+  CHECK(first_vf <= pairs_->vertex_face.size() && first_ee <= pairs_->edge_edge.size());
+  state_vf_.resize(pairs_->vertex_face.size(), {-1.f, 0.f});
+  state_ee_.resize(pairs_->edge_edge.size(), {-1.f, 0.f});
+  update_kind(true, x, first_vf);
+  update_kind(false, x, first_ee);
+  lag_friction_from(first_contact);
 }
 
 void ContactPotential::lag_friction() {
   lagged_.clear();
-  for (const Contact& c : contacts_) {
+  lag_friction_from(0);
+}
+
+void ContactPotential::lag_friction_from(std::size_t first) {
+  for (const Contact& c : std::span(contacts_).subspan(first)) {
     const double friction = friction_share_ * c.friction;
     if (friction <= 0) continue;
     const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);

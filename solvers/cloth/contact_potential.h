@@ -54,6 +54,9 @@ class ContactPotential {
   void update(std::span<const Vec3> x);
   /// Fixes normal forces for friction at the contacts of the last update.
   void lag_friction();
+  /// Takes up the pairs that have come behind those of begin(), at x, the positions of the last update and of
+  /// lag_friction().
+  void extend(std::span<const Vec3> x);
 
   double value(std::span<const Vec3> x) const;  ///< J, at the positions of the last update
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const;  ///< N, cloth vertices only
@@ -82,11 +85,12 @@ class ContactPotential {
   Vec3 friction_gradient(const Lagged& lagged, std::span<const Vec3> x, double eps) const;
   double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction,
                      double* area) const;
-  void update_kind(bool vertex_face, std::span<const Vec3> x);
+  void update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first);
+  void lag_friction_from(std::size_t first);
   float way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const;
 
   const ContactModel& model_;
-  const ContactPairs* pairs_ = nullptr;
+  const ContactPairs* pairs_ = nullptr;  ///< those that have a state are known
   std::span<const Vec3> x_start_;
   double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]

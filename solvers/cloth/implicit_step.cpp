@@ -194,7 +194,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.seconds_contact += watch.lap();
       in.more_room(s.missing);
       watch.lap();
-      look_again(in);
+      s.contact.extend(s.all);
     }
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -214,7 +214,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.seconds_contact += watch.lap();
       complete = in.pairs_suffice(cloth(s.trial));
       watch.lap();
-      if (!complete) look_again(in);
+      if (!complete) s.contact.extend(s.all);
     }
     s.direction.swap(s.cut);
 
@@ -259,14 +259,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   }
   result.finite = result.finite && all_finite(x_out);
   return result;
-}
-
-/// The pairs are others now, the cloth is where it was.
-void ImplicitStep::look_again(const StepInput& in) {
-  Scratch& s = *scratch_;
-  s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
-  s.contact.update(s.all);
-  s.contact.lag_friction();
 }
 
 /// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has

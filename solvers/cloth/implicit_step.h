@@ -32,11 +32,11 @@ struct StepInput {
   /// Root mean square of what an iteration may still change the edges' lengths by at the end, over their rest lengths.
   double settled_strain = 5e-3;
   /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m].
-  /// It may give more: slack and pairs are looked at again. May be empty.
+  /// It may give more: slack, and pairs behind those that are there, are looked at again. May be empty.
   std::function<void(std::span<const double> missing)> more_room;
   double enough_room = 0;  ///< m
   /// Called with where an iteration is about to put the cloth, straight from where it is [m]: true where `pairs` holds
-  /// all that can meet on the way. It may add to them and return false: the way is looked at again. May be empty.
+  /// all that can meet on the way. It may add behind them and return false: the way is looked at again. May be empty.
   std::function<bool(std::span<const Vec3> x)> pairs_suffice;
 };
 
@@ -58,7 +58,6 @@ class ImplicitStep {
   StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
 
  private:
-  void look_again(const StepInput& in);
   void measure_on_body(const StepInput& in, double inertia, StepResult& result);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;

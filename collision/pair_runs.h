@@ -1,0 +1,57 @@
+// A list of pairs that grows at its end: sorted runs, one behind the other, no pair twice. What is added costs a look
+// at the list and no copy of it, and whoever keeps something per pair keeps it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "baker/core/parallel.h"
+#include "collision/contact_pairs.h"
+
+namespace ft {
+
+/// Knows where the runs of a list begin, which is given to every call; all calls but begin() are about the same list.
+class PairRuns {
+ public:
+  /// The list is sorted, as one run.
+  void begin() { begins_.assign(1, 0); }
+
+  /// Appends as a run what of sorted `fresh` is neither in the list nor in sorted `but`.
+  void add(std::span<const Stencil> fresh, std::span<const Stencil> but, std::vector<Stencil>& list);
+
+  /// Drops the pairs for which drop(pair) is true. It is called from several threads, more than once per pair.
+  template <class Drop>
+  void erase_if(std::vector<Stencil>& list, Drop&& drop) {
+    const std::size_t blocks = block_count(list.size(), k_block);
+    place_.assign(blocks + 1, 0);
+    const auto kept = [&](std::size_t begin, std::size_t end) {
+      std::size_t count = 0;
+      for (std::size_t i = begin; i < end; ++i) count += drop(list[i]) ? 0 : 1;
+      return count;
+    };
+    parallel_for(list.size(), k_block,
+                 [&](std::size_t begin, std::size_t end) { place_[begin / k_block + 1] = kept(begin, end); });
+    for (std::size_t b = 0; b < blocks; ++b) place_[b + 1] += place_[b];
+    if (place_[blocks] == list.size()) return;
+    for (std::size_t& first : begins_)
+      first = place_[first / k_block] + kept(first / k_block * k_block, std::min(first, list.size()));
+    left_.resize(place_[blocks]);
+    parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      std::size_t to = place_[begin / k_block];
+      for (std::size_t i = begin; i < end; ++i)
+        if (!drop(list[i])) left_[to++] = list[i];
+    });
+    list.swap(left_);
+  }
+
+ private:
+  static constexpr std::size_t k_block = 4096;
+
+  std::vector<std::size_t> begins_{0};
+  // Scratch.
+  std::vector<std::size_t> place_;
+  std::vector<Stencil> left_;
+  std::vector<char> known_;
+};
+
+}  // namespace ft

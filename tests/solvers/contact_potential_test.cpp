@@ -1,0 +1,104 @@
+// Pairs that come while a solve is under way count as if they had been there from its start.
+#include "solvers/cloth/contact_potential.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "baker/core/random.h"
+
+namespace ft {
+namespace {
+
+constexpr int k_cloth = 20, k_all = 26;  ///< vertices
+
+Vec3 somewhere(std::uint64_t draw, std::uint64_t i, double size) {
+  const auto u = [&](std::uint64_t k) { return size * random_uniform({11, 0, draw, i}, k); };
+  return {u(0), u(1), u(2)};
+}
+
+struct Heap {
+  ContactModel model;
+  ContactPairs pairs;  ///< all vertices with faces, and edges, of consecutive vertices; none of the body with itself
+  std::vector<Vec3> start, moved, displacement;
+
+  Heap() {
+    model.cloth_vertex_count = k_cloth;
+    model.area.assign(k_cloth, 1e-4);
+    model.radius.assign(k_cloth, 3e-3);
+    model.self_radius.assign(k_cloth, 2e-3);
+    model.friction = model.self_friction = std::vector<double>(k_cloth, 0.3);
+    model.garment.assign(k_cloth, 0);
+    for (std::uint64_t i = 0; i < k_all; ++i) {
+      if (i < k_cloth) model.rest.push_back(somewhere(0, i, 1));
+      start.push_back(somewhere(1, i, 0.01));
+      moved.push_back(start.back() + (i < k_cloth ? somewhere(2, i, 5e-4) : Vec3::Zero().eval()));
+      if (i < k_cloth) displacement.push_back(somewhere(3, i, 5e-4));
+    }
+    for (int v = 0; v < k_all; ++v)
+      for (int f = 0; f + 2 < k_all; ++f)
+        if ((v < f || v > f + 2) && (v < k_cloth || f + 2 < k_cloth))
+          pairs.vertex_face.push_back({{v, f, f + 1, f + 2}});
+    for (int a = 0; a + 1 < k_all; ++a)
+      for (int b = a + 2; b + 1 < k_all; ++b)
+        if (a + 1 < k_cloth) pairs.edge_edge.push_back({{a, a + 1, b, b + 1}});
+  }
+};
+
+struct Outcome {
+  double value;
+  std::vector<Vec3> gradient;
+  std::vector<Stencil> near;
+};
+
+/// The last pairs come when all are at `moved`.
+Outcome walk(const Heap& heap, double come_late) {
+  ContactPairs pairs = heap.pairs, late;
+  const auto hold_back = [&](std::vector<Stencil>& list, std::vector<Stencil>& rest) {
+    const auto from = list.end() - static_cast<std::ptrdiff_t>(come_late * static_cast<double>(list.size()));
+    rest.assign(from, list.end());
+    list.erase(from, list.end());
+  };
+  hold_back(pairs.vertex_face, late.vertex_face);
+  hold_back(pairs.edge_edge, late.edge_edge);
+  ContactPotential contact(heap.model);
+  contact.begin(pairs, heap.start, 0.01);
+  contact.update(heap.start);
+  contact.lag_friction();
+  contact.update(heap.moved);
+  contact.lag_friction();
+  pairs.vertex_face.insert(pairs.vertex_face.end(), late.vertex_face.begin(), late.vertex_face.end());
+  pairs.edge_edge.insert(pairs.edge_edge.end(), late.edge_edge.begin(), late.edge_edge.end());
+  contact.extend(heap.moved);
+  const std::size_t at_once = contact.contacts().size();
+  EXPECT_GT(at_once, 10u);
+
+  ContactPairs near;
+  contact.near_pairs(heap.displacement, 1e-5, near);
+  Outcome out;
+  out.near = near.vertex_face;
+  out.near.insert(out.near.end(), near.edge_edge.begin(), near.edge_edge.end());
+  std::sort(out.near.begin(), out.near.end());
+  std::vector<Vec3> next = heap.moved;
+  for (std::size_t i = 0; i < k_cloth; ++i) next[i] += heap.displacement[i];
+  contact.update(next);
+  out.value = contact.value(next);
+  out.gradient.assign(k_cloth, Vec3::Zero());
+  contact.add_gradient(next, out.gradient);
+  return out;
+}
+
+TEST(ContactPotential, takes_up_pairs_that_come_late_as_if_they_had_been_there) {
+  const Heap heap;
+  const Outcome all = walk(heap, 0), some = walk(heap, 0.4), none = walk(heap, 1);
+  EXPECT_GT(all.value, 0);
+  for (const Outcome* late : {&some, &none}) {
+    EXPECT_NEAR(late->value, all.value, 1e-12 * all.value);
+    for (std::size_t i = 0; i < k_cloth; ++i)
+      EXPECT_LT((late->gradient[i] - all.gradient[i]).norm(), 1e-12 * (1 + all.gradient[i].norm()));
+    EXPECT_EQ(late->near, all.near);
+  }
+}
+
+}  // namespace
+}  // namespace ft
