@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/parallel.h"
 #include "baker/core/stopwatch.h"
@@ -18,9 +19,13 @@ constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
 /// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still strains the edges
-/// by more than StepInput::settled_strain, or had to be halved: cloth that is pulled tight or has edges of all lengths
-/// needs it, and cloth that falls along cloth would hang in the air.
+/// by more than StepInput::settled_strain, or had to be halved, or moves a garment that nothing holds by more than
+/// k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it, and cloth that falls along cloth
+/// would hang in the air.
 constexpr int k_most_times = 5;
+/// Of what gravity moves in the step, h2 g: the force on the garment as a whole is then right to a tenth of its weight.
+/// Where the body or a pin holds it, what is wrong in one step is put right in the next; a free one keeps the momentum.
+constexpr double k_settled_drift = 0.05;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -44,6 +49,27 @@ double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::spa
     return sum;
   });
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
+}
+
+/// Largest displacement of the centre of mass, between two states, of a garment that is not held [m].
+double largest_drift(const ClothModel& model, std::span<const char> held, std::span<const Vec3> from,
+                     std::span<const Vec3> to) {
+  using Moment = Eigen::Vector4d;  // mass times displacement, mass
+  double largest = 0;
+  for (std::size_t g = 0; g < held.size(); ++g) {
+    if (held[g] != 0) continue;
+    const auto first = at(model.first_vertex[g]), count = at(model.first_vertex[g + 1]) - first;
+    const Moment sum = parallel_sum(count, k_block, Moment(0, 0, 0, 0), [&](std::size_t begin, std::size_t end) {
+      Moment own(0, 0, 0, 0);
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        own.head<3>() += model.mass[i] * (to[i] - from[i]);
+        own[3] += model.mass[i];
+      }
+      return own;
+    });
+    if (sum[3] > 0) largest = std::max(largest, sum.head<3>().norm() / sum[3]);
+  }
+  return largest;
 }
 
 }  // namespace
@@ -136,6 +162,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.contact.update(s.all);
   result.seconds_contact += watch.lap();
 
+  const double gravity = model_.setup.gravity.norm();
+  const double settled_drift =
+      gravity > 0 ? k_settled_drift * in.h * in.h * gravity : std::numeric_limits<double>::infinity();
   double of_cloth = potential_of_cloth(cloth(s.all));
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
@@ -240,7 +269,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
               (iteration + 1 >= in.newton_iterations && whole &&
-               strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain);
+               strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain &&
+               largest_drift(model_, s.touches, cloth(s.all), cloth(s.trial)) <= settled_drift);
     if (finite) {
       std::copy_n(s.trial.begin(), n, s.all.begin());
       of_cloth = of_trial;
