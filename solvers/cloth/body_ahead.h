@@ -1,9 +1,5 @@
 // The body at the ends of substeps, several worked out at the same time: one evaluation has little to do in parallel.
-// Functions of the frame and its substeps alone, so that it does not matter which of them are there already.
-//
-// Of many substeps every other one is made feasible; between two of these the body gives way by the mean of what it
-// does at both. Parts that turn against each other by an angle a in two substeps come nearer by r a2 / 8 then, r from
-// the joint: 0.4 mm of the gap for 10 degrees and 0.1 m.
+// Functions of the time alone, so that it does not matter which of them are there already.
 #pragma once
 
 #include <limits>
@@ -17,7 +13,6 @@ namespace ft {
 /// The body at one instant [m].
 struct BodyPose {
   std::vector<Vec3> drawn, feasible;
-  std::vector<Vec3> given_way;  ///< from the drawn surface, refined, to the feasible one
 };
 
 /// A frame's motion of the body. Its ends are kept: a frame starts where the last one ended.
@@ -39,21 +34,14 @@ class BodyAhead {
   const BodyPose& after(int k, int substeps);
 
  private:
-  /// When so many substeps have ended.
-  double time_after(int count) const;
-  bool is_feasible(int count) const;
-  void evaluate(int first);
-  void draw(int count, BodyPose& pose) const;
+  void evaluate(int first, int count, int substeps);
   void fill(double time, BodyPose& pose) const;
-  void make_feasible(double time, BodyPose& pose) const;
-  void fill_between();
 
   const MovingCollider* collider_;
   double t0_ = 0, t1_ = std::numeric_limits<double>::quiet_NaN();
   bool cut_ = false;
   BodyPose start_, end_;
   std::vector<BodyPose> ahead_;  ///< after substeps first_ .. first_ + count_ - 1 of substeps_
-  std::vector<Vec3> before_;     ///< given_way when first_ substeps have ended
   int first_ = 0, count_ = 0, substeps_ = 0;
 };
 

@@ -80,11 +80,6 @@ void MovingCollider::drawn(double time, std::vector<Vec3>& positions) const {
   primary_->sample(time, positions);
 }
 
-void MovingCollider::refine(std::span<const Vec3> drawn, std::vector<Vec3>& positions) const {
-  positions.resize(at(vertex_count()));
-  feasible_->refine(drawn, positions);
-}
-
 CarveReport MovingCollider::feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions) const {
   positions.resize(at(vertex_count()));
   const CarveReport report = feasible_->evaluate(drawn, positions);

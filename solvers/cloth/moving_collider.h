@@ -28,8 +28,6 @@ class MovingCollider {
   double largest_inset() const { return largest_inset_; }
 
   void drawn(double time, std::vector<Vec3>& positions) const;
-  /// The drawn surface with the vertices of the collider, before anything gives way.
-  void refine(std::span<const Vec3> drawn, std::vector<Vec3>& positions) const;
   /// Feasible positions, from the drawn ones at the same time.
   CarveReport feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions) const;
 
