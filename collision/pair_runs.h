@@ -2,6 +2,7 @@
 // at the list and no copy of it, and whoever keeps something per pair keeps it.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -47,7 +48,7 @@ class PairRuns {
  private:
   static constexpr std::size_t k_block = 4096;
 
-  std::vector<std::size_t> begins_{0};
+  std::vector<std::size_t> begins_{0};  ///< of the runs, ascending
   // Scratch.
   std::vector<std::size_t> place_;
   std::vector<Stencil> left_;

@@ -44,7 +44,7 @@ double largest(std::span<const double> values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-/// Infinite without any.
+/// Infinite without any. Leaves the values in another order.
 double median(std::vector<double>& values) {
   if (values.empty()) return std::numeric_limits<double>::infinity();
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -312,7 +312,8 @@ double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, cons
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;
       mine.pairs.push_back(found[p]);
-      if (blocked == nullptr || (g.distance * 0.9 > relative && g.distance > 1e-4)) continue;  // cannot meet
+      if (blocked == nullptr) continue;
+      if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
       const double touch = ccd_time(kind, x, d);
       if (touch < 1) mine.blocked.push_back(found[p]);
       first = std::min(first, touch);

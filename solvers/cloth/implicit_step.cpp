@@ -19,12 +19,13 @@ constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
 /// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still strains the edges
-/// by more than StepInput::settled_strain, or had to be halved, or moves a garment that nothing holds by more than
-/// k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it, and cloth that falls along cloth
-/// would hang in the air.
+/// by more than StepInput::settled_strain, or had to be halved, or moves a garment that the body does not hold by more
+/// than k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it, and cloth that falls along
+/// cloth would hang in the air.
 constexpr int k_most_times = 5;
 /// Of what gravity moves in the step, h2 g: the force on the garment as a whole is then right to a tenth of its weight.
-/// Where the body or a pin holds it, what is wrong in one step is put right in the next; a free one keeps the momentum.
+/// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
+/// keeps the momentum.
 constexpr double k_settled_drift = 0.05;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
@@ -51,7 +52,8 @@ double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::spa
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
 }
 
-/// Largest displacement of the centre of mass, between two states, of a garment that is not held [m].
+/// Largest displacement of the centre of mass, between two states, of a garment that is not held (per garment, not 0:
+/// held) [m].
 double largest_drift(const ClothModel& model, std::span<const char> held, std::span<const Vec3> from,
                      std::span<const Vec3> to) {
   using Moment = Eigen::Vector4d;  // mass times displacement, mass
