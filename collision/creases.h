@@ -16,8 +16,8 @@ namespace ft {
 class Creases {
  public:
   Creases() = default;
-  /// Joints are pairs of a part and its parent that touch in the bind pose. gap: room that their skins keep [m]. The
-  /// surface has to outlive this.
+  /// Joints are pairs of a part and its parent that fold and touch in the bind pose. gap: room that their skins keep
+  /// [m]. The surface has to outlive this.
   Creases(const PartSurface& surface, std::span<const SurfacePart> parts, std::span<const int> part_of_vertex,
           std::span<const Vec3> bind, double gap);
   /// Moves the vertices that have to give way in this pose. Small motions of the pose give small motions of them.

@@ -18,6 +18,9 @@ struct SurfacePart {
   std::string name;
   int parent = -1;  ///< part it is jointed to, -1 for the root
   double size = 0;  ///< volume or area measure [m3]; the larger part wins where two overlap
+  /// The joint with the parent is one about which it turns as a limb does, so that the two skins fold there; false: it
+  /// rides on the parent, like an eye or a nail.
+  bool folds = true;
 };
 
 struct Surface {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "baker/core/parallel.h"
+#include "baker/core/rigid.h"
 #include "io/import/run_up.h"
 
 namespace ft {
@@ -14,6 +15,39 @@ Vec3 tangent(const GeometryCache& cache, std::size_t i, std::size_t vertex) {
   const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < cache.times.size() ? i + 1 : i;
   return (cache.sample(after)[vertex] - cache.sample(before)[vertex]).cast<double>() /
          (cache.times[after] - cache.times[before]);
+}
+
+/// Per piece: whether it keeps its shape over the clip, as limbs of a doll do and a skin does not.
+std::vector<char> rigid_pieces(const GeometryCache& cache, std::span<const int> piece_of_vertex, int count) {
+  constexpr std::size_t k_times = 16, k_points = 256;
+  constexpr double k_bent = 0.05;  // of its radius, both root mean square
+  std::vector<std::vector<std::size_t>> vertices(at(count));
+  for (std::size_t v = 0; v < piece_of_vertex.size(); ++v) vertices[at(piece_of_vertex[v])].push_back(v);
+  std::vector<char> rigid(vertices.size(), 1);
+  const std::size_t times = cache.times.size();
+  for (std::size_t p = 0; p < rigid.size(); ++p) {
+    std::vector<Vec3> first, now;
+    const auto points_at = [&](std::size_t time, std::vector<Vec3>& out) {
+      const auto positions = cache.sample(time);
+      out.clear();
+      for (std::size_t i = 0; i < vertices[p].size(); i += 1 + vertices[p].size() / k_points)
+        out.push_back(positions[vertices[p][i]].template cast<double>());
+    };
+    points_at(0, first);
+    if (first.empty()) continue;
+    Vec3 centre = Vec3::Zero();
+    for (const Vec3& x : first) centre += x / static_cast<double>(first.size());
+    double radius2 = 0;
+    for (const Vec3& x : first) radius2 += (x - centre).squaredNorm();
+    for (std::size_t k = 1; k <= std::min(k_times, times - 1) && rigid[p] != 0; ++k) {
+      points_at(k * (times - 1) / std::min(k_times, times - 1), now);
+      const Eigen::Isometry3d motion = rigid_fit(first, now);
+      double bent2 = 0;
+      for (std::size_t i = 0; i < now.size(); ++i) bent2 += (motion * first[i] - now[i]).squaredNorm();
+      if (bent2 > k_bent * k_bent * radius2) rigid[p] = 0;
+    }
+  }
+  return rigid;
 }
 
 }  // namespace
@@ -71,8 +105,12 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
     part.size = std::abs(part.size);
     if (part.size > surface_.parts[static_cast<std::size_t>(largest)].size) largest = p;
   }
-  for (int p = 0; p < pieces; ++p)
-    if (p != largest) surface_.parts[static_cast<std::size_t>(p)].parent = largest;
+  const std::vector<char> rigid = rigid_pieces(cache_, surface_.part_of_vertex, pieces);
+  for (int p = 0; p < pieces; ++p) {
+    if (p == largest) continue;
+    surface_.parts[static_cast<std::size_t>(p)].parent = largest;
+    surface_.parts[static_cast<std::size_t>(p)].folds = rigid[ft::at(p)] != 0 && rigid[ft::at(largest)] != 0;
+  }
 }
 
 Eigen::Isometry3d SampledTrajectory::bind_to_start() const {

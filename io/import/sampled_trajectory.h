@@ -1,6 +1,8 @@
 // A geometry cache as a Trajectory: cubic between samples (Catmull-Rom with the samples' own times; Hermite ends are
 // one-sided), held before the first and after the last; before the shot it is the first pose, set back by the run-up
-// (run_up.h). It has no bind pose of its own: garments are modelled on its first sample of the shot.
+// (run_up.h). Its parts are the pieces of the mesh, and the largest is the parent of all; where both keep their shapes
+// they are limbs with a joint between them, else eyes and nails on a skin. It has no bind pose of its own: garments are
+// modelled on its first sample of the shot.
 #pragma once
 
 #include "baker/core/trajectory.h"

@@ -4,31 +4,33 @@
 #   tests/bench/run.sh torture NAME|all [--frames N] [--obj FOLDER]
 #   tests/bench/run.sh size [--frames N] [CELLS ...]
 #   tests/bench/run.sh rumba_dress [--keep FOLDER] [-- BAKE ARGUMENTS]
+#   tests/bench/run.sh jumps SHOT.toml [POSES A SECOND] [MILLIMETRES]
 # SCENE     S1 (a square of N x N vertices on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
 # torture   the scenes of tests/support/torture, without a peer, each for at most FOLLOWTHROUGH_TORTURE_SECONDS (600)
 # size      what S1 costs as N grows, without a peer: 50, 100, 200 and 400
 # rumba_dress  samples/sewn_dress, sewn and danced, without a peer; then the dress in its authors' fabric beside their drape
+# jumps     where the feasible collider of a shot moves by more than 4 mm against the drawn body within 2 ms
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
 # Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,14s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
-  size) shift ;;
+  size | jumps) shift ;;
   torture) [ $# -ge 2 ] || { usage >&2; exit 2; }; shift ;;
   S1 | S2 | rumba_dress) shift ;;
   *) usage >&2; exit 2 ;;
 esac
 
-if [ "$scene" = size ]; then
+if [ "$scene" = size ] || [ "$scene" = jumps ]; then
   # shellcheck disable=SC2086
   install_packages $packages_build $packages_tests
-  build release size_bench
-  exec "$root/build/release/bin/size_bench" "$@"
+  build release "${scene}_bench"
+  exec "$root/build/release/bin/${scene}_bench" "$@"
 fi
 if [ "$scene" = torture ]; then
   # shellcheck disable=SC2086
