@@ -9,7 +9,7 @@ namespace {
 // may meet in a step grows faster than the step.
 constexpr double k_coarsen = 2;            ///< edges of garments and collider, in those of a final bake [1]
 constexpr double k_travel = 2;             ///< of the body in a substep, in that of a final bake [1]
-constexpr int k_fewer_substeps = 2;        ///< times fewer substeps at least
+constexpr int k_fewer_substeps = 4;        ///< times fewer substeps at least
 constexpr double k_longer_cord_steps = 5;  ///< [1]
 constexpr double k_looser_cords = 100;     ///< of what Newton leaves to move [1]
 constexpr double k_tolerance = 0.1;        ///< of the linear solver at least [1]

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "baker/core/parallel.h"
 #include "collision/ccd_li2021.h"
@@ -44,14 +43,6 @@ double largest(std::span<const double> values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-/// Infinite without any. Leaves the values in another order.
-double median(std::vector<double>& values) {
-  if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Vec3 mean_of(std::span<const Vec3> values) {
   const Vec3 sum = parallel_sum(values.size(), k_block, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
     Vec3 own(0, 0, 0);
@@ -77,10 +68,7 @@ Candidates::Candidates(const ClothModel& model)
   self_radius_ = largest(model.contact.self_radius);
   finder_.set_patches(patches_.members());
   finder_.set_self_margin(std::max(0.0, radius_ - self_radius_));
-  std::vector<std::vector<double>> lengths(model.setup.garments.size());
-  for (std::size_t k = 0; k < model.rest_edges.edges.size(); ++k)
-    lengths[at(model.garment_of(model.rest_edges.edges[k][0]))].push_back(model.rest_edges.lengths[k]);
-  for (std::vector<double>& of_garment : lengths) most_spare_.push_back(k_slack_edges * median(of_garment));
+  for (const double edge : model.typical_edge) most_spare_.push_back(k_slack_edges * edge);
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/carve_plan.h"
 #include "solvers/cloth/attach.h"
@@ -27,6 +28,20 @@ Status check_maps(const ClothGarment& garment) {
                            (may_vanish ? "0 or above" : "above 0"));
   }
   return {};
+}
+
+/// Per garment the median of its edges at rest [m]; infinite without any.
+std::vector<double> median_edges(const ClothModel& model) {
+  std::vector<std::vector<double>> lengths(model.setup.garments.size());
+  for (std::size_t k = 0; k < model.rest_edges.edges.size(); ++k)
+    lengths[at(model.garment_of(model.rest_edges.edges[k][0]))].push_back(model.rest_edges.lengths[k]);
+  std::vector<double> out;
+  for (std::vector<double>& of_garment : lengths) {
+    const auto middle = of_garment.begin() + static_cast<std::ptrdiff_t>(of_garment.size() / 2);
+    std::nth_element(of_garment.begin(), middle, of_garment.end());
+    out.push_back(of_garment.empty() ? std::numeric_limits<double>::infinity() : *middle);
+  }
+  return out;
 }
 
 /// Vertices, triangles and rest shape of all garments in one numbering, each a piece of the topology.
@@ -87,6 +102,7 @@ void weigh(ClothModel& model) {
     if (!(model.mass[i] > 0)) model.unused[i] = 1;
   model.rest_edges = rest_edges(model.contact.rest, model.triangles);
   lengths_from_pattern(*model.topology, model.rest_edges);
+  model.typical_edge = median_edges(model);
 }
 
 void place_and_pin(ClothModel& model) {

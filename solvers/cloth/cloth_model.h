@@ -38,8 +38,9 @@ struct ClothModel {
   std::vector<double> mass;       ///< lumped [kg]
   std::vector<Triangle> triangles;
   RestEdges rest_edges;
-  std::vector<char> self_collides;  ///< per vertex
-  std::vector<char> unused;         ///< vertices of no face: carried along, never solved for
+  std::vector<double> typical_edge;  ///< per garment: median of its edges at rest; infinite without any [m]
+  std::vector<char> self_collides;   ///< per vertex
+  std::vector<char> unused;          ///< vertices of no face: carried along, never solved for
   ContactModel contact;
   SewnPairs sewn;                  ///< pairs that a seam holds together
   std::vector<double> sewn_until;  ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
