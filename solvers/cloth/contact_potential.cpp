@@ -245,19 +245,6 @@ void ContactPotential::add_gradient_between_garments(std::span<const Vec3> x, st
   });
 }
 
-void ContactPotential::add_normal_forces(std::span<Vec3> of_garment) const {
-  const int n = model_.cloth_vertex_count;
-  for (const Contact& c : contacts_) {
-    const bool first = c.vertex[0] < n, last = c.vertex[3] < n;
-    if (first == last) continue;
-    const double force = contact_law(c.geometry.distance, c.radius, c.stiffness).force;
-    double weight = 0;  // of the cloth's side, with its sign
-    for (std::size_t k = 0; k < 4; ++k)
-      if (c.vertex[k] < n) weight += c.geometry.weight[k];
-    of_garment[at(model_.garment[at(first ? c.vertex[0] : c.vertex[3])])] += force * weight * c.geometry.normal;
-  }
-}
-
 void ContactPotential::mark_touching(std::span<char> of_garment) const {
   const int n = model_.cloth_vertex_count;
   for (const Contact& c : contacts_)

@@ -64,8 +64,6 @@ class ContactPotential {
 
   /// Of add_gradient() what garments do to each other alone.
   void add_gradient_between_garments(std::span<const Vec3> x, std::span<Vec3> gradient) const;
-  /// Adds up, per garment, the normal forces [N] of the body on it at the last update.
-  void add_normal_forces(std::span<Vec3> of_garment) const;
   /// Marks the garments that touched the body at the last update.
   void mark_touching(std::span<char> of_garment) const;
 

@@ -23,15 +23,10 @@ constexpr double k_still = 1e-4;
 /// than k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it, and cloth that falls along
 /// cloth would hang in the air.
 constexpr int k_most_times = 5;
-/// Of what gravity moves in the step, h2 g: the force on the garment as a whole is then right to a few hundredths of
-/// its weight. Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else
-/// the garment keeps the momentum.
-constexpr double k_settled_drift = 0.01;
-/// What iterations are still to add to a drift is a geometric series of its own last ratio, at most so many times as
-/// much: where contact truncates them each moves little, and yet there is far to go.
-constexpr double k_slowest = 20;
-/// A garment is held when the body bears this share of its weight: what only slides along it or bounces off is not.
-constexpr double k_holding_share = 0.5;
+/// Of what gravity moves in the step, h2 g: the force on the garment as a whole is then right to a tenth of its weight.
+/// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
+/// keeps the momentum.
+constexpr double k_settled_drift = 0.05;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -90,10 +85,7 @@ struct ImplicitStep::Scratch {
   std::vector<Vec3> y, gradient, direction, common, cut, all, trial;
   std::vector<double> share, missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
-  std::vector<char> touches;      ///< per garment: whether the body has touched it in this solve, or a pin has held it
-  std::vector<char> held;         ///< per garment: whether the body carries it, see k_holding_share
-  std::vector<Vec3> carried;      ///< per garment: normal forces of its contacts with the body, added up [N]
-  std::vector<double> garment_mass;  ///< kg
+  std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
   std::vector<PairTerm> terms;
   ContactPairs near;
 };
@@ -102,9 +94,6 @@ ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
   LinearSettings settings;
   settings.tolerance = model.setup.linear_tolerance;
   scratch_ = std::make_unique<Scratch>(model, settings);
-  scratch_->garment_mass.assign(model.setup.garments.size(), 0.0);
-  for (std::size_t i = 0; i < model.mass.size(); ++i)
-    scratch_->garment_mass[at(model.contact.garment[i])] += model.mass[i];
 }
 ImplicitStep::~ImplicitStep() = default;
 
@@ -152,8 +141,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   for (std::size_t p = 0; p < model_.pins.size(); ++p)
     if (s.pin_share[p] > 0 && !model_.pins[p].to_world) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
 
-  s.held = s.touches;
-
   const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
   /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
   const auto potential_of_cloth = [&](std::span<const Vec3> x) {
@@ -183,15 +170,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   double of_cloth = potential_of_cloth(cloth(s.all));
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
-  double last_drift = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     s.contact.lag_friction();
     s.contact.mark_touching(s.touches);
-    s.carried.assign(s.held.size(), Vec3::Zero());
-    s.contact.add_normal_forces(s.carried);
-    for (std::size_t g = 0; g < s.held.size(); ++g)
-      if (-s.carried[g].dot(model_.setup.gravity) >= k_holding_share * gravity * gravity * s.garment_mass[g])
-        s.held[g] = 1;
     const std::span<const Vec3> x(s.all.data(), n);
     BlockMatrix& hessian = s.system.begin();
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
@@ -287,13 +268,11 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
       if (!accepted) ++result.backtracks, whole = false;
     }
-    const double drift = largest_drift(model_, s.held, cloth(s.all), cloth(s.trial));
-    const double still_to_come = drift * std::clamp(drift / std::max(last_drift - drift, 1e-300), 1.0, k_slowest);
-    last_drift = drift;
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
               (iteration + 1 >= in.newton_iterations && whole &&
-               strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain && still_to_come <= settled_drift);
+               strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain &&
+               largest_drift(model_, s.touches, cloth(s.all), cloth(s.trial)) <= settled_drift);
     if (finite) {
       std::copy_n(s.trial.begin(), n, s.all.begin());
       of_cloth = of_trial;
