@@ -29,7 +29,7 @@ Status add_file(BakeInputs& inputs, const std::string& role, const std::filesyst
   if (path.empty()) return {};
   auto bytes = read_file(path);
   if (!bytes) return bytes.error();
-  InputFile file{role, path, hash_bytes(*bytes)};
+  InputRecord file{role, path, hash_bytes(*bytes)};
   const auto buffers = gltf_buffers(path, *bytes);
   if (!buffers.empty()) {
     Hasher all;
@@ -75,7 +75,7 @@ ShotVocabulary shot_vocabulary() {
 Hash128 fingerprint(const BakeInputs& inputs) {
   Hasher all;
   all.text(program_version()).text(program_build());
-  for (const InputFile& file : inputs.files) all.text(file.role).number(file.content.low).number(file.content.high);
+  for (const InputRecord& file : inputs.files) all.text(file.role).number(file.content.low).number(file.content.high);
   for (const auto& [key, value] : inputs.settings) all.text(key).text(value);
   return all.digest();
 }

@@ -15,7 +15,7 @@
 
 namespace ft {
 
-struct InputFile {
+struct InputRecord {
   std::string role;  ///< "primary.mannequin.file"
   std::filesystem::path path;
   Hash128 content;  ///< of the bytes, buffers that a glTF keeps beside itself included
@@ -23,7 +23,7 @@ struct InputFile {
 
 struct BakeInputs {
   Shot shot;
-  std::vector<InputFile> files;  ///< in the order of the shot file
+  std::vector<InputRecord> files;  ///< in the order of the shot file
   std::vector<std::pair<std::string, std::string>>
       settings;  ///< "cloth.dress.fabric" -> "\"cotton\""; neither paths nor gates
   Hash128 fingerprint;

@@ -7,9 +7,9 @@
 namespace ft {
 namespace {
 
-constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing,     Incident::Kind::k_penetration,
-                                         Incident::Kind::k_released,     Incident::Kind::k_strain,
-                                         Incident::Kind::k_start_inside, Incident::Kind::k_rewind};
+constexpr std::array k_incident_kinds = {
+    Incident::Kind::k_crossing,     Incident::Kind::k_penetration, Incident::Kind::k_released, Incident::Kind::k_strain,
+    Incident::Kind::k_start_inside, Incident::Kind::k_rewind,      Incident::Kind::k_unsettled};
 
 /// The one list of a report's fields: visit(name, member).
 template <class Report, class Visit>

@@ -48,7 +48,7 @@ Manifest manifest_of(const BakeInputs& inputs) {
   m.first_written = inputs.shot.write_preroll ? inputs.shot.first_frame - inputs.shot.preroll : inputs.shot.first_frame;
   m.fps = inputs.shot.fps;
   m.preroll = inputs.shot.preroll;
-  for (const InputFile& file : inputs.files)
+  for (const InputRecord& file : inputs.files)
     m.inputs.push_back({file.role, file.path.filename().string(), file.content.hex()});
   m.settings = inputs.settings;
   return m;

@@ -47,9 +47,9 @@ void add_track(Json& json, Json& animation, Bytes& bin, std::size_t node, const 
   for (double& v : values) v *= unit;
   const std::size_t input = add_accessor(json, bin, track.times, 1, true);
   const std::size_t output = add_accessor(json, bin, values, track.width, false);
-  const char* how = track.interpolation == Interpolation::k_step    ? "STEP"
-                    : track.interpolation == Interpolation::k_cubic ? "CUBICSPLINE"
-                                                                    : "LINEAR";
+  const char* how = track.interpolation == KeyInterpolation::k_step    ? "STEP"
+                    : track.interpolation == KeyInterpolation::k_cubic ? "CUBICSPLINE"
+                                                                       : "LINEAR";
   animation["channels"].push_back(
       {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
   animation["samplers"].push_back({{"input", input}, {"interpolation", how}, {"output", output}});

@@ -141,10 +141,10 @@ Status change_channel(gltf::GltfFile& file, Json& json, Bytes& bin, int clip, in
   const Track& track = change.track;
   next["input"] = time_accessor(file, json, bin, old, track);
   next["output"] = add_accessor(json, bin, track.values, track.width, false);
-  if (track.interpolation != Interpolation::k_linear || next.contains("interpolation"))
-    next["interpolation"] = track.interpolation == Interpolation::k_step    ? "STEP"
-                            : track.interpolation == Interpolation::k_cubic ? "CUBICSPLINE"
-                                                                            : "LINEAR";
+  if (track.interpolation != KeyInterpolation::k_linear || next.contains("interpolation"))
+    next["interpolation"] = track.interpolation == KeyInterpolation::k_step    ? "STEP"
+                            : track.interpolation == KeyInterpolation::k_cubic ? "CUBICSPLINE"
+                                                                               : "LINEAR";
   Json& animation = json["animations"][at(clip)];  // anew: an accessor may be the first, and a new key moves all others
   if (users == 1) {
     animation["samplers"][static_cast<std::size_t>(sampler)] = std::move(next);

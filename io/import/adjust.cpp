@@ -70,7 +70,7 @@ KeyTimes key_times(const Character& character, const Clip& clip, const std::vect
       if (channel == nullptr) continue;
       for (const Track* track : {&channel->translation, &channel->rotation, &channel->scale}) {
         keys.insert(keys.end(), track->times.begin(), track->times.end());
-        if (track->interpolation != Interpolation::k_step) continue;
+        if (track->interpolation != KeyInterpolation::k_step) continue;
         const auto width = static_cast<std::ptrdiff_t>(track->stride());
         for (std::size_t k = 1; k < track->times.size(); ++k) {  // a step between two straight lines
           const auto value = track->values.begin() + static_cast<std::ptrdiff_t>(k) * width;
@@ -140,7 +140,7 @@ Track new_track(const KeyTimes& keys, const std::vector<AdjustedPose>& poses, st
     if (!needed[k]) continue;
     const AdjustedNode& now = poses[k].nodes[node];
     std::vector<double> value = numbers(now.now, path);
-    const bool has_keys = source != nullptr && !source->empty() && source->interpolation != Interpolation::k_cubic;
+    const bool has_keys = source != nullptr && !source->empty() && source->interpolation != KeyInterpolation::k_cubic;
     if (has_keys && !is_moved(now, path)) {
       const auto same = std::find_if(source->times.begin(), source->times.end(), [&](double time) {
         return static_cast<float>(time) == static_cast<float>(keys.times[k]);

@@ -15,17 +15,17 @@
 
 namespace ft {
 
-enum class Interpolation : std::uint8_t { k_step, k_linear, k_cubic };
+enum class KeyInterpolation : std::uint8_t { k_step, k_linear, k_cubic };
 
 /// Keys of one animated quantity. Cubic keys hold (in-tangent, value, out-tangent) per key, as glTF does.
 struct Track {
-  Interpolation interpolation = Interpolation::k_linear;
+  KeyInterpolation interpolation = KeyInterpolation::k_linear;
   int width = 0;               ///< numbers per value: 3 vectors, 4 quaternions (x y z w), n morph weights
   std::vector<double> times;   ///< s, strictly ascending
   std::vector<double> values;  ///< times * width (* 3 when cubic)
   bool empty() const { return times.empty(); }
   std::size_t stride() const {
-    return static_cast<std::size_t>(width) * (interpolation == Interpolation::k_cubic ? 3 : 1);
+    return static_cast<std::size_t>(width) * (interpolation == KeyInterpolation::k_cubic ? 3 : 1);
   }
 };
 

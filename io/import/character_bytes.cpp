@@ -61,7 +61,7 @@ void put_track(ByteWriter& out, const Track& track) {
 }
 Track get_track(ByteReader& in) {
   Track track;
-  track.interpolation = static_cast<Interpolation>(in.read<std::uint8_t>());
+  track.interpolation = static_cast<KeyInterpolation>(in.read<std::uint8_t>());
   track.width = in.read<std::int32_t>();
   track.times = get_vector<double>(in);
   track.values = get_vector<double>(in);

@@ -30,7 +30,7 @@ Status check_track(const Track& track, int width, const std::string& where) {
   if (track.width <= 0 || (width > 0 && track.width != width)) return fault(where, "key values have the wrong width");
   if (track.values.size() != track.times.size() * track.stride())
     return fault(where, "key times and values do not match");
-  if (track.interpolation > Interpolation::k_cubic) return fault(where, "interpolation is unknown");
+  if (track.interpolation > KeyInterpolation::k_cubic) return fault(where, "interpolation is unknown");
   for (std::size_t i = 0; i < track.times.size(); ++i) {
     if (!usable(track.times[i])) return fault(where, "a key's time is not a finite number");
     if (i > 0 && !(track.times[i] > track.times[i - 1])) return fault(where, "key times do not ascend");

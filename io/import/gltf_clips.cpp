@@ -37,12 +37,12 @@ Result<Track> read_sampler(gltf::GltfFile& file, const Json& sampler, int width)
   auto values = file.accessor(integer(member(sampler, "output"), -1), value_width);
   if (!values) return values.error();
   const std::string how = text(member(sampler, "interpolation"));
-  track.interpolation = how == "STEP"          ? Interpolation::k_step
-                        : how == "CUBICSPLINE" ? Interpolation::k_cubic
-                                               : Interpolation::k_linear;
+  track.interpolation = how == "STEP"          ? KeyInterpolation::k_step
+                        : how == "CUBICSPLINE" ? KeyInterpolation::k_cubic
+                                               : KeyInterpolation::k_linear;
   track.times = std::move(*times);
   track.values = std::move(*values);
-  const std::size_t per_key = track.interpolation == Interpolation::k_cubic ? 3 : 1;
+  const std::size_t per_key = track.interpolation == KeyInterpolation::k_cubic ? 3 : 1;
   if (width == 0 && !track.times.empty()) width = static_cast<int>(track.values.size() / track.times.size() / per_key);
   track.width = width;
   if (time_width != 1 || width == 0 || (width == 3 && value_width != 3 && value_width != 1) ||

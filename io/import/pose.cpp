@@ -62,7 +62,7 @@ NodeTransform blend(const NodeTransform& a, const NodeTransform& b, double weigh
 
 void sample_track(const Track& track, double time, bool rotation, std::span<double> out) {
   const std::size_t width = static_cast<std::size_t>(track.width), stride = track.stride(), n = track.times.size();
-  const bool cubic = track.interpolation == Interpolation::k_cubic;
+  const bool cubic = track.interpolation == KeyInterpolation::k_cubic;
   const auto value = [&](std::size_t key) { return track.values.data() + key * stride + (cubic ? width : 0); };
   const auto copy = [&](std::size_t key) {
     if (rotation)
@@ -74,7 +74,7 @@ void sample_track(const Track& track, double time, bool rotation, std::span<doub
       static_cast<std::size_t>(std::upper_bound(track.times.begin(), track.times.end(), time) - track.times.begin());
   if (next == 0) return copy(0);
   const std::size_t last = next - 1;
-  if (next == n || track.interpolation == Interpolation::k_step) return copy(last);
+  if (next == n || track.interpolation == KeyInterpolation::k_step) return copy(last);
 
   const double span = track.times[next] - track.times[last];
   const double u = (time - track.times[last]) / span;

@@ -31,6 +31,7 @@ FrameReport example_report(int frame) {
   i.depth = 4e-3;
   i.text = "no room: \"elbow\"";
   r.incidents = {i, i};
+  r.incidents[1].kind = Incident::Kind::k_unsettled;
   InteractionForce f;
   f.system = "dress";
   f.mean = {Vec3(1.0 / 3, -5, 0), Vec3(0, 1e-17, 2)};
@@ -61,6 +62,7 @@ TEST(Checkpoint, Comes_back_bit_for_bit) {
   EXPECT_EQ(loaded->frame, 12);
   EXPECT_EQ(loaded->reports[0].smallest_gap, example_report(11).smallest_gap);
   EXPECT_EQ(loaded->reports[1].incidents[1].text, "no room: \"elbow\"");
+  EXPECT_EQ(loaded->reports[1].incidents[1].kind, Incident::Kind::k_unsettled);
 }
 
 TEST(Checkpoint, Cut_at_any_byte_is_refused) {

@@ -196,14 +196,15 @@ TEST(BvhExport, Refuses_changes_that_a_bvh_cannot_hold) {
   ASSERT_TRUE(write_text_durably(scratch / "small.bvh", k_small));
   const Character character = load_character(scratch / "small.bvh", {}, {}).value().character;
   const auto refused = [&](int node, ChannelPath path, int width) {
-    const ChangedChannel change{node, path, {Interpolation::k_linear, width, {0}, std::vector<double>(at(width), 0.5)}};
+    const ChangedChannel change{
+        node, path, {KeyInterpolation::k_linear, width, {0}, std::vector<double>(at(width), 0.5)}};
     auto text = export_bvh(scratch / "small.bvh", character, 0, {&change, 1});
     return text ? std::string("no fault") : text.error().text();
   };
   EXPECT_NE(refused(0, ChannelPath::k_scale, 3).find("cannot be scaled"), std::string::npos);
   EXPECT_NE(refused(1, ChannelPath::k_translation, 3).find("joint \"b\""), std::string::npos);
   EXPECT_NE(refused(7, ChannelPath::k_rotation, 4).find("node 7"), std::string::npos);
-  const ChangedChannel up{0, ChannelPath::k_translation, {Interpolation::k_linear, 3, {0}, {0, 2, 0}}};
+  const ChangedChannel up{0, ChannelPath::k_translation, {KeyInterpolation::k_linear, 3, {0}, {0, 2, 0}}};
   std::string expected = k_small;
   expected.replace(expected.find("1e0"), 3, "2.000000");
   EXPECT_EQ(export_bvh(scratch / "small.bvh", character, 0, {&up, 1}).value(), expected);

@@ -40,7 +40,7 @@ bool equal(const Track& a, const Track& b) {
 /// The first channel of a clip with more than one key, with other values and, where asked, other times.
 ChangedChannel changed(const Character& character, int clip, bool other_times) {
   for (const Channel& channel : character.clips[at(clip)].channels)
-    if (channel.rotation.times.size() > 1 && channel.rotation.interpolation == Interpolation::k_linear) {
+    if (channel.rotation.times.size() > 1 && channel.rotation.interpolation == KeyInterpolation::k_linear) {
       ChangedChannel out{channel.node, ChannelPath::k_rotation, channel.rotation};
       for (std::size_t k = 0; k < out.track.values.size(); k += 4) {
         const Quat q =
@@ -156,8 +156,8 @@ TEST(GltfExport, Joins_buffers_parts_a_shared_sampler_and_gives_a_matrix_node_it
   ASSERT_EQ(character.clips.size(), 1u);
   ASSERT_EQ(character.nodes.size(), 3u);
   std::vector<ChangedChannel> changes(2);
-  changes[0] = {1, ChannelPath::k_translation, {Interpolation::k_linear, 3, {0, 1}, {9, 8, 7, 6, 5, 4}}};
-  changes[1] = {0, ChannelPath::k_translation, {Interpolation::k_linear, 3, {0.5}, {5, 6, 8}}};
+  changes[0] = {1, ChannelPath::k_translation, {KeyInterpolation::k_linear, 3, {0, 1}, {9, 8, 7, 6, 5, 4}}};
+  changes[1] = {0, ChannelPath::k_translation, {KeyInterpolation::k_linear, 3, {0.5}, {5, 6, 8}}};
   auto out = export_glb(small.path, character, 0, changes);
   ASSERT_TRUE(out) << out.error().text();
   ASSERT_TRUE(write_file_durably(small.scratch / "out.glb", *out));
@@ -187,7 +187,7 @@ TEST(GltfExport, Joins_buffers_parts_a_shared_sampler_and_gives_a_matrix_node_it
 TEST(GltfExport, Refuses_in_words_what_contradicts_itself) {
   const auto fault = [](auto&& spoil,
                         std::vector<ChangedChannel> changes = {
-                            {1, ChannelPath::k_translation, {Interpolation::k_linear, 3, {0}, {9, 8, 7}}}}) {
+                            {1, ChannelPath::k_translation, {KeyInterpolation::k_linear, 3, {0}, {9, 8, 7}}}}) {
     SmallFile small;
     const Character character = load(small.path);
     spoil(small);
@@ -207,20 +207,20 @@ TEST(GltfExport, Refuses_in_words_what_contradicts_itself) {
   EXPECT_PRED2(has, fault([](SmallFile& s) { std::filesystem::remove(s.scratch / "values.bin"); }), "values.bin");
   EXPECT_PRED2(has, fault([](SmallFile& s) { s.write("{"); }), "cannot be read");
   const auto refused = [&](ChangedChannel change) { return fault([](SmallFile&) {}, {std::move(change)}); };
-  const Track good{Interpolation::k_linear, 3, {0}, {9, 8, 7}};
+  const Track good{KeyInterpolation::k_linear, 3, {0}, {9, 8, 7}};
   EXPECT_PRED2(has, refused({9, ChannelPath::k_translation, good}), "node 9");
   EXPECT_PRED2(has, refused({1, ChannelPath::k_rotation, good}), "do not match");
-  EXPECT_PRED2(has, refused({1, ChannelPath::k_scale, {Interpolation::k_linear, 3, {0}, {9, 8, 1e300}}}),
+  EXPECT_PRED2(has, refused({1, ChannelPath::k_scale, {KeyInterpolation::k_linear, 3, {0}, {9, 8, 1e300}}}),
                "not a finite");
   EXPECT_PRED2(has,
-               refused({1, ChannelPath::k_scale, {Interpolation::k_linear, 3, {1, 1 + 1e-12}, {1, 1, 1, 1, 1, 1}}}),
+               refused({1, ChannelPath::k_scale, {KeyInterpolation::k_linear, 3, {1, 1 + 1e-12}, {1, 1, 1, 1, 1, 1}}}),
                "do not ascend");
 }
 
 TEST(GltfExport, Damaged_files_end_in_a_file_or_a_named_error) {
   const SmallFile small;
   const Character character = load(small.path);
-  const ChangedChannel change{1, ChannelPath::k_translation, {Interpolation::k_linear, 3, {0}, {9, 8, 7}}};
+  const ChangedChannel change{1, ChannelPath::k_translation, {KeyInterpolation::k_linear, 3, {0}, {9, 8, 7}}};
   int refused = 0;
   const auto attempt = [&](const std::filesystem::path& path) {
     auto out = export_glb(path, character, 0, {&change, 1});

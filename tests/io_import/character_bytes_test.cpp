@@ -26,8 +26,8 @@ Character small_character() {
   c.meshes = {mesh};
   Channel channel;
   channel.node = 1;
-  channel.rotation = {Interpolation::k_step, 4, {0, 0.5}, {0, 0, 0, 1, 0, 1, 0, 0}};
-  channel.weights = {Interpolation::k_cubic, 1, {0.1}, {0, 1, 0}};
+  channel.rotation = {KeyInterpolation::k_step, 4, {0, 0.5}, {0, 0, 0, 1, 0, 1, 0, 0}};
+  channel.weights = {KeyInterpolation::k_cubic, 1, {0.1}, {0, 1, 0}};
   c.clips = {{"walk", 0, 0.5, {channel}}};
   c.dependencies = {{"a.bin", {1, 2}}};
   c.notes = {"odd"};
@@ -40,7 +40,7 @@ TEST(Character_bytes, Give_back_what_was_saved) {
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(save_character(*loaded), bytes);
   EXPECT_EQ(loaded->meshes[0].morphs[0].name, "smile");
-  EXPECT_EQ(loaded->clips[0].channels[0].rotation.interpolation, Interpolation::k_step);
+  EXPECT_EQ(loaded->clips[0].channels[0].rotation.interpolation, KeyInterpolation::k_step);
   EXPECT_EQ(loaded->notes, small_character().notes);
 }
 

@@ -25,7 +25,7 @@ Quat sample_rotation(const Track& track, double time) {
 }
 
 TEST(Track, Is_held_before_the_first_key_and_after_the_last) {
-  const Track track{Interpolation::k_linear, 1, {0.5, 1.5}, {3, 7}};
+  const Track track{KeyInterpolation::k_linear, 1, {0.5, 1.5}, {3, 7}};
   EXPECT_EQ(sample1(track, -10), 3);
   EXPECT_EQ(sample1(track, 0.5), 3);
   EXPECT_EQ(sample1(track, 1.0), 5);
@@ -34,7 +34,7 @@ TEST(Track, Is_held_before_the_first_key_and_after_the_last) {
 }
 
 TEST(Track, Steps_stay_steps) {
-  const Track track{Interpolation::k_step, 1, {0, 1, 2}, {3, 7, 9}};
+  const Track track{KeyInterpolation::k_step, 1, {0, 1, 2}, {3, 7, 9}};
   EXPECT_EQ(sample1(track, 0.999999), 3);
   EXPECT_EQ(sample1(track, 1.0), 7);
   EXPECT_EQ(sample1(track, 1.5), 7);
@@ -43,7 +43,7 @@ TEST(Track, Steps_stay_steps) {
 
 TEST(Track, Cubic_keys_reproduce_a_cubic) {
   // f = t^3 - 2t, f' = 3t^2 - 2, with in-tangent, value, out-tangent at uneven keys.
-  Track track{Interpolation::k_cubic, 1, {0, 0.4, 1.7}, {}};
+  Track track{KeyInterpolation::k_cubic, 1, {0, 0.4, 1.7}, {}};
   for (const double t : track.times)
     track.values.insert(track.values.end(), {3 * t * t - 2, t * t * t - 2 * t, 3 * t * t - 2});
   for (double t = 0; t <= 1.7; t += 0.01) EXPECT_NEAR(sample1(track, t), t * t * t - 2 * t, 1e-13);
@@ -52,7 +52,7 @@ TEST(Track, Cubic_keys_reproduce_a_cubic) {
 TEST(Track, Rotations_turn_evenly_and_the_short_way_round) {
   const double c = std::cos(0.25), s = std::sin(0.25);
   for (const double sign : {1.0, -1.0}) {  // q and -q are one rotation
-    const Track track{Interpolation::k_linear, 4, {0, 1}, {0, 0, 0, 1, 0, sign * s, 0, sign * c}};
+    const Track track{KeyInterpolation::k_linear, 4, {0, 1}, {0, 0, 0, 1, 0, sign * s, 0, sign * c}};
     for (const double t : {0.0, 0.2, 0.5, 0.9, 1.0}) {
       const Quat q = sample_rotation(track, t);
       EXPECT_NEAR(q.norm(), 1, 1e-15);
@@ -62,10 +62,10 @@ TEST(Track, Rotations_turn_evenly_and_the_short_way_round) {
 }
 
 TEST(Track, Quaternions_of_any_length_are_rotations) {
-  const Track track{Interpolation::k_linear, 4, {0, 1}, {0, 0, 0, 7, 0, 0.003, 0, 0.003}};
+  const Track track{KeyInterpolation::k_linear, 4, {0, 1}, {0, 0, 0, 7, 0, 0.003, 0, 0.003}};
   EXPECT_NEAR(Eigen::AngleAxisd(sample_rotation(track, 1)).angle(), M_PI / 2, 1e-12);
   EXPECT_NEAR(Eigen::AngleAxisd(sample_rotation(track, 0.5)).angle(), M_PI / 4, 1e-12);
-  const Track none{Interpolation::k_linear, 4, {0}, {0, 0, 0, 0}};
+  const Track none{KeyInterpolation::k_linear, 4, {0}, {0, 0, 0, 0}};
   EXPECT_EQ(sample_rotation(none, 0).coeffs(), Quat::Identity().coeffs());
 }
 
