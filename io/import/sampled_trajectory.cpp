@@ -31,7 +31,7 @@ std::vector<char> rigid_pieces(const GeometryCache& cache, std::span<const int> 
       const auto positions = cache.sample(time);
       out.clear();
       for (std::size_t i = 0; i < vertices[p].size(); i += 1 + vertices[p].size() / k_points)
-        out.push_back(positions[vertices[p][i]].template cast<double>());
+        out.push_back(positions[vertices[p][i]].cast<double>());
     };
     points_at(0, first);
     if (first.empty()) continue;

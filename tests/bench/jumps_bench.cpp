@@ -42,5 +42,7 @@ int print_jumps(const char* file, double rate, double least) {
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "--import-child") == 0) return ft::import_child_main(argc, argv);
   if (argc < 2) return fmt::print("usage: jumps_bench SHOT.toml [POSES A SECOND] [MILLIMETRES]\n"), 2;
-  return ft::print_jumps(argv[1], argc > 2 ? std::atof(argv[2]) : 500, 1e-3 * (argc > 3 ? std::atof(argv[3]) : 4));
+  const double rate = argc > 2 ? std::atof(argv[2]) : 500, millimetres = argc > 3 ? std::atof(argv[3]) : 4;
+  if (!(rate > 0) || !(millimetres > 0)) return fmt::print("poses a second and millimetres are numbers above 0\n"), 2;
+  return ft::print_jumps(argv[1], rate, 1e-3 * millimetres);
 }

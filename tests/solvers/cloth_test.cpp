@@ -51,8 +51,8 @@ void expect_clean(const FrameReport& r) {
 }
 
 TEST(ClothSolver, takes_shorter_steps_for_cloth_that_turns_fast) {
-  const auto substeps_at = [](double spin) {  // rad/s, in its plane
-    const ClothSetup setup = sheet_on(nullptr, 12, 0);
+  const auto substeps_at = [](double spin, int cells = 12) {  // rad/s, in its plane
+    const ClothSetup setup = sheet_on(nullptr, cells, 0);
     auto solver = solver_of(setup);
     State state = solver->initial_state();
     std::vector<Vec3> v, v_previous;
@@ -65,9 +65,10 @@ TEST(ClothSolver, takes_shorter_steps_for_cloth_that_turns_fast) {
     expect_clean(report);
     return report.substeps;
   };
-  EXPECT_EQ(substeps_at(5), 4);    // a turn of 0.05 rad in each
-  EXPECT_EQ(substeps_at(40), 9);   // of 0.185, for 0.42 in four
-  EXPECT_EQ(substeps_at(80), 17);  // of 0.196
+  EXPECT_EQ(substeps_at(5), 4);      // a turn of 0.05 rad in each
+  EXPECT_EQ(substeps_at(40), 9);     // of 0.185, for 0.42 in four
+  EXPECT_EQ(substeps_at(80), 17);    // of 0.196
+  EXPECT_EQ(substeps_at(5, 60), 5);  // finer cloth: 1 to 1.25 edges in each
 }
 
 TEST(ClothSolver, drapes_over_a_ball_at_rest_without_crossing_it) {
