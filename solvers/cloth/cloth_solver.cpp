@@ -1,8 +1,7 @@
 // The walk of a frame:
 //   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
 //   2. substeps from the body's speed near the cloth, from how fast the cloth turns and from its own speed in edges; in
-//   each: collider and pins at
-//      its end, then BodyAdvance (carry, CCD, Newton, truncation)
+//      each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton, truncation)
 //   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
 //      the substeps, at most three times and as long as it helps
 //   4. parts that no cloth touches any more hold the cloth again; the report
