@@ -67,8 +67,11 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.v_t0 = cloth.v;
   step.x_tm1 = cloth.x_previous;
   step.v_tm1 = cloth.v_previous;
+  step.x_tm2 = cloth.x_older;
+  step.v_tm2 = cloth.v_older;
   step.h = h;
   step.h_previous = cloth.h_previous;
+  step.h_older = cloth.h_older;
   step.time = in.time_t0 + end * in.h;
   step.all_start = s.piece.start;
   step.all_begin = s.end;
@@ -115,10 +118,13 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     sum.peak = std::max(sum.peak, force);
     if (force > 0) sum.contact_time += h;
   }
+  cloth.x_older.swap(cloth.x_previous);
+  cloth.v_older.swap(cloth.v_previous);
   cloth.x_previous.swap(cloth.x);
   cloth.v_previous.swap(cloth.v);
   cloth.x.swap(s.x);
   cloth.v.swap(s.v);
+  cloth.h_older = cloth.h_previous;
   cloth.h_previous = step.h;
 }
 

@@ -10,8 +10,10 @@
 namespace ft {
 
 struct ClothMotion {
-  std::vector<Vec3> x, v, x_previous, v_previous;
-  double h_previous = 0;         ///< s; 0: no history
+  std::vector<Vec3> x, v;
+  std::vector<Vec3> x_previous, v_previous;  ///< one step of h_previous before
+  std::vector<Vec3> x_older, v_older;        ///< and one of h_older before that
+  double h_previous = 0, h_older = 0;        ///< s; 0: no history
   std::vector<double> released;  ///< per cloth vertex: collider part that it may pass, with all smaller ones; -1 none
   std::vector<double> tangled;   ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
 };

@@ -114,24 +114,26 @@ State ClothSolver::initial_state() const {
   mark_tangled(*model_, own_crossings(*model_, crossings_within(m.x, model_->triangles)), m.tangled);
   // A history of constant acceleration makes BDF2 exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
-  m.x_previous = m.x;
-  m.v_previous = m.v;
+  m.x_previous = m.x_older = m.x;
+  m.v_previous = m.v_older = m.v;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     if (model_->unused[i]) continue;
     m.x_previous[i] += 0.5 * h * h * setup.gravity;
     m.v_previous[i] -= h * setup.gravity;
+    m.x_older[i] += 2 * h * h * setup.gravity;
+    m.v_older[i] -= 2 * h * setup.gravity;
   }
   for (const PinPoint& pin : model_->pins) {
     if (pin.hold.share(state.time) == 0) continue;
-    m.x_previous[at(pin.vertex)] = m.x[at(pin.vertex)];
-    m.v_previous[at(pin.vertex)] = m.v[at(pin.vertex)];
+    m.x_previous[at(pin.vertex)] = m.x_older[at(pin.vertex)] = m.x[at(pin.vertex)];
+    m.v_previous[at(pin.vertex)] = m.v_older[at(pin.vertex)] = m.v[at(pin.vertex)];
   }
   // Nor does cloth that is still to be sewn fall.
   std::vector<Vec3> eased(m.x.size(), Vec3::Zero());
   if (ease_sewing(*model_, state.time, std::vector<Vec3>(m.x.size(), Vec3::Zero()), eased))
     for (std::size_t i = 0; i < m.x.size(); ++i)
-      if (eased[i] != Vec3::Zero()) m.x_previous[i] = m.x[i], m.v_previous[i] = m.v[i];
-  m.h_previous = h;
+      if (eased[i] != Vec3::Zero()) m.x_previous[i] = m.x_older[i] = m.x[i], m.v_previous[i] = m.v_older[i] = m.v[i];
+  m.h_previous = m.h_older = h;
   store(state, m);
   return state;
 }

@@ -82,7 +82,7 @@ struct ImplicitStep::Scratch {
   LinearSystem system;
   ContactPotential contact;
   CommonMotion common_motion;
-  std::vector<Vec3> y, gradient, direction, common, cut, all, trial;
+  std::vector<Vec3> past, y, gradient, direction, common, cut, all, trial;
   std::vector<double> share, missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
   std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
@@ -100,7 +100,9 @@ ImplicitStep::~ImplicitStep() = default;
 StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::span<Vec3> v_out) {
   Scratch& s = *scratch_;
   const std::size_t n = at(model_.vertex_count());
-  const IntegratorWeights w = integrator_weights(in.h, in.h_previous, model_.setup.bdf2);
+  const bool multistep = model_.setup.bdf2;
+  const IntegratorWeights w = multistep ? blended_weights(in.h, in.h_previous, in.h_older) : IntegratorWeights{};
+  const IntegratorWeights rate = multistep ? bdf2_weights(in.h, in.h_previous) : IntegratorWeights{};
   const double bh = w.beta * in.h;
   const double inertia = 1.0 / (bh * bh);
   StepResult result;
@@ -108,20 +110,22 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
 
   StepContext context;
   context.h = in.h;
-  context.beta_h = bh;
+  context.beta_h = rate.beta * in.h;
   context.x_t0 = in.x_t0;
   context.v_t0 = in.v_t0;
   context.x_tm1 = in.x_tm1;
-  context.a = w.a;
-  context.b = w.b;
+  context.a = rate.a;
+  context.b = rate.b;
   context.time = in.time;
   for (const auto& energy : model_.energies) energy->begin_step(context);
 
+  s.past.resize(n);
   s.y.resize(n);
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      s.y[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i]) +
-               bh * bh * model_.setup.gravity;
+      s.past[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + w.c * in.x_tm2[i];
+      s.y[i] =
+          s.past[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i] + w.c * in.v_tm2[i]) + bh * bh * model_.setup.gravity;
       if (!in.push.empty()) s.y[i] += bh * bh * in.push[i];
     }
   });
@@ -287,7 +291,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   const std::span<const Vec3> x = cloth(s.all);
   for (std::size_t i = 0; i < n; ++i) {
     x_out[i] = x[i];
-    v_out[i] = (x[i] - w.a * in.x_t0[i] + w.b * in.x_tm1[i]) / bh;
+    v_out[i] = (x[i] - s.past[i]) / bh;
   }
   result.finite = result.finite && all_finite(x_out);
   return result;

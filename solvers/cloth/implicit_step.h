@@ -17,12 +17,12 @@
 namespace ft {
 
 struct StepInput {
-  std::span<const Vec3> x_t0, v_t0, x_tm1, v_tm1;  ///< cloth
-  double h = 0, h_previous = 0;                    ///< s
-  double time = 0;                                 ///< at the end [s]
-  std::span<const Vec3> all_start;                 ///< cloth and body at the start: slip is measured from here
-  std::span<const Vec3> all_begin;                 ///< carried cloth and body at the end of the step
-  std::span<const Vec3> pin_target;                ///< per pin, at the end of the step
+  std::span<const Vec3> x_t0, v_t0, x_tm1, v_tm1, x_tm2, v_tm2;  ///< cloth
+  double h = 0, h_previous = 0, h_older = 0;                     ///< s
+  double time = 0;                                               ///< at the end [s]
+  std::span<const Vec3> all_start;      ///< cloth and body at the start: slip is measured from here
+  std::span<const Vec3> all_begin;      ///< carried cloth and body at the end of the step
+  std::span<const Vec3> pin_target;     ///< per pin, at the end of the step
   std::span<const Vec3> centre;         ///< of the ball that each cloth vertex has to stay in; all_begin is inside
   std::span<const double> slack;        ///< its radius [m]
   std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none

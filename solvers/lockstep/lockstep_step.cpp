@@ -99,7 +99,7 @@ bool LockstepStep::newton(LockstepStepReport& report) {
 
 LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, LockstepMotion& m) {
   const std::size_t n = at(model_.node_count()), points = at(model_.point_count());
-  const IntegratorWeights w = integrator_weights(h, m.h_previous, model_.setup.bdf2);
+  const IntegratorWeights w = model_.setup.bdf2 ? bdf2_weights(h, m.h_previous) : IntegratorWeights{};
   const double bh = w.beta * h;
   LockstepStepReport report;
   report.effective_step = bh / (1 - w.b);

@@ -130,7 +130,7 @@ std::vector<ValidationCase> validate_substep_invariance() {
   };
   const auto a = end(16), b = end(32), c = end(64);
   return {validation_case("substep_invariance", "ratio of the changes from h to h/2 and from h/2 to h/4",
-                          distance(a, b) / distance(b, c), 4, 0.7, "1", "second order of BDF2")};
+                          distance(a, b) / distance(b, c), 4, 0.7, "1", "second order of the integrator")};
 }
 
 std::vector<ValidationCase> validate_terminal_velocity() {

@@ -35,10 +35,10 @@ struct TwoSheets {
     EXPECT_TRUE(built);
     model = std::move(*built);
     const std::size_t n = model->start.size();
-    cloth.x = cloth.x_previous = piece.start = model->start;
+    cloth.x = cloth.x_previous = cloth.x_older = piece.start = model->start;
     cloth.v.assign(n, Vec3::Zero());
     for (std::size_t i = n / 2; i < n; ++i) cloth.v[i].y() = speed;
-    cloth.v_previous = cloth.v;
+    cloth.v_previous = cloth.v_older = cloth.v;
     cloth.h_previous = k_step;
     cloth.released.assign(n, -1);
     cloth.tangled.assign(n, 0);

@@ -65,8 +65,8 @@ TEST(ClothSolver, takes_shorter_steps_for_cloth_that_turns_fast) {
     expect_clean(report);
     return report.substeps;
   };
-  EXPECT_EQ(substeps_at(5), 4);      // a turn of 0.05 rad in each
-  EXPECT_EQ(substeps_at(40), 9);     // of 0.185, for 0.42 in four
+  EXPECT_EQ(substeps_at(5), 3);      // a turn of 0.07 rad in each
+  EXPECT_EQ(substeps_at(40), 9);     // of 0.185, for 0.56 in three
   EXPECT_EQ(substeps_at(80), 17);    // of 0.196
   EXPECT_EQ(substeps_at(5, 60), 5);  // finer cloth: 1 to 1.25 edges in each
 }
