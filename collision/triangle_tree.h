@@ -120,9 +120,11 @@ class TriangleTree {
     for (int k = 0; k < leaf.count; ++k) {
       const int index = order_[static_cast<std::size_t>(leaf.first + k)];
       const Triangle& t = triangles[static_cast<std::size_t>(index)];
-      const ClosestOnTriangle found =
-          closest_on_triangle(p, positions[static_cast<std::size_t>(t[0])], positions[static_cast<std::size_t>(t[1])],
-                              positions[static_cast<std::size_t>(t[2])]);
+      const Vec3 &a = positions[static_cast<std::size_t>(t[0])], &b = positions[static_cast<std::size_t>(t[1])],
+                 &c = positions[static_cast<std::size_t>(t[2])];
+      const Vec3 outside = (a.cwiseMin(b).cwiseMin(c) - p).cwiseMax(p - a.cwiseMax(b).cwiseMax(c)).cwiseMax(0.0);
+      if (outside.squaredNorm() * (1 - 1e-12) > hit.closest.squared_distance) continue;  // its box is farther
+      const ClosestOnTriangle found = closest_on_triangle(p, a, b, c);
       if (found.squared_distance < hit.closest.squared_distance ||
           (found.squared_distance == hit.closest.squared_distance && (hit.triangle < 0 || index < hit.triangle)))
         hit = {found, index};

@@ -13,6 +13,9 @@ constexpr std::size_t k_block = 2048;  ///< of a loop over vertices
 /// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
+/// What follows a shortened piece is at most so many times as long: what blocked it is mostly still there, looking for
+/// pairs over the whole rest is dear, and the integrator keeps its history (blended_weights()).
+constexpr double k_regrowth = 1.5;
 /// What Newton may still strain the edges by at the end of a shortened piece [1]: a gap that an unconverged solve
 /// leaves closed blocks the next advance.
 constexpr double k_shortened_settled = 1e-3;
@@ -178,7 +181,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
     solve(in, h, end, share < 1, cloth, report);
     done = end;
-    share = 1;
+    share = share < 1 ? std::min(1.0, k_regrowth * h / ((1 - done) * in.h)) : 1;
   }
   return report;
 }

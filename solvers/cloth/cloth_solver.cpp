@@ -112,7 +112,7 @@ State ClothSolver::initial_state() const {
   m.v.assign(m.x.size(), Vec3::Zero());
   m.released.assign(m.x.size(), -1.0);
   mark_tangled(*model_, own_crossings(*model_, crossings_within(m.x, model_->triangles)), m.tangled);
-  // A history of constant acceleration makes BDF2 exact for free fall from the first step on.
+  // A history of constant acceleration makes the integrator exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
   m.x_previous = m.x_older = m.x;
   m.v_previous = m.v_older = m.v;
@@ -285,8 +285,9 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
   }
 }
 
-/// Something lets go or takes hold at once. BDF2 is then started anew by a step of implicit Euler: the history knows
-/// nothing of the new force, and cloth that is let go would stay behind free fall by half a substep for good.
+/// Something lets go or takes hold at once. The integrator is then started anew by a step of implicit Euler: the
+/// history knows nothing of the new force, and cloth that is let go would stay behind free fall by half a substep for
+/// good.
 bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
   const auto jumps = [&](const auto& point) { return point.hold.jumps(time_t0, time_t1); };
   const auto& attachments = model_->topology->attachments;

@@ -63,7 +63,7 @@ struct ClothSetup {
   double linear_tolerance = 3e-2;
   /// What moves has edges this many times as long as the garments', 1..4; their vertices ride on it. For previews.
   double coarsen = 1;
-  bool bdf2 = true;  ///< false: implicit Euler
+  bool bdf2 = true;  ///< with a quarter of BDF3; false: implicit Euler
   FeasibleSettings feasible;
   std::vector<Teleport> teleports;  ///< of the primary: the cloth goes along
 };

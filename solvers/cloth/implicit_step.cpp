@@ -102,6 +102,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   const std::size_t n = at(model_.vertex_count());
   const bool multistep = model_.setup.bdf2;
   const IntegratorWeights w = multistep ? blended_weights(in.h, in.h_previous, in.h_older) : IntegratorWeights{};
+  // What damps needs the rate of strains, of which two points back are known.
   const IntegratorWeights rate = multistep ? bdf2_weights(in.h, in.h_previous) : IntegratorWeights{};
   const double bh = w.beta * in.h;
   const double inertia = 1.0 / (bh * bh);

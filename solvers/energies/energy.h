@@ -16,13 +16,12 @@ namespace ft {
 
 /// What a step knows besides positions. Lagged quantities (damping, wind) use the start of the substep.
 struct StepContext {
-  double h = 1.0 / 240;       ///< substep [s]
-  double beta_h = 1.0 / 240;  ///< effective h of the integrator: h for implicit Euler, 2/3 h for BDF2 at constant h [s]
+  double h = 1.0 / 240;        ///< substep [s]
+  double beta_h = 1.0 / 240;   ///< of the rate below: h for implicit Euler, 2/3 h for BDF2 at constant h [s]
   std::span<const Vec3> x_t0;  ///< positions at the start of the substep [m]
   std::span<const Vec3> v_t0;  ///< velocities at the start of the substep [m/s]
   double time = 0;             ///< at the end of the substep [s]
-  /// The integrator's rate of any q: (q - a q_t0 + b q_tm1) / beta_h, with a - b = 1. Without x_tm1 (empty): (q - q_t0)
-  /// / h.
+  /// The rate of any q: (q - a q_t0 + b q_tm1) / beta_h, with a - b = 1. Without x_tm1 (empty): (q - q_t0) / h.
   std::span<const Vec3> x_tm1;  ///< positions one substep earlier [m]; may be empty
   double a = 1, b = 0;
 
