@@ -11,7 +11,7 @@
 
 #include "collision/carve_plan.h"
 #include "collision/feasible_collider.h"
-#include "collision/nearby_leaves.h"
+#include "collision/nearby_triangles.h"
 #include "collision/part_distance.h"
 
 namespace ft {
@@ -54,7 +54,7 @@ struct Carver {
   std::vector<Opponent> opponents_now(const Yielding& part, const TreeBox& own, Scratch& scratch) const;
   void find_active(Carving& carving, const Scratch& scratch) const;
   void look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin,
-                   std::size_t end, NearbyLeaves& leaves, std::vector<Side>& side) const;
+                   std::size_t end, NearbyTriangles& nearby, std::vector<Side>& side) const;
   void resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch,
                        std::vector<Side>& side) const;
   template <class Keep, class Reach>

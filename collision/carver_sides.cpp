@@ -37,23 +37,30 @@ std::vector<Opponent> Carver::opponents_now(const Yielding& part, const TreeBox&
 void Carver::resolve_unknown(const Carving& carving, const Opponent& opponent, const Scratch& scratch,
                              std::vector<Side>& side) const {
   const Yielding& part = carving.part;
-  std::vector<int> queue, piece;
+  std::vector<int> unknown, queue;
+  for (int v = 0; v < static_cast<int>(side.size()); ++v)
+    if (side[at(v)] == Side::k_unknown) unknown.push_back(v);
   const auto grow = [&](Side as) {
     while (!queue.empty()) {
       const int v = queue.back();
       queue.pop_back();
-      piece.push_back(v);
       for (const int w : part.neighbours.row(v))
         if (side[at(w)] == Side::k_unknown) side[at(w)] = as, queue.push_back(w);
     }
   };
-  for (int v = 0; v < static_cast<int>(side.size()); ++v)
-    if (side[at(v)] == Side::k_away) queue.push_back(v);
-  grow(Side::k_away);
+  for (const int v : unknown) {
+    const auto row = part.neighbours.row(v);
+    if (side[at(v)] != Side::k_unknown ||
+        std::none_of(row.begin(), row.end(), [&](int w) { return side[at(w)] == Side::k_away; }))
+      continue;
+    side[at(v)] = Side::k_away;
+    queue.assign(1, v);
+    grow(Side::k_away);
+  }
   const bool closed = opponent.parts.size() == 1 && surface->closed(opponent.parts[0]);
   double reach = 0;
   for (const int other : opponent.parts) reach = std::max(reach, surface->depth_limit(other));
-  for (int v = 0; v < static_cast<int>(side.size()); ++v) {
+  for (const int v : unknown) {
     if (side[at(v)] != Side::k_unknown) continue;
     int hint = -1;
     const auto answer = surface->distance(scratch.x[at(part.vertices[at(v)])], opponent.parts, part.allowed, reach,
@@ -68,34 +75,34 @@ void Carver::resolve_unknown(const Carving& carving, const Opponent& opponent, c
 
 /// Sides and contacts of one cluster of vertices [begin, end) with respect to one opponent.
 void Carver::look_around(Carving& carving, const Opponent& opponent, const Scratch& scratch, std::size_t begin,
-                         std::size_t end, NearbyLeaves& leaves, std::vector<Side>& side) const {
+                         std::size_t end, NearbyTriangles& nearby, std::vector<Side>& side) const {
   const Yielding& part = carving.part;
-  Box box;
-  for (std::size_t i = begin; i < end; ++i) box.include(scratch.x[at(part.vertices[i])]);
-  box.inflate(near);
-  const TreeBox cluster = TreeBox::around(box.lo, box.hi);
-  leaves.begin(0.5 * (box.lo + box.hi));
-  bool in_box = false;
-  for (const int other : opponent.parts) {
-    const TriangleTree& tree = scratch.trees[at(other)];
-    if (!tree.box().overlaps(cluster)) continue;
-    in_box = true;
-    tree.for_each_leaf_near(cluster, [&](const TriangleTree::Node& leaf) { leaves.add(tree, leaf); });
-  }
+  Box box;  // of the vertices that are near a tree and have to keep a distance
+  bool any = false;
   for (std::size_t i = begin; i < end; ++i) {
     side[i] = Side::k_away;
-    if (!in_box) continue;
     const Vec3& p = scratch.x[at(part.vertices[i])];
-    bool held = false;
     for (const int other : opponent.parts) {
       if (scratch.trees[at(other)].box().squared_distance(p) > near * near) continue;
+      const bool free = plan.keep(part, static_cast<int>(i), other) == k_free;
       // Free vertices stand where the surfaces overlap for good: sides must not spread over them.
-      if (side[i] == Side::k_away) side[i] = Side::k_near;
-      held = held || plan.keep(part, static_cast<int>(i), other) != k_free;
+      if (!free)
+        side[i] = Side::k_unknown;
+      else if (side[i] == Side::k_away)
+        side[i] = Side::k_near;
     }
-    if (!held) continue;
-    side[i] = Side::k_unknown;
-    const TriangleTree::Hit hit = leaves.closest(p, near, scratch.x, surface->triangles());
+    if (side[i] != Side::k_unknown) continue;
+    any = true;
+    box.include(p);
+  }
+  if (!any) return;
+  box.inflate(near);
+  nearby.begin(TreeBox::around(box.lo, box.hi));
+  for (const int other : opponent.parts) nearby.add(scratch.trees[at(other)], scratch.x, surface->triangles());
+  for (std::size_t i = begin; i < end; ++i) {
+    if (side[i] != Side::k_unknown) continue;
+    const Vec3& p = scratch.x[at(part.vertices[i])];
+    const TriangleTree::Hit hit = nearby.closest(p, near, scratch.x, surface->triangles());
     if (hit.triangle < 0) continue;
     side[i] = Side::k_near;
     const auto answer = surface->judge(p, hit, part.allowed, scratch.x);
@@ -112,9 +119,9 @@ void Carver::find_active(Carving& carving, const Scratch& scratch) const {
   std::vector<Side> side(count);
   for (const Opponent& opponent : carving.opponents) {
     parallel_for(count, k_carve_block, [&](std::size_t begin, std::size_t end) {
-      NearbyLeaves leaves;
+      NearbyTriangles nearby;
       for (std::size_t i = begin; i < end; i += k_cluster)
-        look_around(carving, opponent, scratch, i, std::min(end, i + k_cluster), leaves, side);
+        look_around(carving, opponent, scratch, i, std::min(end, i + k_cluster), nearby, side);
     });
     if (std::find(side.begin(), side.end(), Side::k_unknown) == side.end()) continue;
     resolve_unknown(carving, opponent, scratch, side);

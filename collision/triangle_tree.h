@@ -79,19 +79,6 @@ class TriangleTree {
       }
     }
   }
-  /// Calls visit(leaf) for every leaf that the box overlaps.
-  template <class Visit>
-  void for_each_leaf_near(const TreeBox& box, Visit&& visit) const {
-    for (int i = 0; i < static_cast<int>(nodes_.size());) {
-      const Node& node = nodes_[static_cast<std::size_t>(i)];
-      if (!node.box.overlaps(box)) {
-        i = next_[static_cast<std::size_t>(i)];
-        continue;
-      }
-      if (node.count > 0) visit(node);
-      ++i;
-    }
-  }
   /// A share of the search for pairs of two trees, or of one with itself: two nodes, or one against itself (b -1).
   struct PairTask {
     int a, b;
@@ -124,11 +111,13 @@ class TriangleTree {
                  &c = positions[static_cast<std::size_t>(t[2])];
       const Vec3 outside = (a.cwiseMin(b).cwiseMin(c) - p).cwiseMax(p - a.cwiseMax(b).cwiseMax(c)).cwiseMax(0.0);
       if (outside.squaredNorm() * (1 - 1e-12) > hit.closest.squared_distance) continue;  // its box is farther
-      const ClosestOnTriangle found = closest_on_triangle(p, a, b, c);
-      if (found.squared_distance < hit.closest.squared_distance ||
-          (found.squared_distance == hit.closest.squared_distance && (hit.triangle < 0 || index < hit.triangle)))
-        hit = {found, index};
+      improve(hit, closest_on_triangle(p, a, b, c), index);
     }
+  }
+  /// Takes what was found on a triangle where it is nearer; of two as near, the lower triangle.
+  static void improve(Hit& hit, const ClosestOnTriangle& found, int triangle) {
+    const double d2 = found.squared_distance, least = hit.closest.squared_distance;
+    if (d2 < least || (d2 == least && (hit.triangle < 0 || triangle < hit.triangle))) hit = {found, triangle};
   }
   /// Distance along the unit direction to the first triangle other than skip, or length when there is none before it
   /// [m].
