@@ -14,6 +14,9 @@ constexpr float k_rounding = 1.0001f;  ///< of float sums of ways
 constexpr float k_no_way = 1e30f;
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
 constexpr double k_truncation_reach = 2.3;
+/// Share of the radius below which the contact law rises faster: cloth that is drawn taut over an edge of the body, at
+/// 100 kPa, must keep a gap in which it can follow the body [1].
+constexpr double k_taut = 0.125;
 
 PairGeometry geometry_of(bool vertex_face, const std::array<int, 4>& v, std::span<const Vec3> x) {
   return vertex_face ? vertex_face_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])])
@@ -44,7 +47,9 @@ ContactLaw contact_law(double d, double r, double k) {
   if (d > half) return {0.5 * k * (r - d) * (r - d), k * (r - d), k};
   const double a = 0.25 * k * r * r;
   const double safe = std::max(d, 1e-9);
-  return {0.125 * k * r * r - a * std::log(safe / half), a / safe, a / (safe * safe)};
+  const double taut = std::max(0.0, std::log(k_taut * r / safe)), factor = 1 + 3 * taut * taut;
+  return {0.125 * k * r * r + a * (taut * taut * taut - std::log(safe / half)), a / safe * factor,
+          a / (safe * safe) * (factor + 6 * taut)};
 }
 
 void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h,

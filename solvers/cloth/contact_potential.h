@@ -1,6 +1,7 @@
 // Contact and friction as terms of the incremental potential, over the pairs that can touch in one solve.
 //   E(d) = k/2 (r - d)^2             r/2 < d < r
 //   E(d) = -k r^2/4 ln(2d/r) + c     d < r/2      (C2 at r/2: force k r/2, stiffness k; unbounded as d -> 0)
+//        + k r^2/4 ln(r/8d)^3        d < r/8      (C2 at r/8: taut cloth keeps a gap in which it can follow the body)
 // k = stiffness per area times the lumped cloth area of the pair, so that pressure does not depend on the mesh. The
 // radius is cut to half the rest distance for pairs of cloth that are near each other at rest: neighbours never repel.
 // Friction is lagged (normal force of the current linearisation), relative to the moving surface, smooth below eps_v.

@@ -99,5 +99,28 @@ TEST(ContactPotential, takes_up_pairs_that_come_late_as_if_they_had_been_there) 
   }
 }
 
+TEST(ContactLaw, Force_and_stiffness_are_its_slopes_and_do_not_jump) {
+  constexpr double r = 2e-3, k = 5e5;
+  for (double d = 1e-6; d < 1.2 * r; d *= 1.07) {
+    const double step = 1e-4 * d;
+    const ContactLaw before = contact_law(d - step, r, k), here = contact_law(d, r, k),
+                     after = contact_law(d + step, r, k);
+    EXPECT_NEAR((before.energy - after.energy) / (2 * step), here.force, 1e-6 * here.force + 1e-6 * k * r) << d;
+    EXPECT_NEAR((before.force - after.force) / (2 * step), here.stiffness, 1e-3 * here.stiffness + 1e-3 * k) << d;
+    EXPECT_GE(before.force, after.force);
+  }
+  for (const double join : {r / 2, r / 8}) {
+    const ContactLaw inside = contact_law(join * (1 - 1e-9), r, k), outside = contact_law(join * (1 + 1e-9), r, k);
+    EXPECT_NEAR(inside.energy, outside.energy, 1e-6 * outside.energy);
+    EXPECT_NEAR(inside.force, outside.force, 1e-6 * outside.force);
+    EXPECT_NEAR(inside.stiffness, outside.stiffness, 1e-6 * outside.stiffness);
+  }
+}
+
+TEST(ContactLaw, Holds_a_hundred_kilopascal_off_by_more_than_a_fiftieth_of_the_radius) {
+  EXPECT_GT(contact_law(2e-3 / 50, 2e-3, 5e5).force, 1e5);
+  EXPECT_GT(contact_law(3e-3 / 50, 3e-3, 5e5).force, 1e5);
+}
+
 }  // namespace
 }  // namespace ft

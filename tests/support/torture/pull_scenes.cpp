@@ -1,4 +1,4 @@
-// Torture scenes in which cloth is pulled: twisted, through a ring, through a funnel, into a knot.
+// Torture scenes in which cloth is pulled: twisted, through a ring, through a funnel, into a knot, over an edge.
 #include <numbers>
 
 #include "tests/support/torture/scene_functions.h"
@@ -134,6 +134,34 @@ ClothSetup knot() {
            [apart](double t) { return shift(-k_pull * ease(t, 0, 2) * apart); });
   body.add("last", moved(ball, beyond(k_end, 1)), [apart](double t) { return shift(k_pull * ease(t, 0, 2) * apart); });
   return setup_of(std::move(ribbon), body.build());
+}
+
+/// A strip of ripstop, held at both ends, over the edge of a board that rises under it, rocks and shifts along it: some
+/// hundred kPa of contact where the strip turns.
+ClothSetup taut() {
+  constexpr double k_length = 0.4, k_width = 0.1, k_rise = 0.14;
+  constexpr int k_columns = 66, k_rows = 16;
+  const Vec3 board(4e-3, 0.2, 0.16);
+  RigidParts body;
+  body.add("board", moved(box(board), {0, -0.5 * board.y() - 4e-3, 0}), [=](double t) {
+    const double rise = k_rise * ease(t, 0, 0.8), rock = std::sin(2 * k_pi * std::max(0.0, t - 0.4));
+    return shift({0.02 * rock, rise, 0}) * turn({0, -board.y(), 0}, Vec3::UnitZ(), 0.1 * rock);
+  });
+  for (const double side : {-1.0, 1.0})
+    body.add(side < 0 ? "left" : "right", moved(box({20e-3, 6e-3, k_width}), {side * (0.5 * k_length + 14e-3), 0, 0}),
+             [](double) { return Pose::Identity(); });
+  ClothGarment strip;
+  strip.name = "strip";
+  strip.fabric = *find_fabric("ripstop");
+  strip.thickness = 2e-3;
+  strip.mesh = grid("strip", k_columns, k_rows, false,
+                    [&](double s, double t) { return Vec3(k_length * (s - 0.5), 0, k_width * (0.5 - t)); });
+  ClothPin pin = firm_pin();
+  for (int j = 0; j <= k_rows; ++j)
+    for (const int i : {0, k_columns}) pin.vertices.push_back(i + (k_columns + 1) * j);
+  pin.max_pull = 3e7;
+  strip.pins.push_back(pin);
+  return setup_of(std::move(strip), body.build());
 }
 
 }  // namespace ft::torture

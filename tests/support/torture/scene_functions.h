@@ -5,11 +5,12 @@
 
 namespace ft::torture {
 
-// pull_scenes.cpp: cloth that is twisted, pulled through openings, knotted.
+// pull_scenes.cpp: cloth that is twisted, pulled through openings, knotted, drawn over an edge.
 ClothSetup twist();
 ClothSetup ring();
 ClothSetup funnel();
 ClothSetup knot();
+ClothSetup taut();
 
 // press_scenes.cpp: cloth between things that close.
 ClothSetup plates();

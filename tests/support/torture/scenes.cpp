@@ -17,6 +17,8 @@ std::span<const Scene> scenes() {
       {"ring", "a sheet is pulled through a ring", ring, 44, 0.3, 5, true, ""},
       {"funnel", "a sheet is pulled through a funnel", funnel, 44, 0.3, 5, true, ""},
       {"knot", "a knotted ribbon is pulled tight", knot, 54, 0.3, 5, true, ""},
+      {"taut", "a strip of ripstop is drawn taut over the edge of a board that rises and rocks", taut, 48, 0.2, 5, true,
+       ""},
       {"plates", "plates close on a tube of cloth to less than its thickness, and open", plates, 60, 0.2, 4, true, ""},
       {"plates_no_room", "plates pass into each other with cloth between them, and open", plates_no_room, 72, 0.3, 4,
        false, ""},
