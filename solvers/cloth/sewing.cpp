@@ -10,7 +10,10 @@ namespace {
 
 /// Slows cloth down while it is sewn [1/s]: ten times the speed of seams that shrink in half a second.
 constexpr double k_drag = 10;
-/// Weight comes back over this share of the time that the seams took, friction after it over the next.
+/// Cloth keeps this share of its weight, at which it sinks by 5 cm/s: a sleeve that was laid out beside the top of an
+/// arm closes around it then, and not above it.
+constexpr double k_weight_kept = 0.05;
+/// The rest comes back over this share of the time that the seams took, friction after it over the next.
 constexpr double k_weight_back = 0.5, k_friction_back = 0.25;
 
 /// Seams that do not say how long they take are closed after this share of the pre-roll.
@@ -122,7 +125,7 @@ bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, 
     if (!(lasts > 0) || model.unused[i]) continue;
     const double ease = std::clamp(1 - (time - model.sewn_until[i]) / (k_weight_back * lasts), 0.0, 1.0);
     if (ease == 0) continue;
-    acceleration[i] -= ease * (model.setup.gravity + k_drag * v[i]);
+    acceleration[i] -= ease * ((1 - k_weight_kept) * model.setup.gravity + k_drag * v[i]);
     any = true;
   }
   return any;

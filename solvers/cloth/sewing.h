@@ -1,7 +1,7 @@
 // Panels into garments, in the pre-roll: seams shrink from where the panels were placed until they are closed.
-// Meanwhile the cloth weighs nothing and is slowed down, so that panels come straight from their places to each other
-// instead of falling first, and it slides, so that the garment comes to hang where it fits and not where a seam first
-// met the body. Weight returns, then friction. A function of the time alone: nothing to save.
+// Meanwhile the cloth weighs next to nothing and is slowed down, so that panels come straight from their places to each
+// other instead of falling first, and it slides, so that the garment comes to hang where it fits and not where a seam
+// first met the body. Weight returns, then friction. A function of the time alone: nothing to save.
 #pragma once
 
 #include <span>

@@ -154,8 +154,9 @@ TEST(Sewing, Two_panels_become_one_that_falls_whole) {
     (*made)->system_positions(state, 0, x);
     height = 0;
     for (const Vec3& p : x) height += p.y() / static_cast<double>(x.size());
-    if (f < 12) {
-      EXPECT_NEAR(height, 0.5, 1e-3) << f;  // weightless while it is sewn, and both come half the way
+    if (f < 12) {  // while it is sewn it sinks, at most at 5 cm/s, and both come half the way
+      EXPECT_LT(height, 0.5) << f;
+      EXPECT_GT(height, 0.5 - 0.05 * (f + 1) / 24.0 - 1e-3) << f;
     }
     if (f == 13) {
       EXPECT_LT(widest_seam(mesh, x), 1e-3);
