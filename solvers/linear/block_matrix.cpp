@@ -21,7 +21,7 @@ int BlockPattern::find(int row, int col) const {
 
 void BlockMatrix::reset(const BlockPattern& p) {
   pattern = &p;
-  blocks.resize(p.column.size());
+  blocks.resize(p.column.size() + 1);
   parallel_for(blocks.size(), k_block,
                [&](std::size_t begin, std::size_t end) { std::fill_n(&blocks[begin], end - begin, Mat3f::Zero()); });
 }

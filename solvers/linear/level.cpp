@@ -16,8 +16,7 @@ constexpr std::size_t k_rows = 256;  ///< rows per block of work
 
 void Level::build() {
   const std::size_t n = at(size());
-  matrix.build(*pattern);
-  for (int i = 0; i < size(); ++i) diagonal.push_back(matrix.place(*pattern, i, pattern->diagonal[at(i)]));
+  matrix.reset(*pattern);
   inverse.resize(n);
   for (auto* v : {&x, &r, &b}) v->assign(n, Vec4f::Zero());
   for (std::size_t i = 0; i < n; ++i) {
@@ -54,8 +53,7 @@ bool link_levels(Level& fine, Level& coarse) {
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b) {
           if (row.coarse[a] < 0 || col.coarse[b] < row.coarse[a]) continue;
-          upper[at(row.coarse[a])][col.coarse[b]].push_back(
-              {fine.matrix.place(*fine.pattern, static_cast<int>(i), k), row.weight[a] * col.weight[b]});
+          upper[at(row.coarse[a])][col.coarse[b]].push_back({k, row.weight[a] * col.weight[b]});
         }
     }
   std::vector<std::vector<std::array<int, 4>>> stencils(1);
@@ -71,8 +69,8 @@ bool link_levels(Level& fine, Level& coarse) {
       fine.gather.insert(fine.gather.end(), list.begin(), list.end());
       fine.gather_start.push_back(static_cast<int>(fine.gather.size()));
       const int row = static_cast<int>(i);
-      fine.upper.push_back(coarse.matrix.place(*coarse.pattern, row, coarse.pattern->find(row, j)));
-      fine.lower.push_back(coarse.matrix.place(*coarse.pattern, j, coarse.pattern->find(j, row)));
+      fine.upper.push_back(coarse.pattern->find(row, j));
+      fine.lower.push_back(coarse.pattern->find(j, row));
     }
   return true;
 }
@@ -80,18 +78,21 @@ bool link_levels(Level& fine, Level& coarse) {
 void galerkin(const Level& fine, Level& coarse) {
   parallel_for(fine.upper.size(), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      Vec4f c0 = Vec4f::Zero(), c1 = Vec4f::Zero(), c2 = Vec4f::Zero();
+      using Eight = Eigen::Array<float, 8, 1>;
+      Eight first = Eight::Zero();
+      float ninth = 0;
       for (int k = fine.gather_start[e]; k < fine.gather_start[e + 1]; ++k) {
         const Level::Contribution& g = fine.gather[at(k)];
-        c0 += g.weight * fine.matrix.column(g.place, 0);
-        c1 += g.weight * fine.matrix.column(g.place, 1);
-        c2 += g.weight * fine.matrix.column(g.place, 2);
+        const float* block = fine.matrix.blocks[at(g.place)].data();
+        first += g.weight * Eigen::Map<const Eight>(block);
+        ninth += g.weight * block[8];
       }
       Mat3f sum;
-      sum << c0.head<3>(), c1.head<3>(), c2.head<3>();
+      Eigen::Map<Eight>(sum.data()) = first;
+      sum(2, 2) = ninth;
       if (fine.upper[e] == fine.lower[e]) sum = (0.5f * (sum + sum.transpose())).eval();
-      coarse.matrix.set(fine.upper[e], sum);
-      coarse.matrix.set(fine.lower[e], sum.transpose());
+      coarse.matrix.blocks[at(fine.upper[e])] = sum;
+      coarse.matrix.blocks[at(fine.lower[e])] = sum.transpose();
     }
   });
 }
@@ -99,7 +100,7 @@ void galerkin(const Level& fine, Level& coarse) {
 void invert_diagonal(Level& level) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Mat3f block = level.matrix.get(level.diagonal[i]);
+      const Mat3f& block = level.matrix.blocks[at(level.pattern->diagonal[i])];
       const float scale = block.trace();
       level.inverse[i] = PaddedBlock();
       if (!(scale > 0)) continue;

@@ -6,18 +6,29 @@
 #include <span>
 #include <vector>
 
+#include "solvers/linear/block_matrix.h"
 #include "solvers/linear/extra_rows.h"
 #include "solvers/linear/interpolation.h"
-#include "solvers/linear/level_matrix.h"
 
 namespace ft {
+
+/// A 3x3 block, columns padded with zeros.
+struct PaddedBlock {
+  Vec4f columns[3] = {Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
+
+  PaddedBlock() = default;
+  explicit PaddedBlock(const Mat3f& block) {
+    for (int c = 0; c < 3; ++c) columns[c].head<3>() = block.col(c);
+  }
+  Vec4f operator*(const Vec4f& v) const { return columns[0] * v[0] + columns[1] * v[1] + columns[2] * v[2]; }
+  float trace() const { return columns[0][0] + columns[1][1] + columns[2][2]; }
+};
 
 struct Level {
   const BlockPattern* pattern = nullptr;
   BlockPattern own_pattern;  ///< of coarse levels
-  LevelMatrix matrix;
+  BlockMatrix matrix;
   ExtraRows extra;                   ///< of the finest: what contacts couple besides
-  std::vector<int> diagonal;         ///< places of the diagonal blocks
   std::vector<PaddedBlock> inverse;  ///< of the diagonal blocks; zero for rows that are held
   float damping = 0.45f;             ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
   std::vector<Vec3> rest;

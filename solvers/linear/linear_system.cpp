@@ -19,7 +19,6 @@ constexpr std::size_t k_rows = 256;  ///< per block of a loop
 
 struct LinearSystem::Impl {
   LinearSettings settings;
-  BlockMatrix matrix;
   std::vector<std::unique_ptr<Level>> levels;
   Eigen::LLT<Eigen::MatrixXd> coarse_factor;
   bool coarse_is_factored = false;
@@ -28,7 +27,7 @@ struct LinearSystem::Impl {
   std::vector<Vec4f> solution, best, direction, product, preconditioned;
 
   Level& fine() { return *levels.front(); }
-  void take_matrix(std::span<const char> fixed);
+  void hold(std::span<const char> fixed);
   void refresh_hierarchy();
   bool start(std::span<const Vec3> right_side);
   bool step(double rz, bool keep);
@@ -41,7 +40,6 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
                            const LinearSettings& settings)
     : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;
-  impl_->matrix.pattern = &pattern;
   auto first = std::make_unique<Level>();
   first->pattern = &pattern;
   first->rest.assign(rest_positions.begin(), rest_positions.end());
@@ -58,15 +56,17 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
 LinearSystem::~LinearSystem() = default;
 
 BlockMatrix& LinearSystem::begin() {
-  impl_->matrix.reset(*impl_->matrix.pattern);
+  Level& level = impl_->fine();
+  level.matrix.reset(*level.pattern);
   impl_->added.clear();
-  impl_->fine().extra.gather(impl_->added, at(impl_->fine().size()));
-  return impl_->matrix;
+  level.extra.gather(impl_->added, at(level.size()));
+  return level.matrix;
 }
 
 void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   Impl& s = *impl_;
-  const BlockPattern& pattern = *s.matrix.pattern;
+  BlockMatrix& matrix = s.fine().matrix;
+  const BlockPattern& pattern = *matrix.pattern;
   for (const PairTerm& term : terms)
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b) {
@@ -74,28 +74,25 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
         const Mat3f value = (term.weight[a] * term.weight[b]) * term.stiffness;
         const int place = a == b ? pattern.diagonal[at(term.vertex[a])] : pattern.find(term.vertex[a], term.vertex[b]);
         if (place >= 0)
-          s.matrix.blocks[at(place)] += value;
+          matrix.blocks[at(place)] += value;
         else
           s.added.push_back({term.vertex[a], term.vertex[b], value});
       }
   s.fine().extra.gather(s.added, at(s.fine().size()));
 }
 
-/// Copies the matrix into the finest level; rows and columns that are held become zero, so that nothing couples to
-/// them.
-void LinearSystem::Impl::take_matrix(std::span<const char> fixed) {
+/// Rows and columns that are held become zero, so that nothing couples to them.
+void LinearSystem::Impl::hold(std::span<const char> fixed) {
   Level& level = fine();
   held.assign(fixed.begin(), fixed.end());
   if (held.empty()) held.assign(at(level.size()), 0);
+  if (std::all_of(held.begin(), held.end(), [](char h) { return h == 0; })) return;
   const BlockPattern& p = *level.pattern;
   ExtraRows& extra = level.extra;
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      int place = level.matrix.place(p, static_cast<int>(i), p.row_start[i]);
-      for (int k = p.row_start[i]; k < p.row_start[i + 1]; ++k, ++place) {
-        const bool nothing = held[i] || held[at(p.column[at(k)])];
-        level.matrix.set(place, nothing ? Mat3f(Mat3f::Zero()) : matrix.blocks[at(k)]);
-      }
+      for (int k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+        if (held[i] || held[at(p.column[at(k)])]) level.matrix.blocks[at(k)].setZero();
       for (int k = extra.start[i]; k < extra.start[i] + extra.used[i]; ++k)
         if (held[i] || held[at(extra.column[at(k)])]) extra.value[at(k)].setZero();
     }
@@ -115,8 +112,7 @@ void LinearSystem::Impl::refresh_hierarchy() {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * last.size(), 3 * last.size());
   for (int i = 0; i < last.size(); ++i)
     for (int k = last.pattern->row_start[at(i)]; k < last.pattern->row_start[at(i) + 1]; ++k)
-      dense.block<3, 3>(3 * i, 3 * last.pattern->column[at(k)]) =
-          last.matrix.get(last.matrix.place(*last.pattern, i, k)).cast<double>();
+      dense.block<3, 3>(3 * i, 3 * last.pattern->column[at(k)]) = last.matrix.blocks[at(k)].cast<double>();
   const double largest = dense.diagonal().maxCoeff();
   for (int i = 0; i < dense.rows(); ++i) dense(i, i) += dense(i, i) > 0 ? 1e-6 * dense(i, i) : std::max(largest, 1.0);
   coarse_factor.compute(dense);
@@ -213,7 +209,7 @@ bool LinearSystem::Impl::step(double rz, bool keep) {
 
 LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> out) {
   Impl& s = *impl_;
-  s.take_matrix(fixed);
+  s.hold(fixed);
   s.refresh_hierarchy();
   const bool sound = s.start(right_side);
 

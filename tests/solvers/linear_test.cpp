@@ -7,7 +7,6 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "solvers/linear/interpolation.h"
-#include "solvers/linear/level_matrix.h"
 #include "solvers/linear/linear_system.h"
 
 namespace ft {
@@ -107,13 +106,13 @@ std::vector<PairTerm> contacts(const Sheet& sheet) {
   return terms;
 }
 
-TEST(LevelMatrix, Multiplies_rows_of_even_and_odd_length) {
+TEST(BlockMatrix, Multiplies_rows_of_even_and_odd_length) {
   std::vector<std::array<int, 4>> springs;
   for (int i = 1; i < 12; ++i)
     for (int j = 0; j < i; j += 1 + i % 3) springs.push_back({i, j, -1, -1});
   const BlockPattern pattern = make_pattern(12, std::array{springs});
-  LevelMatrix matrix;
-  matrix.build(pattern);
+  BlockMatrix matrix;
+  matrix.reset(pattern);
   Eigen::MatrixXf dense = Eigen::MatrixXf::Zero(36, 36);
   std::vector<Vec4f> x(12);
   Eigen::VectorXf flat(36);
@@ -125,9 +124,7 @@ TEST(LevelMatrix, Multiplies_rows_of_even_and_odd_length) {
     for (int k = pattern.row_start[at(i)]; k < pattern.row_start[at(i) + 1]; ++k) {
       Mat3f block;
       for (int c = 0; c < 9; ++c) block.data()[c] = float(noise(at(k), static_cast<std::uint64_t>(c)));
-      const int place = matrix.place(pattern, i, k);
-      matrix.set(place, block);
-      EXPECT_EQ(matrix.get(place), block);
+      matrix.blocks[at(k)] = block;
       dense.block<3, 3>(3 * i, 3 * pattern.column[at(k)]) = block;
     }
   }
