@@ -187,10 +187,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
         hessian.blocks[at(model_.pattern.diagonal[i])].diagonal().array() += static_cast<float>(m);
       }
     });
-    for (const auto& energy : model_.energies) {
-      energy->add_gradient(x, s.gradient);
-      energy->add_hessian(x, hessian);
-    }
+    for (const auto& energy : model_.energies) energy->add_derivatives(x, s.gradient, hessian);
     s.terms.clear();
     for (std::size_t p = 0; p < model_.pins.size(); ++p) {
       const PinPoint& pin = model_.pins[p];

@@ -64,7 +64,7 @@ Bending::Bending(const ClothTopology& topology) {
     if (hinge_schedule_.slot[s] >= 0) slot_of[at(hinge_schedule_.slot[s])] = static_cast<int>(s);
   hinge_groups_.assign(hinge_schedule_.group_count(), HingeGroup{});
   phi_.assign(hinge_schedule_.slot.size(), 0.0);
-  rho_ = phi_;
+  rho_ = moment_ = phi_;
   for (std::size_t s = 0; s < phi_.size(); ++s) {
     HingeGroup& g = hinge_groups_[s / k_lanes];
     const std::size_t l = s % k_lanes;
@@ -100,6 +100,7 @@ Bending::Bending(const ClothTopology& topology) {
 
 void Bending::begin_step(const StepContext& context) {
   CHECK(context.h > 0 && context.beta_h > 0);
+  measured_at_.clear();
   inverse_rate_time_ = context.x_t0.empty() ? 0 : 1 / context.rate_time();
   if (inverse_rate_time_ == 0) return;
   const bool history = context.has_history() && context.b != 0;
@@ -120,8 +121,10 @@ void Bending::begin_step(const StepContext& context) {
   });
 }
 
-/// Fills phi_ and rho_.
+/// Fills phi_, rho_, moment_ and energy_.
 void Bending::measure(std::span<const Vec3> x) const {
+  if (measured_at_.size() == x.size() && std::memcmp(measured_at_.data(), x.data(), x.size_bytes()) == 0) return;
+  measured_at_.assign(x.begin(), x.end());
   parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     HingeEdges h;
     alignas(32) HingeLane angle;
@@ -137,11 +140,7 @@ void Bending::measure(std::span<const Vec3> x) const {
       }
     }
   });
-}
-
-double Bending::value(std::span<const Vec3> x) const {
-  measure(x);
-  return sum_over_chunks(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
+  energy_ = sum_over_chunks(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
     double total = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const HingeGroup& g = hinge_groups_[i];
@@ -151,45 +150,37 @@ double Bending::value(std::span<const Vec3> x) const {
           const std::size_t n = at(g.neighbour[k][l]);
           elastic += g.coupling[k][l] * phi_[n], viscous += g.coupling[k][l] * rho_[n];
         }
-        total += 0.5 * (elastic * phi_[i * k_lanes + l] + viscous * rho_[i * k_lanes + l]);
+        const std::size_t slot = i * k_lanes + l;
+        moment_[slot] = elastic + std::sqrt(g.damping_time[l] * inverse_rate_time_) * viscous;
+        total += 0.5 * (elastic * phi_[slot] + viscous * rho_[slot]);
       }
     }
     return total;
   });
 }
 
+double Bending::value(std::span<const Vec3> x) const {
+  measure(x);
+  return energy_;
+}
+
+struct Bending::HingeShape {
+  HingeEdges edges;
+  HingeGradients d;
+
+  void of(const HingeGroup& g, std::span<const Vec3> x) {
+    ft::edges(g, x, edges);
+    hinge_gradient_lanes(edges.e, edges.a, edges.b, g.floor2, g.floor3, d);
+  }
+};
+
 void Bending::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   measure(x);
   for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
-    HingeEdges h;
-    HingeGradients d;
-    alignas(32) HingeLane moment, g0[3], g1[3];
+    HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {
-      const HingeGroup& g = hinge_groups_[i];
-      edges(g, x, h);
-      hinge_gradient_lanes(h.e, h.a, h.b, g.floor2, g.floor3, d);
-      for (std::size_t l = 0; l < k_lanes; ++l) {
-        double elastic = 0, viscous = 0;
-        for (int k = 0; k < k_couplings; ++k) {
-          const std::size_t n = at(g.neighbour[k][l]);
-          elastic += g.coupling[k][l] * phi_[n], viscous += g.coupling[k][l] * rho_[n];
-        }
-        moment[l] = elastic + std::sqrt(g.damping_time[l] * inverse_rate_time_) * viscous;
-      }
-      for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < k_lanes; ++l) {
-          d.g2[k][l] *= moment[l], d.g3[k][l] *= moment[l];
-          g1[k][l] = d.s2[l] * d.g2[k][l] + d.s3[l] * d.g3[k][l];
-          g0[k][l] = d.g2[k][l] + d.g3[k][l] - g1[k][l];
-        }
-      // Padding has vertex numbers that belong to other chunks: it must not even add zero.
-      const std::size_t used = hinge_schedule_.used(i);
-      for (std::size_t l = 0; l < used; ++l) {
-        gradient[at(g.vertex[0][l])] -= Vec3(g0[0][l], g0[1][l], g0[2][l]);
-        gradient[at(g.vertex[1][l])] -= Vec3(g1[0][l], g1[1][l], g1[2][l]);
-        gradient[at(g.vertex[2][l])] += Vec3(d.g2[0][l], d.g2[1][l], d.g2[2][l]);
-        gradient[at(g.vertex[3][l])] += Vec3(d.g3[0][l], d.g3[1][l], d.g3[2][l]);
-      }
+      shape.of(hinge_groups_[i], x);
+      add_group_gradient(i, shape, gradient);
     }
   });
 }
@@ -197,40 +188,77 @@ void Bending::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) co
 void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   positions_.bind(*hessian.pattern, hinges_, hinge_schedule_.slot);
   for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
-    HingeEdges h;
-    HingeGradients d;
-    Lanes v[4][3], block[9];  // square root of the stiffness times grad theta, vertex by vertex
+    HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {
-      const HingeGroup& g = hinge_groups_[i];
-      edges(g, x, h);
-      hinge_gradient_lanes(h.e, h.a, h.b, g.floor2, g.floor3, d);
-      alignas(32) HingeLane root;
-      for (int l = 0; l < k_lanes; ++l)
-        root[l] = std::sqrt(g.coupling[0][l] * (1 + g.damping_time[l] * inverse_rate_time_));
-      for (int k = 0; k < 3; ++k) {
-        alignas(32) float one[k_lanes], two[k_lanes], three[k_lanes];
-        for (int l = 0; l < k_lanes; ++l) {
-          const double a = root[l] * d.g2[k][l], b = root[l] * d.g3[k][l];
-          one[l] = static_cast<float>(-(d.s2[l] * a + d.s3[l] * b));
-          two[l] = static_cast<float>(a);
-          three[l] = static_cast<float>(b);
-        }
-        std::memcpy(&v[1][k], one, sizeof one), std::memcpy(&v[2][k], two, sizeof two),
-            std::memcpy(&v[3][k], three, sizeof three);
-        v[0][k] = -(v[1][k] + v[2][k] + v[3][k]);
-      }
-      const std::size_t first = i * k_lanes, used = hinge_schedule_.used(i);
-      for (std::size_t a = 0; a < 4; ++a)
-        for (std::size_t b = a; b < 4; ++b) {
-          for (int c = 0; c < 3; ++c)
-            for (int r = 0; r < 3; ++r) block[3 * c + r] = v[a][r] * v[b][c];
-          Mat3f* blocks = hessian.blocks.data();
-          add_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * a + b]; });
-          if (a != b)
-            add_transposed_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * b + a]; });
-        }
+      shape.of(hinge_groups_[i], x);
+      add_group_hessian(i, shape, hessian);
     }
   });
+}
+
+void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
+  measure(x);
+  positions_.bind(*hessian.pattern, hinges_, hinge_schedule_.slot);
+  for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
+    HingeShape shape;
+    for (std::size_t i = begin; i < end; ++i) {
+      shape.of(hinge_groups_[i], x);
+      add_group_gradient(i, shape, gradient);
+      add_group_hessian(i, shape, hessian);
+    }
+  });
+}
+
+void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const {
+  const HingeGroup& g = hinge_groups_[group];
+  const HingeGradients& d = shape.d;
+  const double* moment = moment_.data() + group * k_lanes;
+  alignas(32) HingeLane g0[3], g1[3], g2[3], g3[3];
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < k_lanes; ++l) {
+      g2[k][l] = d.g2[k][l] * moment[l], g3[k][l] = d.g3[k][l] * moment[l];
+      g1[k][l] = d.s2[l] * g2[k][l] + d.s3[l] * g3[k][l];
+      g0[k][l] = g2[k][l] + g3[k][l] - g1[k][l];
+    }
+  // Padding has vertex numbers that belong to other chunks: it must not even add zero.
+  const std::size_t used = hinge_schedule_.used(group);
+  for (std::size_t l = 0; l < used; ++l) {
+    gradient[at(g.vertex[0][l])] -= Vec3(g0[0][l], g0[1][l], g0[2][l]);
+    gradient[at(g.vertex[1][l])] -= Vec3(g1[0][l], g1[1][l], g1[2][l]);
+    gradient[at(g.vertex[2][l])] += Vec3(g2[0][l], g2[1][l], g2[2][l]);
+    gradient[at(g.vertex[3][l])] += Vec3(g3[0][l], g3[1][l], g3[2][l]);
+  }
+}
+
+void Bending::add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const {
+  const HingeGroup& g = hinge_groups_[group];
+  const HingeGradients& d = shape.d;
+  Lanes v[4][3], block[9];  // square root of the stiffness times grad theta, vertex by vertex
+  alignas(32) HingeLane root;
+  for (int l = 0; l < k_lanes; ++l)
+    root[l] = std::sqrt(g.coupling[0][l] * (1 + g.damping_time[l] * inverse_rate_time_));
+  for (int k = 0; k < 3; ++k) {
+    alignas(32) float one[k_lanes], two[k_lanes], three[k_lanes];
+    for (int l = 0; l < k_lanes; ++l) {
+      const double a = root[l] * d.g2[k][l], b = root[l] * d.g3[k][l];
+      one[l] = static_cast<float>(-(d.s2[l] * a + d.s3[l] * b));
+      two[l] = static_cast<float>(a);
+      three[l] = static_cast<float>(b);
+    }
+    std::memcpy(&v[1][k], one, sizeof one), std::memcpy(&v[2][k], two, sizeof two),
+        std::memcpy(&v[3][k], three, sizeof three);
+    v[0][k] = -(v[1][k] + v[2][k] + v[3][k]);
+  }
+  const std::size_t first = group * k_lanes, used = hinge_schedule_.used(group);
+  Mat3f* blocks = hessian.blocks.data();
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a; b < 4; ++b) {
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) block[3 * c + r] = v[a][r] * v[b][c];
+      add_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * a + b]; });
+      if (a != b)
+        add_transposed_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * b + a]; });
+    }
 }
 
 }  // namespace ft

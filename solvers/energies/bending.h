@@ -27,6 +27,7 @@ class Bending final : public Energy {
   double value(std::span<const Vec3> x) const override;
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
+  void add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const override;
 
   static constexpr int k_couplings = 5;
 
@@ -42,14 +43,21 @@ class Bending final : public Energy {
   };
 
  private:
+  struct HingeShape;
   void measure(std::span<const Vec3> x) const;
+  void add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const;
+  void add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const;
 
   std::vector<std::array<int, 4>> hinges_;
   ElementSchedule hinge_schedule_;
   std::vector<HingeGroup> hinge_groups_;
   double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
   mutable BlockPositions<4> positions_;
-  mutable std::vector<double> phi_, rho_;  ///< scratch, per hinge slot
+  // Of the last x that was measured: the next question is mostly about the same one.
+  mutable std::vector<Vec3> measured_at_;  ///< empty: none yet in this step
+  mutable std::vector<double> phi_, rho_;  ///< per hinge slot
+  mutable std::vector<double> moment_;     ///< dU / d theta [N m]
+  mutable double energy_ = 0;              ///< J
 };
 
 }  // namespace ft

@@ -43,6 +43,11 @@ class Energy {
   virtual double value(std::span<const Vec3> x) const = 0;                                 ///< J
   virtual void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const = 0;  ///< N
   virtual void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const = 0;       ///< N/m
+  /// Both at one x. Energies whose gradient and Hessian are made of the same things compute these once.
+  virtual void add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
+    add_gradient(x, gradient);
+    add_hessian(x, hessian);
+  }
 };
 
 }  // namespace ft

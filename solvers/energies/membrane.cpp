@@ -248,31 +248,23 @@ double Membrane::value(std::span<const Vec3> x) const {
   });
 }
 
+struct Membrane::Stressed {
+  Deformation d;
+  alignas(32) Lane e[3], s[3];  ///< see strain() and stress()
+};
+
+void Membrane::measure(std::size_t group, std::span<const Vec3> x, Stressed& out) const {
+  deformation(groups_[group], x, out.d);
+  strain(out.d, out.e);
+  stress(groups_[group], reference_[group], inverse_rate_time_, out.e, out.s);
+}
+
 void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
-    Deformation d;
-    alignas(32) Lane e[3], s[3], g1[3], g2[3];
+    Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
-      const Group& g = groups_[i];
-      deformation(g, x, d);
-      strain(d, e);
-      stress(g, reference_[i], inverse_rate_time_, e, s);
-      const auto& r = g.rest_inverse;
-      for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < k_lanes; ++l) {
-          const double p1 = d.f1[k][l] * s[0][l] + d.f2[k][l] * s[2][l];  // column 1 of area F S
-          const double p2 = d.f1[k][l] * s[2][l] + d.f2[k][l] * s[1][l];
-          g1[k][l] = p1 * r[0][l] + p2 * r[1][l];
-          g2[k][l] = p1 * r[2][l] + p2 * r[3][l];
-        }
-      // Padding has vertex numbers that belong to other chunks: it must not even add zero.
-      const std::size_t used = schedule_.used(i);
-      for (std::size_t l = 0; l < used; ++l) {
-        const Vec3 a(g1[0][l], g1[1][l], g1[2][l]), b(g2[0][l], g2[1][l], g2[2][l]);
-        gradient[at(g.vertex[0][l])] -= a + b;
-        gradient[at(g.vertex[1][l])] += a;
-        gradient[at(g.vertex[2][l])] += b;
-      }
+      measure(i, x, stressed);
+      add_group_gradient(i, stressed, gradient);
     }
   });
 }
@@ -280,18 +272,52 @@ void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) c
 void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   positions_.bind(*hessian.pattern, stencils_, schedule_.slot);
   for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
-    Deformation d;
-    ElementBlocks blocks;
-    alignas(32) Lane e[3], s[3];
+    Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
-      const Group& g = groups_[i];
-      deformation(g, x, d);
-      strain(d, e);
-      stress(g, reference_[i], inverse_rate_time_, e, s);
-      element_blocks(g, d, e, s, inverse_rate_time_, blocks);
-      scatter(blocks, positions_, i * k_lanes, schedule_.used(i), hessian.blocks.data());
+      measure(i, x, stressed);
+      add_group_hessian(i, stressed, hessian);
     }
   });
+}
+
+void Membrane::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
+  positions_.bind(*hessian.pattern, stencils_, schedule_.slot);
+  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
+    Stressed stressed;
+    for (std::size_t i = begin; i < end; ++i) {
+      measure(i, x, stressed);
+      add_group_gradient(i, stressed, gradient);
+      add_group_hessian(i, stressed, hessian);
+    }
+  });
+}
+
+void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, std::span<Vec3> gradient) const {
+  const Group& g = groups_[group];
+  const auto& [d, e, s] = stressed;
+  const auto& r = g.rest_inverse;
+  alignas(32) Lane g1[3], g2[3];
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < k_lanes; ++l) {
+      const double p1 = d.f1[k][l] * s[0][l] + d.f2[k][l] * s[2][l];  // column 1 of area F S
+      const double p2 = d.f1[k][l] * s[2][l] + d.f2[k][l] * s[1][l];
+      g1[k][l] = p1 * r[0][l] + p2 * r[1][l];
+      g2[k][l] = p1 * r[2][l] + p2 * r[3][l];
+    }
+  // Padding has vertex numbers that belong to other chunks: it must not even add zero.
+  const std::size_t used = schedule_.used(group);
+  for (std::size_t l = 0; l < used; ++l) {
+    const Vec3 a(g1[0][l], g1[1][l], g1[2][l]), b(g2[0][l], g2[1][l], g2[2][l]);
+    gradient[at(g.vertex[0][l])] -= a + b;
+    gradient[at(g.vertex[1][l])] += a;
+    gradient[at(g.vertex[2][l])] += b;
+  }
+}
+
+void Membrane::add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const {
+  ElementBlocks blocks;
+  element_blocks(groups_[group], stressed.d, stressed.e, stressed.s, inverse_rate_time_, blocks);
+  scatter(blocks, positions_, group * k_lanes, schedule_.used(group), hessian.blocks.data());
 }
 
 }  // namespace ft

@@ -29,6 +29,7 @@ class Membrane final : public Energy {
   double value(std::span<const Vec3> x) const override;
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
+  void add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const override;
 
   /// k_lanes triangles; all zero in padding.
   struct Group {
@@ -44,6 +45,11 @@ class Membrane final : public Energy {
   };
 
  private:
+  struct Stressed;
+  void measure(std::size_t group, std::span<const Vec3> x, Stressed& out) const;
+  void add_group_gradient(std::size_t group, const Stressed& stressed, std::span<Vec3> gradient) const;
+  void add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const;
+
   std::vector<std::array<int, 4>> stencils_;
   ElementSchedule schedule_;
   std::vector<Group> groups_;

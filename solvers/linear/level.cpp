@@ -12,6 +12,27 @@ namespace {
 
 constexpr std::size_t k_rows = 256;  ///< rows per block of work
 
+/// Of the symmetric part of a block, shifted by 1e-7 of its trace; zero where it has none.
+PaddedBlock inverse_of(const Mat3f& block) {
+  const double trace = block.trace(), shift = 1e-7 * trace;
+  PaddedBlock inverse;
+  if (!(trace > 0)) return inverse;
+  const double xx = block(0, 0) + shift, yy = block(1, 1) + shift, zz = block(2, 2) + shift;
+  const double xy = 0.5 * (static_cast<double>(block(0, 1)) + block(1, 0));
+  const double xz = 0.5 * (static_cast<double>(block(0, 2)) + block(2, 0));
+  const double yz = 0.5 * (static_cast<double>(block(1, 2)) + block(2, 1));
+  const double cxx = yy * zz - yz * yz, cxy = xz * yz - xy * zz, cxz = xy * yz - xz * yy;  // cofactors
+  const double cyy = xx * zz - xz * xz, cyz = xy * xz - xx * yz, czz = xx * yy - xy * xy;
+  const double scale = 1 / (xx * cxx + xy * cxy + xz * cxz);
+  const auto entry = [scale](double cofactor) { return static_cast<float>(scale * cofactor); };
+  inverse.columns[0] << entry(cxx), entry(cxy), entry(cxz), 0;
+  inverse.columns[1] << entry(cxy), entry(cyy), entry(cyz), 0;
+  inverse.columns[2] << entry(cxz), entry(cyz), entry(czz), 0;
+  return inverse.columns[0].allFinite() && inverse.columns[1].allFinite() && inverse.columns[2].allFinite()
+             ? inverse
+             : PaddedBlock();
+}
+
 }  // namespace
 
 void Level::build() {
@@ -100,13 +121,7 @@ void galerkin(const Level& fine, Level& coarse) {
 void invert_diagonal(Level& level) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Mat3f& block = level.matrix.blocks[at(level.pattern->diagonal[i])];
-      const float scale = block.trace();
-      level.inverse[i] = PaddedBlock();
-      if (!(scale > 0)) continue;
-      const Eigen::Matrix3d shifted = block.cast<double>() + Eigen::Matrix3d::Identity() * (1e-7 * scale);
-      const Eigen::Matrix3d inverse = shifted.inverse();
-      if (inverse.allFinite()) level.inverse[i] = PaddedBlock((0.5 * (inverse + inverse.transpose())).cast<float>());
+      level.inverse[i] = inverse_of(level.matrix.blocks[at(level.pattern->diagonal[i])]);
     }
   });
 }

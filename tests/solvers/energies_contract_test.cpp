@@ -119,6 +119,28 @@ TEST_P(EnergyContract, Hessian_adds_to_what_is_there) {
   EXPECT_LT((dense(twice) - 2 * dense(once)).norm(), 1e-6 * dense(once).norm());
 }
 
+TEST_P(EnergyContract, What_was_asked_before_changes_no_answer_and_both_derivatives_are_those_asked_one_by_one) {
+  const Scene s = make_scene(*energy_, topology_, 1, 2e-3), other = make_scene(*energy_, topology_, 9, 2e-2);
+  energy_->begin_step(s.context());
+  const auto fresh = GetParam().make(topology_, k_windy);
+  fresh->begin_step(s.context());
+  const double value = fresh->value(s.x);
+  const Eigen::VectorXd g = gradient_of(*fresh, s.x);
+  BlockMatrix h, both;
+  h.reset(s.pattern);
+  both.reset(s.pattern);
+  fresh->add_hessian(s.x, h);
+  EXPECT_NE(energy_->value(other.x), value);
+  EXPECT_EQ(gradient_of(*energy_, s.x), g);
+  gradient_of(*energy_, other.x);
+  EXPECT_EQ(energy_->value(s.x), value);
+  gradient_of(*energy_, other.x);
+  std::vector<Vec3> gradient(s.x.size(), Vec3::Zero());
+  energy_->add_derivatives(s.x, gradient, both);
+  EXPECT_EQ(Eigen::Map<const Eigen::VectorXd>(gradient[0].data(), g.size()), g);
+  EXPECT_EQ(dense(both), dense(h));
+}
+
 TEST_P(EnergyContract, A_new_step_forgets_the_last_one) {
   const Scene s = make_scene(*energy_, topology_, 1, 2e-3), other = make_scene(*energy_, topology_, 9, 2e-2);
   energy_->begin_step(s.context());
