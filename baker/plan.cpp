@@ -229,7 +229,6 @@ ClothSetup common_setup(const Shot& shot) {
   setup.bdf2 = shot.solver.integrator == "bdf2";
   setup.feasible.gap = shot.solver.gap;
   setup.feasible.carve = shot.solver.carve;
-  apply_quality(shot, setup);
   return setup;
 }
 
@@ -321,6 +320,7 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
 Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
   GroupPlan group{p, common_setup(shot), {}, {}};
   group.setup.primary = plan.primaries[p].trajectory;
+  apply_quality(shot, group.setup);
   group.setup.teleports = plan.primaries[p].scan.teleports;
   std::vector<const ClothSpec*> worn;
   for (const ClothSpec& spec : shot.cloths) {

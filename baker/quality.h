@@ -12,7 +12,7 @@ namespace ft {
 
 bool is_preview(const Shot& shot);
 
-/// Makes a setup a preview's; a final one stays as it is.
+/// Makes a setup, with its primary, a preview's; a final one stays as it is.
 void apply_quality(const Shot& shot, ClothSetup& setup);
 void apply_quality(const Shot& shot, LockstepSetup& setup);
 

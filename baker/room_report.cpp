@@ -42,9 +42,10 @@ std::vector<char> wearing_parts(const GroupPlan& group, const Trajectory& body) 
 void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report) {
   const Shot& shot = plan.shot();
   const PrimaryPlan& primary = plan.primaries[group.primary];
-  const Trajectory& body = *primary.trajectory;
+  if (!group.setup.feasible.carve || !group.setup.primary || group.setup.garments.empty()) return;
+  const Trajectory& body = *group.setup.primary;
   const auto& parts = body.surface().parts;
-  if (!group.setup.feasible.carve || parts.size() < 2 || group.setup.garments.empty()) return;
+  if (parts.size() < 2) return;
   std::vector<Vec3> bind(at(body.surface().vertex_count()));
   body.bind_pose(bind);
   const RoomScanner scanner(body.surface(), bind, group.setup.feasible);

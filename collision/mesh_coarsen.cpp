@@ -41,11 +41,12 @@ class Coarsener {
     auto operator<=>(const Collapse&) const = default;
   };
 
-  double wanted(int a, int b) const { return 0.5 * in_.factor * (size_[at(a)] + size_[at(b)]); }
+  double wanted(int a, int b) const { return std::min(0.5 * in_.factor * (size_[at(a)] + size_[at(b)]), in_.longest); }
   std::vector<int> neighbours(int v) const;
   std::vector<int> shared(int a, int b) const;
   bool on_outline(int v) const;
   bool may(int b, int a) const;
+  double deviation(int b, int a) const;
   void draw(int b, int a);
   void hold_branches();
   void hold_seams();
@@ -55,6 +56,7 @@ class Coarsener {
   std::vector<std::array<Vec2, 3>> uvs_;
   std::vector<std::vector<int>> around_;  ///< triangles of each vertex
   std::vector<int> group_, into_;         ///< into_: what a vertex was drawn into, itself if it is left
+  std::vector<double> deviation_;         ///< most that what was drawn into a vertex lies off the surface [m]
   std::vector<double> size_;              ///< mean length of the edges around a vertex at the start [m]
 };
 
@@ -65,6 +67,7 @@ Coarsener::Coarsener(const CoarsenInput& in)
       around_(in.rest.size()),
       group_(in.group.begin(), in.group.end()),
       into_(in.rest.size()),
+      deviation_(in.rest.size(), 0.0),
       size_(in.rest.size(), 0.0) {
   CHECK(uvs_.empty() || uvs_.size() == triangles_.size());
   CHECK(group_.empty() || group_.size() == in.rest.size());
@@ -171,10 +174,25 @@ bool Coarsener::may(int b, int a) const {
     if (m.dot(n) < k_turn * m.norm() * n.norm() || !(n.norm() > 0)) return false;
     if (shape_of(q[0], q[1], q[2]) < std::min(k_least_shape, shape_of(p[0], p[1], p[2]))) return false;
   }
-  return some_left;
+  return some_left && deviation(b, a) <= in_.deviation;
+}
+
+/// How far off the surface b, and what was drawn into it, lies when it is drawn into a [m].
+double Coarsener::deviation(int b, int a) const {
+  if (std::isinf(in_.deviation)) return 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const int t : around_[at(b)]) {
+    Triangle c = triangles_[at(t)];
+    if (has(c, a)) continue;
+    std::replace(c.begin(), c.end(), b, a);
+    const auto& x = in_.rest;
+    nearest = std::min(nearest, vertex_face_geometry(x[at(b)], x[at(c[0])], x[at(c[1])], x[at(c[2])]).distance);
+  }
+  return deviation_[at(b)] + nearest;
 }
 
 void Coarsener::draw(int b, int a) {
+  deviation_[at(a)] = std::max(deviation_[at(a)], deviation(b, a));
   const std::vector<int> gone = shared(a, b);
   const auto corner = [&](int t, int v) {
     const Triangle& c = triangles_[at(t)];

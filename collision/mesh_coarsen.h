@@ -1,11 +1,12 @@
 // A coarser mesh over some of the vertices of a surface, for previews: edges are collapsed, the shortest first, until
 // they are as long as wanted everywhere. The outline, seams of the pattern and groups of vertices keep their shape, and
-// every vertex of the finer mesh gets a place on the coarser one. For cloth: what decides is the shape of the triangles
-// at rest, not curvature, since flat cloth has to bend anywhere.
-// After Hoppe et al. 1993, "Mesh optimization" (collapses that keep the topology), without the optimization.
+// every vertex of the finer mesh gets a place on the coarser one. What decides is the shape of the triangles at rest,
+// not curvature, since flat cloth has to bend anywhere; a body is lifted after it (coarse_body.h). After Hoppe et al.
+// 1993, "Mesh optimization" (collapses that keep the topology), without the optimization.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct CoarsenInput {
   /// stays.
   std::span<const int> group;
   double factor = 2;  ///< edges get this many times as long, 1..4; a quarter of the vertices are left at 2
+  double longest = std::numeric_limits<double>::infinity();  ///< no edge is wanted longer than this [m]
+  /// No finer vertex may come to lie farther from the coarser surface [m], each collapse taken by itself and summed.
+  double deviation = std::numeric_limits<double>::infinity();
 };
 
 struct CoarsenedMesh {

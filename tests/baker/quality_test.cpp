@@ -2,6 +2,7 @@
 #include "baker/quality.h"
 
 #include "tests/baker/fake_bake.h"
+#include "tests/support/scripted_body.h"
 
 namespace ft::test {
 namespace {
@@ -37,6 +38,20 @@ TEST(Quality, A_preview_is_coarser_in_everything_and_a_final_bake_in_nothing) {
   EXPECT_LT(preview_setup.min_substeps, final_setup.min_substeps);
   EXPECT_GT(preview_setup.linear_tolerance, final_setup.linear_tolerance);
   EXPECT_GT(preview_setup.feasible.max_edge, final_setup.feasible.max_edge);
+}
+
+TEST(Quality, A_preview_moves_in_a_coarser_body) {
+  Surface ball;
+  std::vector<Vec3> bind;
+  make_sphere(0.15, 60, 120, bind, ball.triangles);
+  Shot shot;
+  ClothSetup setup;
+  setup.primary = std::make_shared<ScriptedBody>(ball, bind, 0, [](double, std::span<Vec3>) {});
+  apply_quality(shot, setup);
+  EXPECT_EQ(setup.primary->surface().triangles.size(), ball.triangles.size());
+  shot.quality = "preview";
+  apply_quality(shot, setup);
+  EXPECT_LT(2 * setup.primary->surface().triangles.size(), ball.triangles.size());
 }
 
 TEST(Quality, A_word_that_is_no_quality_is_refused) {

@@ -106,6 +106,26 @@ TEST(Coarsen, A_tube_stays_a_tube) {
   for (std::size_t v = 0; v < s.points.size(); ++v) EXPECT_LT((placed(s, m, v) - s.points[v]).norm(), 2 * sag) << v;
 }
 
+TEST(Coarsen, A_tube_that_may_not_deviate_gets_coarser_along_its_axis_only) {
+  const Surface2 s = tube(60, 30);
+  CoarsenInput input{s.points, s.triangles, {}, {}, 2};
+  input.deviation = 1e-4;  // a chord over two edges of the circle lies 0.8 mm inside
+  const CoarsenedMesh m = coarsen_mesh(input);
+  EXPECT_LT(m.kept.size(), 0.75 * static_cast<double>(s.points.size()));
+  for (std::size_t v = 0; v < s.points.size(); ++v) EXPECT_LT((placed(s, m, v) - s.points[v]).norm(), 1e-4) << v;
+}
+
+TEST(Coarsen, No_edge_becomes_longer_than_wanted) {
+  const Surface2 s = sheet(40, 30);
+  CoarsenInput input{s.points, s.triangles, {}, {}, 4};
+  input.longest = 0.02;
+  const std::size_t limited = coarsen_mesh(input).kept.size();
+  input.longest = std::numeric_limits<double>::infinity();
+  const std::size_t free = coarsen_mesh(input).kept.size();
+  EXPECT_GT(limited, 2 * free);
+  EXPECT_LT(limited, s.points.size() / 2);
+}
+
 TEST(Coarsen, Vertices_of_a_group_stay_on_their_line_and_those_that_stay_stay) {
   const Surface2 s = sheet(30, 20);
   std::vector<int> group(s.points.size(), 0);
