@@ -107,6 +107,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
   const StepResult result = s.step.solve(step, s.x, s.v);
   report.newton_iterations += result.newton_iterations;
+  if (result.hanging) report.hanging_backtracks += result.backtracks;
   report.linear_iterations += result.linear_iterations;
   report.seconds_assembly += result.seconds_assembly;
   report.seconds_linear += result.seconds_linear;

@@ -27,6 +27,7 @@ struct SubstepInput {
 /// What the pieces of a substep add up to.
 struct AdvanceReport {
   int pieces = 0, newton_iterations = 0, linear_iterations = 0;
+  int hanging_backtracks = 0;  ///< Newton steps that were halved while a garment hung on others
   double smallest_gap = 0;
   bool finite = true;
   struct OnBody {

@@ -1,7 +1,8 @@
 // The walk of a frame:
 //   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
 //   2. substeps from the body's speed near the cloth, from how fast the cloth turns and from its own speed in edges; in
-//      each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton, truncation)
+//      each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton, truncation); once more with three
+//      times as many where a garment hangs on buttons and Newton's method does not like it
 //   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
 //      the substeps, at most three times and as long as it helps
 //   4. parts that no cloth touches any more hold the cloth again; the report
@@ -31,6 +32,10 @@ constexpr int k_rewinds = 3;
 /// turning()): cloth that whips about turns and strains by as much, and Newton's method starts that far from the
 /// answer.
 constexpr double k_most_turn = 0.2;
+/// A frame is walked anew with so many times the substeps where a Newton step was halved while a garment hung on others
+/// by buttons or zips alone: cords are stiff and pull one way only, and what the iterations leave is lost to a garment
+/// that swings on them. It fell half as far as it should.
+constexpr int k_times_hanging = 3;
 /// What vertices may move against the mean motion of their garment in one substep, in its typical edges (see
 /// scatter()): pairs that may meet grow with a power of it, and folds of fine cloth are cheaper in more and shorter
 /// steps.
@@ -80,7 +85,7 @@ class ClothSolver final : public Solver {
  private:
   struct Frame;
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
-  void walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  int walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
@@ -248,8 +253,10 @@ void ClothSolver::add_forces(const AdvanceReport& step, double duration, FrameRe
   }
 }
 
-void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
+/// Returns how many Newton steps were halved while a garment hung on others.
+int ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
+  int halved = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
   for (int k = 0; k < substeps; ++k) {
@@ -275,6 +282,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     report.linear_iterations += step.linear_iterations;
     report.smallest_gap = std::min(report.smallest_gap, step.smallest_gap);
     report.finite = report.finite && step.finite;
+    halved += step.hanging_backtracks;
     add_forces(step, frame.t1 - frame.t0, report);
     report.profile.candidates += step.seconds_candidates;
     report.profile.assembly += step.seconds_assembly;
@@ -283,6 +291,7 @@ void ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRe
     body = next.feasible;
     pins.swap(pins_next);
   }
+  return halved;
 }
 
 /// Something lets go or takes hold at once. The integrator is then started anew by a step of implicit Euler: the
@@ -332,13 +341,18 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   FrameProfile spent;
   spent.body = elapsed(body_clock);
   for (int attempt = 0; attempt <= k_rewinds; ++attempt) {
-    motion = start;
-    report = {};
-    report.frame = frame.number;
-    report.rewinds = attempt;
-    report.smallest_gap = std::numeric_limits<double>::infinity();
-    report.profile = spent;
-    walk(frame, substeps << attempt, motion, report);
+    const auto walk_anew = [&](int count) {
+      motion = start;
+      report = {};
+      report.frame = frame.number;
+      report.rewinds = attempt;
+      report.smallest_gap = std::numeric_limits<double>::infinity();
+      report.profile = spent;
+      const int halved = walk(frame, count, motion, report);
+      spent = report.profile;
+      return halved;
+    };
+    if (walk_anew(substeps << attempt) > 0) walk_anew(k_times_hanging * (substeps << attempt));
     if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
     const int avoidable = certificate_.certify(body_.end().feasible, motion, report);

@@ -42,6 +42,7 @@ struct StepInput {
 
 struct StepResult {
   int newton_iterations = 0, linear_iterations = 0, backtracks = 0;
+  bool hanging = false;     ///< a garment hangs on others by its attachments, and the body has no hold on it
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
   bool finite = true;

@@ -24,7 +24,7 @@ class Buttoned : public testing::Test {
   void write(const std::string& vest_lines, const std::string& sheet_lines = k_pinned, int last_frame = 16) {
     scene_.write_shot(
         last_frame, sheet_lines,
-        "[cloth.vest]\nmesh = \"sheet.obj\"\noffset = [" + std::to_string(k_gap) + ", 0, 0]\n" + vest_lines + "\n");
+        "[cloth.vest]\nmesh = \"sheet.obj\"\noffset = [" + std::to_string(gap_) + ", 0, 0]\n" + vest_lines + "\n");
   }
   BakeServices services() const {
     BakeServices out = scene_.services();
@@ -55,6 +55,7 @@ class Buttoned : public testing::Test {
     EXPECT_NE(text(result).find(words), std::string::npos) << text(result);
   }
   FakeScene scene_;
+  double gap_ = k_gap;  ///< in the shot file [m]
 };
 
 const char* const k_zip = "pins = [ { vertices = \"0-6\", to = \"sheet\", until = 4, fade = 8, opens = [0, 0, 1] } ]";
@@ -75,6 +76,15 @@ TEST_F(Buttoned, A_vest_hangs_on_its_buttons_is_opened_from_one_end_and_falls) {
   later.overrides.push_back("cloth.vest.pins=[{vertices=\"0-6\",to=\"sheet\",until=5,fade=8,opens=[0,0,1]}]");
   later.explain = true;
   EXPECT_NE(text(run(later)).find("stale: cloth.vest.pins changed"), std::string::npos) << text(run(later));
+}
+
+TEST_F(Buttoned, How_far_it_falls_does_not_hang_on_hundredths_of_a_millimetre) {
+  for (const double gap : {5.9e-3, 5.94e-3, 5.96e-3, 6.04e-3, 6.06e-3, 6.1e-3}) {
+    gap_ = gap;
+    write(k_zip);
+    ASSERT_EQ(run().exit_code, 0) << text(run());
+    for (const double fallen : gaps(16)) EXPECT_GT(fallen, 0.1) << gap;
+  }
 }
 
 TEST_F(Buttoned, Interrupted_while_it_opens_it_goes_on_to_the_same_bytes) {
