@@ -1,7 +1,7 @@
 // The walk of a frame:
 //   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
 //   2. substeps from the body's speed near the cloth, from how fast the cloth turns and from its own speed in edges; in
-//      each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton, truncation); once more with three
+//      each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton, truncation); once more with four
 //      times as many where a garment hangs on buttons and Newton's method does not like it
 //   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
 //      the substeps, at most three times and as long as it helps
@@ -35,7 +35,7 @@ constexpr double k_most_turn = 0.2;
 /// A frame is walked anew with so many times the substeps where a Newton step was halved while a garment hung on others
 /// by buttons or zips alone: cords are stiff and pull one way only, and what the iterations leave is lost to a garment
 /// that swings on them. It fell half as far as it should.
-constexpr int k_times_hanging = 3;
+constexpr int k_times_hanging = 4;
 /// What vertices may move against the mean motion of their garment in one substep, in its typical edges (see
 /// scatter()): pairs that may meet grow with a power of it, and folds of fine cloth are cheaper in more and shorter
 /// steps.

@@ -27,6 +27,11 @@ constexpr int k_most_times = 5;
 /// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
 /// keeps the momentum.
 constexpr double k_settled_drift = 0.05;
+/// Truncation spoils the direction where few vertices are held back and the others go on as if they were not: when less
+/// than this share of the descent is left, what lost more than k_held of its displacement is held where it is, and the
+/// others are solved for anew (an active set). Without it Newton's method stops there, uphill.
+constexpr double k_least_descent = 0.1;
+constexpr double k_held = 0.5;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -85,6 +90,7 @@ struct ImplicitStep::Scratch {
   std::vector<Vec3> past, y, gradient, direction, common, cut, all, trial;
   std::vector<double> share, missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
+  std::vector<char> held;         ///< per vertex: not solved for
   std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
   std::vector<PairTerm> terms;
   ContactPairs near;
@@ -169,6 +175,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.contact.update(s.all);
   result.seconds_contact += watch.lap();
 
+  /// What the potential loses along a displacement, to the first order; s.gradient is that of a descent [J].
+  const auto descent = [&](std::span<const Vec3> displacement) {
+    return parallel_sum(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) sum += s.gradient[i].dot(displacement[i]);
+      return sum;
+    });
+  };
   const double gravity = model_.setup.gravity.norm();
   const double settled_drift =
       gravity > 0 ? k_settled_drift * in.h * in.h * gravity : std::numeric_limits<double>::infinity();
@@ -207,13 +221,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     for (Vec3& g : s.gradient) g = -g;
     const double before = of_cloth + s.contact.value(s.all);
     result.seconds_assembly += watch.lap();
-    const LinearReport linear = s.system.solve(s.gradient, model_.unused, s.direction);
-    result.linear_iterations += linear.iterations;
     ++result.newton_iterations;
-    result.seconds_linear += watch.lap();
-
-    for (Vec3& d : s.direction)
-      if (!d.allFinite()) d.setZero(), result.finite = false;
+    const auto find_direction = [&](std::span<const char> held) {
+      result.linear_iterations += s.system.solve(s.gradient, held, s.direction).iterations;
+      for (Vec3& d : s.direction)
+        if (!d.allFinite()) d.setZero(), result.finite = false;
+      result.seconds_linear += watch.lap();
+    };
+    find_direction(model_.unused);
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
     const double most_missing = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
       double most = 0;
@@ -229,25 +244,38 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       watch.lap();
       s.contact.extend(s.all);
     }
-    parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
-    });
-    for (bool complete = false; !complete;) {
-      s.contact.near_pairs(s.direction, k_floor, s.near);
-      s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack}, s.common);
-      truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
+    /// What may be done of the direction: inside the balls, and no pair too near.
+    const auto truncate = [&] {
       parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          s.cut[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
-          s.trial[i] = s.all[i] + s.cut[i];
-        }
+        for (std::size_t i = begin; i < end; ++i)
+          s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
       });
-      if (!in.pairs_suffice) break;
+      for (bool complete = false; !complete;) {
+        s.contact.near_pairs(s.direction, k_floor, s.near);
+        s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack},
+                             s.common);
+        truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
+        parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            s.cut[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
+            s.trial[i] = s.all[i] + s.cut[i];
+          }
+        });
+        if (!in.pairs_suffice) break;
+        result.seconds_contact += watch.lap();
+        complete = in.pairs_suffice(cloth(s.trial));
+        watch.lap();
+        if (!complete) s.contact.extend(s.all);
+      }
+    };
+    truncate();
+    if (descent(s.cut) < k_least_descent * descent(s.direction)) {
+      s.held.assign(n, 0);
+      for (std::size_t i = 0; i < n; ++i)
+        s.held[i] = model_.unused[i] != 0 || (s.cut[i] - s.direction[i]).norm() > k_held * s.direction[i].norm();
       result.seconds_contact += watch.lap();
-      complete = in.pairs_suffice(cloth(s.trial));
-      watch.lap();
-      if (!complete) s.contact.extend(s.all);
+      find_direction(s.held);
+      truncate();
     }
     s.direction.swap(s.cut);
 

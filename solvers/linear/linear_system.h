@@ -39,7 +39,8 @@ class LinearSystem {
   /// Contact, friction and pins. Terms whose vertices share the pattern go into the matrix, the others are kept aside
   /// as an extra sparse block matrix (sorted, so that the sum order is fixed). Call after the energies.
   void add_pair_terms(std::span<const PairTerm> terms);
-  /// Rows of fixed[i] != 0 are held at zero, and leave the matrix: it is to be filled anew for every solve.
+  /// Rows of fixed[i] != 0 are held at zero, and leave the matrix for good: what is solved before it is filled anew may
+  /// hold more of them, but not less.
   LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> solution);
 
  private:
