@@ -21,8 +21,10 @@ struct Scene {
       0.1;  ///< p99 edge strain that no frame may exceed [1]: what this scene's pull stretches cloth to, and not more
   double speed_bar =
       10;  ///< root mean square speed that no frame may exceed [m/s]: twice what drives the scene, and 3 m/s
-  bool has_room = true;     ///< false: for some frames there is none, cloth must be let through, named, and come back
-  std::string fails_today;  ///< empty, or what is seen: the test is then listed and not run by default
+  bool has_room = true;  ///< false: for some frames there is none, cloth must be let through, named, and come back
+  /// What is seen, where today something fails that is then listed and not run by default. Where only strain_bar is
+  /// missed, all else is tested.
+  std::string fails_today = {}, strained_today = {};
 };
 
 /// All scenes.
