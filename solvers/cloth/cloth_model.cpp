@@ -218,6 +218,8 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   std::vector<std::vector<std::array<int, 4>>> stencils;
   for (const auto& energy : model->energies) stencils.push_back(energy->stencils());
   model->pattern = make_pattern(model->vertex_count(), stencils);
+  model->attachments = std::move(model->topology->attachments);
+  model->topology.reset();
   if (s.primary) {
     model->collider = std::make_unique<MovingCollider>(s.primary, s.feasible);
     const std::vector<int> by_size = parts_by_size(s.primary->surface().parts);

@@ -48,7 +48,8 @@ struct ClothModel {
   std::vector<std::unique_ptr<Energy>> energies;
   LetThroughDrag* let_through = nullptr;  ///< one of the energies; null without a collider
   BlockPattern pattern;
-  std::unique_ptr<ClothTopology> topology;
+  std::unique_ptr<ClothTopology> topology;  ///< while the model is built; energies copy what they need
+  std::vector<AttachPoint> attachments;
   std::unique_ptr<MovingCollider> collider;  ///< null: cloth alone
   std::vector<int> part_rank;                ///< of the collider's parts: 0 is the largest
   double start_depth = 0;                    ///< how deep the deepest vertex started inside the body [m]

@@ -299,7 +299,7 @@ int ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRep
 /// good.
 bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
   const auto jumps = [&](const auto& point) { return point.hold.jumps(time_t0, time_t1); };
-  const auto& attachments = model_->topology->attachments;
+  const auto& attachments = model_->attachments;
   return std::any_of(model_->pins.begin(), model_->pins.end(), jumps) ||
          std::any_of(attachments.begin(), attachments.end(), jumps);
 }

@@ -312,7 +312,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     }
     result.seconds_contact += watch.lap();
   }
-  for (const AttachPoint& point : model_.topology->attachments)
+  for (const AttachPoint& point : model_.attachments)
     result.hanging = result.hanging || s.touches[at(model_.garment_of(point.vertex))] == 0;
   result.smallest_gap = s.contact.smallest_gap();
   measure_on_body(in, inertia, result);

@@ -21,8 +21,8 @@ ClothSetup two_strips() {
 TEST(Attach, A_vertex_holds_to_the_nearest_point_of_the_other_garment) {
   ClothSetup setup = two_strips();
   const auto model = model_of(setup);
-  ASSERT_EQ(model->topology->attachments.size(), 1u);
-  const AttachPoint& p = model->topology->attachments[0];
+  ASSERT_EQ(model->attachments.size(), 1u);
+  const AttachPoint& p = model->attachments[0];
   EXPECT_EQ(p.vertex, k_strip);
   EXPECT_LT((cord(p, model->contact.rest) - Vec3(0, -4e-3, 0)).norm(), 1e-12);
   EXPECT_NEAR(p.length, 4e-3, 1e-12);
@@ -31,7 +31,7 @@ TEST(Attach, A_vertex_holds_to_the_nearest_point_of_the_other_garment) {
   EXPECT_NEAR(p.max_pull, AttachSettings{}.hold * border, 1e-9);
   EXPECT_EQ(model->pins.size(), 4u) << "the body holds only what is pinned to it";
   setup.garments[1].pins[0].weights = {0.25};
-  EXPECT_NEAR(model_of(setup)->topology->attachments[0].max_pull, 0.25 * p.max_pull, 1e-12);
+  EXPECT_NEAR(model_of(setup)->attachments[0].max_pull, 0.25 * p.max_pull, 1e-12);
   setup.garments[1].pins[0].to = 2;
   EXPECT_FALSE(build_cloth_model(setup));
 }
@@ -41,7 +41,7 @@ TEST(Attach, A_cord_is_no_shorter_than_the_distance_at_which_the_garments_touch)
   for (Vec3& x : setup.garments[1].mesh.positions) x.y() += 3.9e-3;
   setup.garments[1].thickness = 1e-3;  // the thinner one decides how near they come
   const auto model = model_of(setup);
-  EXPECT_NEAR(model->topology->attachments[0].length, model->contact.self_radius[k_strip], 1e-15);
+  EXPECT_NEAR(model->attachments[0].length, model->contact.self_radius[k_strip], 1e-15);
 }
 
 /// A strip that was laid into a ring around the y axis, open by 5 mm; its columns run along the axis.
@@ -59,8 +59,8 @@ TEST(Attach, Within_one_garment_a_vertex_holds_to_the_other_side_of_the_opening)
   ClothGarment jacket = ring();
   jacket.pins.push_back(pin_of({0, 1, 2, 3}, 0));
   const auto model = model_of(in_vacuum({jacket}));
-  ASSERT_EQ(model->topology->attachments.size(), 4u);
-  for (const AttachPoint& p : model->topology->attachments) {
+  ASSERT_EQ(model->attachments.size(), 4u);
+  for (const AttachPoint& p : model->attachments) {
     EXPECT_NEAR(p.length, 5e-3, 1e-4);
     EXPECT_LT(cord(p, model->contact.rest).norm(), 5.1e-3);
     for (const int v : p.triangle) EXPECT_GE(v, k_strip - 8) << "the last two rows";
@@ -107,7 +107,7 @@ TEST(Attach, Two_strips_joined_at_a_corner_hang_by_the_balance_of_forces) {
   const auto model = model_of(setup);
   const auto states = states_of(setup, 240);
   const auto x = as_points(*states.back().find("x"));
-  const AttachPoint& p = model->topology->attachments[0];
+  const AttachPoint& p = model->attachments[0];
   const Vec3 d = cord(p, x);
   double hanging = 0;
   Vec3 centre = Vec3::Zero();
@@ -121,7 +121,9 @@ TEST(Attach, Two_strips_joined_at_a_corner_hang_by_the_balance_of_forces) {
 
 TEST(Attach, A_cord_pulls_at_both_ends_alike_and_does_not_turn_them) {
   const auto model = model_of(two_strips());
-  Attachments energy(*model->topology);
+  ClothTopology topology;
+  topology.attachments = model->attachments;
+  Attachments energy(topology);
   energy.begin_step({});
   std::vector<Vec3> x = model->contact.rest, g(x.size(), Vec3::Zero());
   for (int i = k_strip; i < 2 * k_strip; ++i) x[at(i)] += Vec3(0.01, -0.02, 0.03);
@@ -158,7 +160,7 @@ TEST(Attach, Garments_that_fly_buttoned_together_keep_their_momentum) {
     EXPECT_LT((momentum(0, 2 * k_strip) - start).norm(), 1e-8 * start.norm()) << f;
   }
   EXPECT_GT(momentum(0, k_strip).norm(), 0.1 * start.norm()) << "the first one was drawn along";
-  const AttachPoint& p = model->topology->attachments[0];
+  const AttachPoint& p = model->attachments[0];
   EXPECT_LT(cord(p, run.positions()).norm(), p.length + 1e-3);
 }
 
@@ -185,7 +187,7 @@ TEST(Attach, Two_buttoned_layers_rest_at_the_contact_distance_and_do_not_slide) 
   ClothSetup setup = in_vacuum({under, over});
   const auto model = model_of(setup);
   const auto states = states_of(setup, 48);
-  const AttachPoint& p = model->topology->attachments[0];
+  const AttachPoint& p = model->attachments[0];
   EXPECT_EQ(p.length, model->contact.self_radius[0]);
   const Vec3 normal(-std::sin(slope), std::cos(slope), 0);
   for (int f = 12; f <= 48; ++f) {
