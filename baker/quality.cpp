@@ -1,5 +1,7 @@
 #include "baker/quality.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "collision/coarse_body.h"
@@ -42,9 +44,13 @@ void apply_quality(const Shot& shot, LockstepSetup& setup) {
 }
 
 std::string quality_note() {
-  return "preview quality: a quarter of the vertices of each garment move and the others ride on them "
-         "(all move where it is sewn or cut from a pattern), about a body with fewer triangles, 2 mm off at most; "
-         "crossings, gaps and strains are those of what moves";
+  return fmt::format(
+      "preview quality: a quarter of the vertices of each garment move and the others ride on them (all move where it "
+      "is "
+      "sewn or cut from a pattern), about a body with fewer triangles, {:g} mm off at most; crossings, gaps and "
+      "strains "
+      "are those of what moves",
+      1e3 * k_deviation);
 }
 
 }  // namespace ft
