@@ -320,7 +320,6 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
 Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
   GroupPlan group{p, common_setup(shot), {}, {}};
   group.setup.primary = plan.primaries[p].trajectory;
-  apply_quality(shot, group.setup);
   group.setup.teleports = plan.primaries[p].scan.teleports;
   std::vector<const ClothSpec*> worn;
   for (const ClothSpec& spec : shot.cloths) {
@@ -330,7 +329,9 @@ Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
   }
   for (std::size_t g = 0; g < worn.size(); ++g)
     if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added) return added;
-  if (!group.setup.garments.empty()) plan.groups.push_back(std::move(group));
+  if (group.setup.garments.empty()) return {};
+  apply_quality(shot, group.setup);
+  plan.groups.push_back(std::move(group));
   return {};
 }
 

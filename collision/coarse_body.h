@@ -9,8 +9,9 @@
 
 namespace ft {
 
-/// Edges get `factor` (1..4) times as long, but none is made longer than `longest` [m]. Each part keeps a shape of its
-/// own: no triangle is collapsed across parts. Depends on the input alone; thread-safe as any trajectory.
+/// Edges get `factor` (1..4) times as long where that takes the surface no farther than about `deviation` [m] off
+/// (mesh_coarsen.h), but none is made longer than `longest` [m]. Each part keeps a shape of its own: no vertex is drawn
+/// into another part's. Depends on the input alone; thread-safe as any trajectory.
 std::shared_ptr<const Trajectory> coarse_body(std::shared_ptr<const Trajectory> fine, double factor, double longest,
                                               double deviation);
 

@@ -56,7 +56,7 @@ class Coarsener {
   std::vector<std::array<Vec2, 3>> uvs_;
   std::vector<std::vector<int>> around_;  ///< triangles of each vertex
   std::vector<int> group_, into_;         ///< into_: what a vertex was drawn into, itself if it is left
-  std::vector<double> deviation_;         ///< most that what was drawn into a vertex lies off the surface [m]
+  std::vector<double> deviation_;         ///< sum of the distances that CoarsenInput::deviation limits [m]
   std::vector<double> size_;              ///< mean length of the edges around a vertex at the start [m]
 };
 

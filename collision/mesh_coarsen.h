@@ -26,7 +26,8 @@ struct CoarsenInput {
   std::span<const int> group;
   double factor = 2;  ///< edges get this many times as long, 1..4; a quarter of the vertices are left at 2
   double longest = std::numeric_limits<double>::infinity();  ///< no edge is wanted longer than this [m]
-  /// No finer vertex may come to lie farther from the coarser surface [m], each collapse taken by itself and summed.
+  /// A collapse may not leave its vertex, with what was drawn into that before (their distances are summed), farther
+  /// off the triangles that take its place [m]. What was drawn into their other corners is not looked at again.
   double deviation = std::numeric_limits<double>::infinity();
 };
 

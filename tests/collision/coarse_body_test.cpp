@@ -13,7 +13,6 @@ namespace ft::test {
 namespace {
 
 constexpr double k_long = 0.06, k_off = 2e-3;
-const auto k_still = [](double, std::span<Vec3>) {};
 
 Eigen::Isometry3d far_pose() {
   return Eigen::Translation3d(3, 1, -2) * Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized());
