@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "baker/core/check.h"
 #include "collision/pair_geometry.h"
@@ -22,6 +23,13 @@ constexpr double k_straight = -0.8;  ///< cosine between an outline's edges up t
 double shape_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double sum = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
   return sum > 0 ? 4 * std::sqrt(3.0) * triangle_area(a, b, c) / sum : 0;
+}
+
+/// Whether a triangle may become another in a collapse.
+bool keeps_shape(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) {
+  const Vec3 m = (p[1] - p[0]).cross(p[2] - p[0]), n = (q[1] - q[0]).cross(q[2] - q[0]);
+  if (m.dot(n) < k_turn * m.norm() * n.norm() || !(n.norm() > 0)) return false;
+  return shape_of(q[0], q[1], q[2]) >= std::min(k_least_shape, shape_of(p[0], p[1], p[2]));
 }
 
 bool has(const Triangle& t, int v) {
@@ -45,6 +53,9 @@ class Coarsener {
   std::vector<int> neighbours(int v) const;
   std::vector<int> shared(int a, int b) const;
   bool on_outline(int v) const;
+  std::size_t corner(int t, int v) const;
+  std::optional<Vec2> uv_at(int a, std::span<const int> triangles) const;
+  bool keeps_pattern(int t, int b, const Vec2& uv) const;
   bool may(int b, int a) const;
   double deviation(int b, int a) const;
   void draw(int b, int a);
@@ -69,7 +80,7 @@ Coarsener::Coarsener(const CoarsenInput& in)
       into_(in.rest.size()),
       deviation_(in.rest.size(), 0.0),
       size_(in.rest.size(), 0.0) {
-  CHECK(uvs_.empty() || uvs_.size() == triangles_.size());
+  CHECK(uvs_.size() == triangles_.size() || (uvs_.empty() && !in.cut));
   CHECK(group_.empty() || group_.size() == in.rest.size());
   group_.resize(in.rest.size(), 0);
   std::iota(into_.begin(), into_.end(), 0);
@@ -142,6 +153,28 @@ bool Coarsener::on_outline(int v) const {
   return false;
 }
 
+std::size_t Coarsener::corner(int t, int v) const {
+  const Triangle& c = triangles_[at(t)];
+  return c[0] == v ? 0 : c[1] == v ? 1 : 2;
+}
+
+/// Of vertex a in these triangles around it; none where they differ, as at the end of a slit in the pattern.
+std::optional<Vec2> Coarsener::uv_at(int a, std::span<const int> triangles) const {
+  if (uvs_.empty()) return Vec2::Zero();
+  const Vec2 uv = uvs_[at(triangles[0])][corner(triangles[0], a)];
+  for (const int t : triangles)
+    if (uvs_[at(t)][corner(t, a)] != uv) return {};
+  return uv;
+}
+
+/// Whether triangle t keeps its shape in the plane of the uvs when its vertex b goes to `uv`.
+bool Coarsener::keeps_pattern(int t, int b, const Vec2& uv) const {
+  std::array<Vec3, 3> p, q;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = q[k] = Vec3(uvs_[at(t)][k].x(), uvs_[at(t)][k].y(), 0);
+  q[corner(t, b)] = Vec3(uv.x(), uv.y(), 0);
+  return keeps_shape(p, q);
+}
+
 /// Whether b may be drawn into its neighbour a.
 bool Coarsener::may(int b, int a) const {
   const auto& x = in_.rest;
@@ -157,6 +190,8 @@ bool Coarsener::may(int b, int a) const {
       if (u.dot(v) > k_straight * u.norm() * v.norm()) return false;
     }
   }
+  const std::optional<Vec2> uv = uv_at(a, gone);
+  if (!uv) return false;
   std::vector<int> common;
   std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(common));
   if (common.size() != gone.size()) return false;  // a tube would be pinched off
@@ -168,11 +203,8 @@ bool Coarsener::may(int b, int a) const {
     if (has(old, a)) continue;
     some_left = true;
     std::array<Vec3, 3> p{x[at(old[0])], x[at(old[1])], x[at(old[2])]}, q = p;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (old[k] == b) q[k] = x[at(a)];
-    const Vec3 m = (p[1] - p[0]).cross(p[2] - p[0]), n = (q[1] - q[0]).cross(q[2] - q[0]);
-    if (m.dot(n) < k_turn * m.norm() * n.norm() || !(n.norm() > 0)) return false;
-    if (shape_of(q[0], q[1], q[2]) < std::min(k_least_shape, shape_of(p[0], p[1], p[2]))) return false;
+    q[corner(t, b)] = x[at(a)];
+    if (!keeps_shape(p, q) || (in_.cut && !keeps_pattern(t, b, *uv))) return false;
   }
   return some_left && deviation(b, a) <= in_.deviation;
 }
@@ -194,11 +226,7 @@ double Coarsener::deviation(int b, int a) const {
 void Coarsener::draw(int b, int a) {
   deviation_[at(a)] = std::max(deviation_[at(a)], deviation(b, a));
   const std::vector<int> gone = shared(a, b);
-  const auto corner = [&](int t, int v) {
-    const Triangle& c = triangles_[at(t)];
-    return c[0] == v ? std::size_t{0} : c[1] == v ? std::size_t{1} : std::size_t{2};
-  };
-  const Vec2 uv = uvs_.empty() ? Vec2::Zero().eval() : uvs_[at(gone[0])][corner(gone[0], a)];
+  const Vec2 uv = *uv_at(a, gone);
   for (const int t : gone) {
     for (const int v : triangles_[at(t)])
       if (v != b) std::erase(around_[at(v)], t);

@@ -29,6 +29,7 @@ struct CoarsenInput {
   /// A collapse may not leave its vertex, with what was drawn into that before (their distances are summed), farther
   /// off the triangles that take its place [m]. What was drawn into their other corners is not looked at again.
   double deviation = std::numeric_limits<double>::infinity();
+  bool cut = false;  ///< the uvs are a pattern: no triangle turns over or gets thin there either
 };
 
 struct CoarsenedMesh {

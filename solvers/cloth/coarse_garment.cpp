@@ -1,23 +1,15 @@
 #include "solvers/cloth/coarse_garment.h"
 
 #include <map>
-#include <numeric>
 
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
 namespace {
 
-CoarseGarment as_it_is(const ClothGarment& fine) {
-  CoarseGarment out{fine, std::vector<int>(fine.mesh.positions.size()),
-                    std::vector<CoarsenedMesh::Place>(fine.mesh.positions.size())};
-  std::iota(out.kept.begin(), out.kept.end(), 0);
-  for (std::size_t v = 0; v < out.places.size(); ++v) out.places[v].vertex.fill(static_cast<int>(v));
-  return out;
-}
-
-/// Vertices that the same pins hold are a group: a belt stays on its line.
-std::vector<int> groups_by_pins(const ClothGarment& garment) {
+/// Vertices that the same pins hold are a group: a belt stays on its line. Sewn ones stay: sides with vertices at
+/// different places along their seam pucker it.
+std::vector<int> groups_by_holds(const ClothGarment& garment) {
   std::vector<std::vector<std::size_t>> pins(garment.mesh.positions.size());
   for (std::size_t p = 0; p < garment.pins.size(); ++p)
     for (const int v : garment.pins[p].vertices) pins[at(v)].push_back(p);
@@ -25,6 +17,8 @@ std::vector<int> groups_by_pins(const ClothGarment& garment) {
   std::vector<int> out;
   for (const auto& held_by : pins)
     out.push_back(number.emplace(held_by, static_cast<int>(number.size())).first->second);
+  for (const Stitch& s : garment.mesh.stitches)
+    for (const int v : {s.vertex, s.edge[0], s.edge[1]}) out[at(v)] = k_group_stays;
   return out;
 }
 
@@ -44,11 +38,12 @@ ClothPin on_kept(const ClothPin& pin, std::span<const int> number) {
 }  // namespace
 
 CoarseGarment coarse_garment(const ClothGarment& fine, double factor) {
-  if (fine.pattern_scale > 0 || !fine.mesh.stitches.empty()) return as_it_is(fine);
   const std::vector<Triangle> triangles = triangulate(fine.mesh);
   const auto uvs = corner_uvs(fine.mesh, triangles);
-  const std::vector<int> groups = groups_by_pins(fine);
-  CoarsenedMesh coarse = coarsen_mesh({fine.mesh.positions, triangles, uvs, groups, factor});
+  const std::vector<int> groups = groups_by_holds(fine);
+  CoarsenInput input{fine.mesh.positions, triangles, uvs, groups, factor};
+  input.cut = fine.pattern_scale > 0;
+  CoarsenedMesh coarse = coarsen_mesh(input);
 
   std::vector<Vec3> positions;
   std::vector<int> number(fine.mesh.positions.size(), -1);
@@ -63,6 +58,9 @@ CoarseGarment coarse_garment(const ClothGarment& fine, double factor) {
       out.garment.mesh.face_uvs.push_back(static_cast<int>(out.garment.mesh.uvs.size()));
       out.garment.mesh.uvs.push_back(uv);
     }
+  for (const Stitch& s : fine.mesh.stitches)
+    out.garment.mesh.stitches.push_back(
+        {number[at(s.vertex)], {number[at(s.edge[0])], number[at(s.edge[1])]}, s.place, s.seam});
   for (ClothPin& pin : out.garment.pins) pin = on_kept(pin, number);
   for (const NamedMap& map : k_vertex_maps) {
     const std::vector<double>& values = fine.maps.*map.values;

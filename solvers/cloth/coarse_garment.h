@@ -1,5 +1,5 @@
-// A garment with fewer vertices that stands for one with many, for previews: the same outline, pins, maps and pattern
-// directions. What moves is the coarser one; the finer one's vertices ride on its triangles.
+// A garment with fewer vertices that stands for one with many, for previews: the same outline, pins, seams, maps and
+// pattern. What moves is the coarser one; the finer one's vertices ride on its triangles.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,7 @@ struct CoarseGarment {
   std::vector<CoarsenedMesh::Place> places;  ///< of each of the finer garment's vertices on it
 };
 
-/// Edges get `factor` times as long. Garments that are sewn or cut from a pattern stay as they are: their rest shape is
-/// not where they lie.
+/// Edges get `factor` times as long. All sewn vertices are kept.
 CoarseGarment coarse_garment(const ClothGarment& fine, double factor);
 
 }  // namespace ft

@@ -165,6 +165,51 @@ TEST(Coarsen, Pattern_coordinates_stay_those_of_their_points) {
   }
 }
 
+TEST(Coarsen, No_triangle_of_a_pattern_turns_over) {
+  const Surface2 s = sheet(24, 24);
+  // The pattern is laid out on the body with a pleat: what is straight in the rest shape is a wave in the pattern.
+  std::vector<std::array<Vec2, 3>> uvs(s.triangles.size());
+  for (std::size_t t = 0; t < uvs.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = s.points[at(s.triangles[t][k])];
+      uvs[t][k] = Vec2(p.x() + 0.04 * std::sin(p.z() * 80), p.z());
+    }
+  const auto least_area = [&](bool cut) {
+    CoarsenInput input{s.points, s.triangles, uvs, {}, 3};
+    input.cut = cut;
+    const CoarsenedMesh m = coarsen_mesh(input);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& uv : m.uvs) {
+      const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
+      least = std::min(least, b.x() * a.y() - a.x() * b.y());  // the sheet is seen from below in (x, z)
+    }
+    return least;
+  };
+  EXPECT_LT(least_area(false), 0);
+  EXPECT_GT(least_area(true), 0);
+}
+
+TEST(Coarsen, Nothing_is_drawn_to_where_the_pattern_is_slit) {
+  // A fan of six triangles; in the pattern they are apart at the outer ends of the edges between them.
+  std::vector<Vec3> x = {{0, 0, 0}};
+  std::vector<Triangle> triangles;
+  for (int k = 0; k < 6; ++k) {
+    x.emplace_back(std::cos(k * std::numbers::pi / 3), std::sin(k * std::numbers::pi / 3), 0);
+    triangles.push_back({0, 1 + k, 1 + (k + 1) % 6});
+  }
+  const auto kept = [&](double slit) {
+    std::vector<std::array<Vec2, 3>> uvs;
+    for (const Triangle& t : triangles) {
+      uvs.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) uvs.back()[k] = x[at(t[k])].head<2>();
+      uvs.back()[1] *= 1 + slit;
+    }
+    return coarsen_mesh({x, triangles, uvs, {}, 4}).kept.size();
+  };
+  EXPECT_LT(kept(0), x.size());
+  EXPECT_EQ(kept(0.01), x.size());
+}
+
 TEST(Coarsen, What_cannot_be_collapsed_is_left_as_it_is) {
   // Three triangles at one edge, a degenerate one, and a vertex of none.
   const std::vector<Vec3> x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {2, 0, 0}, {9, 9, 9}};

@@ -93,13 +93,52 @@ TEST(CoarseSolver, What_is_wrong_is_said_of_the_given_garment) {
   EXPECT_NE(refused.error().text().find("vertex 1234"), std::string::npos) << refused.error().text();
 }
 
-TEST(CoarseSolver, Garments_that_are_sewn_or_cut_from_a_pattern_stay_as_they_are) {
-  ClothGarment garment = swinging_sheet(1).garments[0];
-  garment.mesh.stitches.push_back({0, {40, 40}, 0, 0});
-  const CoarseGarment same = coarse_garment(garment, 2);
-  EXPECT_EQ(same.garment.mesh.positions, garment.mesh.positions);
-  EXPECT_EQ(same.kept.size(), garment.mesh.positions.size());
-  EXPECT_EQ(same.places[77].vertex[0], 77);
+/// Two panels of a pattern, side by side and edge to edge, sewn along the gap between them.
+ClothGarment two_panels() {
+  ClothGarment out;
+  out.name = "panels";
+  const Mesh left = make_sheet(0.4, 20, 0);
+  const int n = left.vertex_count();
+  std::vector<Vec3> x = left.positions;
+  std::vector<Triangle> triangles = triangulate(left);
+  for (int v = 0; v < n; ++v) x.push_back(left.positions[at(v)] + Vec3(0.45, 0, 0));
+  for (std::size_t t = 0, count = triangles.size(); t < count; ++t)
+    triangles.push_back({triangles[t][0] + n, triangles[t][1] + n, triangles[t][2] + n});
+  out.mesh = make_triangle_mesh("panels", x, triangles);
+  for (const Vec3& p : x) out.mesh.uvs.emplace_back(2 * p.x(), 2 * p.z());
+  out.mesh.face_uvs = out.mesh.face_vertices;
+  out.pattern_scale = 0.5;
+  for (int v = 0; v < n; ++v)
+    for (int w = n; w < 2 * n; ++w)
+      if ((x[at(v)] - x[at(w)]).norm() < 0.051) out.mesh.stitches.push_back({w, {v, v}, 0, 0});
+  return out;
+}
+
+TEST(CoarseSolver, A_seam_keeps_its_stitches_and_the_pattern_its_shape) {
+  const ClothGarment fine = two_panels();
+  ASSERT_EQ(fine.mesh.stitches.size(), 21u);
+  const CoarseGarment coarse = coarse_garment(fine, 2);
+  const Mesh& mesh = coarse.garment.mesh;
+  EXPECT_LT(mesh.positions.size(), fine.mesh.positions.size() / 2);
+  ASSERT_EQ(mesh.stitches.size(), fine.mesh.stitches.size());
+  for (std::size_t s = 0; s < mesh.stitches.size(); ++s) {
+    EXPECT_EQ(coarse.kept[at(mesh.stitches[s].vertex)], fine.mesh.stitches[s].vertex);
+    EXPECT_EQ(coarse.kept[at(mesh.stitches[s].edge[0])], fine.mesh.stitches[s].edge[0]);
+  }
+  EXPECT_EQ(coarse.garment.pattern_scale, 0.5);
+  for (std::size_t c = 0; c < mesh.face_vertices.size(); ++c) {
+    const Vec3& p = mesh.positions[at(mesh.face_vertices[c])];
+    EXPECT_LT((mesh.uvs[at(mesh.face_uvs[c])] - Vec2(2 * p.x(), 2 * p.z())).norm(), 1e-12);
+  }
+}
+
+TEST(CoarseSolver, Panels_are_sewn_together_in_a_preview) {
+  ClothSetup setup;
+  setup.preroll_frames = 24;
+  setup.coarsen = 2;
+  setup.garments.push_back(two_panels());
+  const std::vector<Vec3> x = after(setup, 24);
+  for (const Stitch& s : setup.garments[0].mesh.stitches) EXPECT_LT((x[at(s.vertex)] - x[at(s.edge[0])]).norm(), 1e-3);
 }
 
 }  // namespace
