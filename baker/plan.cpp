@@ -331,6 +331,7 @@ Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
     if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added) return added;
   if (group.setup.garments.empty()) return {};
   apply_quality(shot, group.setup);
+  group.setup.poses = std::make_shared<FeasiblePoses>(group.setup.primary, group.setup.feasible);
   plan.groups.push_back(std::move(group));
   return {};
 }

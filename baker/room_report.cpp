@@ -46,17 +46,13 @@ void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report
   const Trajectory& body = *group.setup.primary;
   const auto& parts = body.surface().parts;
   if (parts.size() < 2) return;
-  std::vector<Vec3> bind(at(body.surface().vertex_count()));
-  body.bind_pose(bind);
-  const RoomScanner scanner(body.surface(), bind, group.setup.feasible);
+  const RoomScanner scanner(group.setup.poses);
   const std::vector<char> wears = wearing_parts(group, body);
   const int first = shot.first_frame - shot.preroll;
   const std::size_t count = at(shot.last_frame - first + 1);
   std::vector<std::vector<TightPlace>> tight(count);
   parallel_tasks(count, [&](std::size_t k) {
-    std::vector<Vec3> x(bind.size());
-    body.sample((first + static_cast<int>(k) - shot.first_frame) / shot.fps, x);
-    tight[k] = scanner.look(x);
+    tight[k] = scanner.look((first + static_cast<int>(k) - shot.first_frame) / shot.fps);
   });
   report.frame_count += static_cast<int>(count);
   std::map<std::pair<int, int>, RoomPlace> open;

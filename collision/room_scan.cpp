@@ -17,8 +17,14 @@ constexpr std::size_t k_most_measured = 48;
 }  // namespace
 
 struct RoomScanner::Impl {
-  Impl(const Surface& surface, std::span<const Vec3> bind, const FeasibleSettings& given)
-      : settings(given), parts(surface.parts), collider(surface, bind, given), refined(at(collider.vertex_count())) {
+  explicit Impl(std::shared_ptr<FeasiblePoses> given)
+      : poses(std::move(given)),
+        settings(poses->settings()),
+        parts(poses->body().surface().parts),
+        collider(poses->collider()),
+        refined(at(collider.vertex_count())) {
+    std::vector<Vec3> bind(at(poses->body().surface().vertex_count()));
+    poses->body().bind_pose(bind);
     collider.refine(bind, refined);
     shape = std::make_unique<PartSurface>(refined, collider.triangles(), collider.part_of_vertex(),
                                           static_cast<int>(parts.size()));
@@ -26,25 +32,27 @@ struct RoomScanner::Impl {
   }
   bool jointed(int a, int b) const { return parts[at(a)].parent == b || parts[at(b)].parent == a; }
 
-  FeasibleSettings settings;
-  std::vector<SurfacePart> parts;
-  FeasibleCollider collider;
+  std::shared_ptr<FeasiblePoses> poses;
+  const FeasibleSettings& settings;
+  const std::vector<SurfacePart>& parts;
+  const FeasibleCollider& collider;
   std::vector<Vec3> refined;  ///< the bind pose
   std::unique_ptr<PartSurface> shape;
   std::vector<char> all_allowed;
 };
 
-RoomScanner::RoomScanner(const Surface& surface, std::span<const Vec3> bind_pose, const FeasibleSettings& settings)
-    : impl_(std::make_unique<Impl>(surface, bind_pose, settings)) {}
+RoomScanner::RoomScanner(std::shared_ptr<FeasiblePoses> poses) : impl_(std::make_unique<Impl>(std::move(poses))) {}
 RoomScanner::~RoomScanner() = default;
 
-std::vector<TightPlace> RoomScanner::look(std::span<const Vec3> drawn) const {
+std::vector<TightPlace> RoomScanner::look(double time) const {
   const Impl& m = *impl_;
   std::vector<TightPlace> out;
   if (!m.settings.carve || m.parts.size() < 2) return out;
+  std::vector<Vec3> drawn(at(m.poses->body().surface().vertex_count()));
+  m.poses->body().sample(time, drawn);
   std::vector<Vec3> before(at(m.collider.vertex_count())), after(before.size());
   m.collider.refine(drawn, before);
-  if (m.collider.evaluate(drawn, after).moved_vertices == 0) return out;
+  if (m.poses->keep(time, drawn, after).moved_vertices == 0) return out;
 
   const auto part_of = m.collider.part_of_vertex();
   const std::size_t part_count = m.parts.size();

@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "baker/core/trajectory.h"
-#include "collision/feasible_collider.h"
+#include "collision/feasible_poses.h"
 
 namespace ft {
 
@@ -22,10 +21,11 @@ struct TightPlace {
 
 class RoomScanner {
  public:
-  RoomScanner(const Surface& surface, std::span<const Vec3> bind_pose, const FeasibleSettings& settings);
+  /// The poses that it has looked at are kept there.
+  explicit RoomScanner(std::shared_ptr<FeasiblePoses> poses);
   ~RoomScanner();
-  /// Pairs nearer than the gap in this pose, by parts.
-  std::vector<TightPlace> look(std::span<const Vec3> drawn) const;
+  /// Pairs nearer than the gap at this time [s], by parts.
+  std::vector<TightPlace> look(double time) const;
 
  private:
   struct Impl;

@@ -221,7 +221,9 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   model->attachments = std::move(model->topology->attachments);
   model->topology.reset();
   if (s.primary) {
-    model->collider = std::make_unique<MovingCollider>(s.primary, s.feasible);
+    CHECK(s.poses == nullptr || &s.poses->body() == s.primary.get());
+    model->collider = std::make_unique<MovingCollider>(
+        s.poses != nullptr ? s.poses : std::make_shared<FeasiblePoses>(s.primary, s.feasible));
     const std::vector<int> by_size = parts_by_size(s.primary->surface().parts);
     model->part_rank.resize(by_size.size());
     for (std::size_t rank = 0; rank < by_size.size(); ++rank)

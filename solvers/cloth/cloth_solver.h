@@ -12,7 +12,7 @@
 #include "baker/core/result.h"
 #include "baker/core/teleport.h"
 #include "baker/core/trajectory.h"
-#include "collision/feasible_collider.h"
+#include "collision/feasible_poses.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/hold_span.h"
 #include "solvers/solver.h"
@@ -65,7 +65,8 @@ struct ClothSetup {
   double coarsen = 1;
   bool bdf2 = true;  ///< with a quarter of BDF3; false: implicit Euler
   FeasibleSettings feasible;
-  std::vector<Teleport> teleports;  ///< of the primary: the cloth goes along
+  std::shared_ptr<FeasiblePoses> poses;  ///< of `primary` and `feasible`; null: the solver's own
+  std::vector<Teleport> teleports;       ///< of the primary: the cloth goes along
 };
 
 /// Checks the setup (pins in range, garments not empty) and builds the model.

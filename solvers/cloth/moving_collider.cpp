@@ -14,15 +14,10 @@ constexpr double k_deepest_start = 0.03;
 
 }  // namespace
 
-MovingCollider::MovingCollider(std::shared_ptr<const Trajectory> primary, const FeasibleSettings& settings)
-    : primary_(std::move(primary)) {
-  std::vector<Vec3> bind(at(primary_->surface().vertex_count()));
-  primary_->bind_pose(bind);
-  feasible_ = std::make_unique<FeasibleCollider>(primary_->surface(), bind, settings);
-}
+MovingCollider::MovingCollider(std::shared_ptr<const FeasiblePoses> poses) : poses_(std::move(poses)) {}
 
 double MovingCollider::inset_share(double time) const {
-  const double preroll = primary_->preroll();
+  const double preroll = trajectory().preroll();
   if (preroll <= 0) return 0;
   const double t = (time + preroll) / (0.6 * preroll);
   if (t <= 0) return 1;
@@ -32,10 +27,10 @@ double MovingCollider::inset_share(double time) const {
 
 double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const Triangle> cloth, double clearance) {
   inset_.clear();
-  if (primary_->preroll() <= 0) return 0;
+  if (trajectory().preroll() <= 0) return 0;
   std::vector<Vec3> pose, full;
-  drawn(-primary_->preroll(), pose);
-  feasible(-primary_->preroll(), pose, full);
+  drawn(-trajectory().preroll(), pose);
+  feasible(-trajectory().preroll(), pose, full);
   std::vector<double> inset(full.size(), 0.0);
   double deepest = 0;
   // First guess: each collider vertex gives way by what the points inside near it need, less with the distance.
@@ -76,13 +71,13 @@ double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const
 }
 
 void MovingCollider::drawn(double time, std::vector<Vec3>& positions) const {
-  positions.resize(at(primary_->surface().vertex_count()));
-  primary_->sample(time, positions);
+  positions.resize(at(trajectory().surface().vertex_count()));
+  trajectory().sample(time, positions);
 }
 
 CarveReport MovingCollider::feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions) const {
   positions.resize(at(vertex_count()));
-  const CarveReport report = feasible_->evaluate(drawn, positions);
+  const CarveReport report = poses_->evaluate(time, drawn, positions);
   const double share = inset_.empty() ? 0 : inset_share(time);
   if (share > 0) {
     const std::vector<Vec3> normals = vertex_normals(positions, triangles());

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "baker/core/trajectory.h"
-#include "collision/feasible_collider.h"
+#include "collision/feasible_poses.h"
 
 namespace ft {
 
 class MovingCollider {
  public:
-  MovingCollider(std::shared_ptr<const Trajectory> primary, const FeasibleSettings& settings);
+  explicit MovingCollider(std::shared_ptr<const FeasiblePoses> poses);
 
-  int vertex_count() const { return feasible_->vertex_count(); }
-  std::span<const Triangle> triangles() const { return feasible_->triangles(); }
-  std::span<const int> part_of_vertex() const { return feasible_->part_of_vertex(); }
-  const Trajectory& trajectory() const { return *primary_; }
+  int vertex_count() const { return poses_->collider().vertex_count(); }
+  std::span<const Triangle> triangles() const { return poses_->collider().triangles(); }
+  std::span<const int> part_of_vertex() const { return poses_->collider().part_of_vertex(); }
+  const Trajectory& trajectory() const { return poses_->body(); }
 
   /// Draws the body in at the start of the pre-roll so that this cloth (placed by bind_to_start) does not cross it and
   /// keeps about `clearance` [m]. Returns how deep the deepest point was inside [m]. Without a pre-roll nothing is
@@ -35,8 +35,7 @@ class MovingCollider {
   /// 1 at the start of the pre-roll, 0 from 60 % of it on.
   double inset_share(double time) const;
 
-  std::shared_ptr<const Trajectory> primary_;
-  std::unique_ptr<FeasibleCollider> feasible_;
+  std::shared_ptr<const FeasiblePoses> poses_;
   std::vector<double> inset_;  ///< per collider vertex [m]; empty: none
   double largest_inset_ = 0;
 };

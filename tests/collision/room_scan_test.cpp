@@ -6,6 +6,7 @@
 
 #include "baker/core/parallel.h"
 #include "capsule_scene.h"
+#include "tests/support/scripted_body.h"
 
 namespace ft {
 namespace {
@@ -21,10 +22,19 @@ CapsuleBody trunk_and_arm() {
       {{"trunk", Vec3(0, 0, 0), Vec3(0, 0.5, 0), 0.12, -1}, {"arm", Vec3(0.36, 0.1, 0), Vec3(0.36, 0.4, 0), 0.04, -1}});
 }
 
+/// In a pose that holds at all times.
+std::shared_ptr<FeasiblePoses> in_pose(const CapsuleBody& body, std::span<const Isometry> moves) {
+  const std::vector<Vec3> pose = body.pose(moves);
+  return std::make_shared<FeasiblePoses>(
+      std::make_shared<ScriptedBody>(
+          body.surface, body.bind(), 0.0,
+          [=](double, std::span<Vec3> x) { std::copy(pose.begin(), pose.end(), x.begin()); }),
+      FeasibleSettings{});
+}
+
 std::vector<TightPlace> look(const CapsuleBody& body, double arm_to) {
-  const RoomScanner scanner(body.surface, body.bind(), {});
   const Isometry moves[2] = {Isometry::Identity(), Isometry(Eigen::Translation3d(arm_to - 0.36, 0, 0))};
-  return scanner.look(body.pose(moves));
+  return RoomScanner(in_pose(body, moves)).look(0);
 }
 
 TEST(RoomScan, says_how_deep_a_part_is_in_another) {
@@ -50,9 +60,8 @@ TEST(RoomScan, is_silent_where_there_is_room) {
 TEST(RoomScan, does_not_count_parts_that_are_jointed) {
   CapsuleBody body(
       {{"upper", Vec3(0, 0, 0), Vec3(0, 0.3, 0), 0.05, -1}, {"lower", Vec3(0, -0.3, 0), Vec3(0, 0, 0), 0.045, 0}});
-  const RoomScanner scanner(body.surface, body.bind(), {});
   const Isometry moves[2] = {Isometry::Identity(), Isometry(Eigen::AngleAxisd(2.6, Vec3::UnitX()))};
-  EXPECT_TRUE(scanner.look(body.pose(moves)).empty());
+  EXPECT_TRUE(RoomScanner(in_pose(body, moves)).look(0).empty());
 }
 
 TEST(RoomScan, says_the_same_for_any_number_of_threads) {

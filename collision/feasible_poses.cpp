@@ -1,0 +1,62 @@
+#include "collision/feasible_poses.h"
+
+#include "baker/core/check.h"
+
+namespace ft {
+namespace {
+
+std::vector<Vec3> bind_pose(const Trajectory& body) {
+  std::vector<Vec3> out(at(body.surface().vertex_count()));
+  body.bind_pose(out);
+  return out;
+}
+
+}  // namespace
+
+FeasiblePoses::FeasiblePoses(std::shared_ptr<const Trajectory> body, const FeasibleSettings& settings,
+                             std::size_t most_bytes)
+    : body_(std::move(body)),
+      settings_(settings),
+      collider_(body_->surface(), bind_pose(*body_), settings),
+      most_bytes_(most_bytes) {}
+
+const FeasiblePoses::Carved* FeasiblePoses::kept(double time) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = poses_.find(time);
+  return found == poses_.end() ? nullptr : &found->second;
+}
+
+CarveReport FeasiblePoses::evaluate(double time, std::span<const Vec3> drawn, std::span<Vec3> positions) const {
+  const Carved* carved = kept(time);
+  if (carved == nullptr) return collider_.evaluate(drawn, positions);
+  collider_.refine(drawn, positions);
+  for (std::size_t i = 0; i < carved->vertices.size(); ++i) positions[at(carved->vertices[i])] = carved->positions[i];
+  return carved->report;
+}
+
+CarveReport FeasiblePoses::keep(double time, std::span<const Vec3> drawn, std::span<Vec3> positions) {
+  if (kept(time) != nullptr) return evaluate(time, drawn, positions);
+  Carved carved;
+  carved.report = collider_.evaluate(drawn, positions);
+  std::vector<Vec3> refined(positions.size());
+  collider_.refine(drawn, refined);
+  for (std::size_t v = 0; v < refined.size(); ++v) {
+    if (positions[v] == refined[v]) continue;
+    carved.vertices.push_back(static_cast<int>(v));
+    carved.positions.push_back(positions[v]);
+  }
+  const CarveReport report = carved.report;
+  const std::size_t bytes = sizeof(Carved) + carved.vertices.size() * (sizeof(int) + sizeof(Vec3));
+  carved.vertices.shrink_to_fit();
+  carved.positions.shrink_to_fit();
+  const std::lock_guard lock(mutex_);
+  if (bytes_ + bytes <= most_bytes_ && poses_.emplace(time, std::move(carved)).second) bytes_ += bytes;
+  return report;
+}
+
+std::size_t FeasiblePoses::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+}  // namespace ft
