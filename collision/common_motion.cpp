@@ -69,7 +69,6 @@ void CommonMotion::look(const Problem& problem, PairKind kind, std::span<const S
 /// Takes from the displacements of a pair what is too much.
 void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   const std::array<int, 4>& v = pair.stencil.v;
-  const auto split = static_cast<std::size_t>(first_feature_size(pair.kind));
   if (!(pair.room.gap > 0)) {  // no normal separates them: nothing is proved, nothing moves
     for (const int i : v)
       if (problem.movable(i)) problem.common[static_cast<std::size_t>(i)].setZero(), changing_[at(i)] = 1;
@@ -81,13 +80,10 @@ void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   const double too_much = approach.sum() - k_left_in_common * may_use(pair.room, problem.floor);
   if (!(too_much > 0)) return;
   const double first = std::max(0.0, approach.first), second = std::max(0.0, approach.second);
-  const double part_of_first = first / (first + second);
+  const std::array<double, 4> along = pair_retreat(pair.kind, advance, approach, first / (first + second), too_much);
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!problem.movable(v[i])) continue;
-    const double allowed =
-        i < split ? approach.first - part_of_first * too_much : approach.second - (1 - part_of_first) * too_much;
-    if (advance[i] <= allowed) continue;
-    problem.common[at(v[i])] += ((i < split ? 1 : -1) * (advance[i] - allowed)) * pair.room.normal;
+    if (!problem.movable(v[i]) || along[i] == 0) continue;
+    problem.common[at(v[i])] += along[i] * pair.room.normal;
     changing_[at(v[i])] = 1;
   }
 }

@@ -20,6 +20,11 @@ struct Stencil {
   auto operator<=>(const Stencil&) const = default;
 };
 
+/// What the four vertices have of `from`.
+inline std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
+  return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
+}
+
 struct ContactPairs {
   std::vector<Stencil> vertex_face;
   std::vector<Stencil> edge_edge;

@@ -53,6 +53,17 @@ PairApproach pair_approach(PairKind kind, const std::array<double, 4>& advance) 
   return {std::max(advance[0], advance[1]), std::max(advance[2], advance[3])};
 }
 
+std::array<double, 4> pair_retreat(PairKind kind, const std::array<double, 4>& advance, const PairApproach& approach,
+                                   double part_of_first, double too_much) {
+  const int split = first_feature_size(kind);
+  const double first = approach.first - part_of_first * too_much,
+               second = approach.second - (1 - part_of_first) * too_much;
+  std::array<double, 4> along;
+  for (std::size_t i = 0; i < 4; ++i)
+    along[i] = static_cast<int>(i) < split ? std::max(0.0, advance[i] - first) : -std::max(0.0, advance[i] - second);
+  return along;
+}
+
 bool slides_past(PairKind kind, const PairMove& move, double keep) {
   const auto split = static_cast<std::size_t>(first_feature_size(kind));
   std::array<Vec3, 4> end = move.x;

@@ -66,6 +66,11 @@ struct PairApproach {
 };
 PairApproach pair_approach(PairKind kind, const std::array<double, 4>& advance);
 
+/// How far the vertices have to be moved along the normal so that the pair approaches by `too_much` less [m]; the first
+/// feature retreats by its part of that (0 to 1), and of each feature only the foremost vertices do.
+std::array<double, 4> pair_retreat(PairKind kind, const std::array<double, 4>& advance, const PairApproach& approach,
+                                   double part_of_first, double too_much);
+
 /// The last resort: true when the features are separated by more than `keep` [m] along the normal where the pair ends,
 /// wherever in the triangle of x, x + dx and x + common each vertex is. Edges that slide past each other's ends need
 /// it.

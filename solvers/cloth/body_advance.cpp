@@ -24,7 +24,9 @@ constexpr double k_shortened_settled = 1e-3;
 constexpr double k_negligible = 2e-5;
 constexpr double k_spare = 5e-4;
 constexpr double k_asked = 1.5;  ///< of what is missing
-/// Rounds in which cloth that would touch is joined to zones, before the piece is shortened.
+/// Rounds in which what would touch is kept apart, and then in which it is joined to zones, before the piece is
+/// shortened.
+constexpr int k_parting_rounds = 8;
 constexpr int k_joining_rounds = 4;
 /// And when it cannot be shortened any more, as long as cloth meets cloth: what moves as one cannot meet itself, so
 /// that every round leaves fewer zones.
@@ -48,13 +50,14 @@ struct BodyAdvance::Scratch {
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
 BodyAdvance::~BodyAdvance() = default;
 
-/// Carries the cloth and collects candidates; cloth that would touch is carried as one, which costs candidates and not
-/// time. Returns the share of the motion that is free then.
+/// Carries the cloth and collects candidates; cloth that would touch is carried at a distance, and where that does not
+/// do, as one, which costs candidates and not time. Returns the share of the motion that is free then.
 double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   Scratch& s = *scratch_;
   s.candidates.find_near(cloth, h, s.piece);
   s.candidates.carry(cloth, h, s.piece);
   double t = s.candidates.collect(cloth, h, s.piece);
+  for (int round = 0; t < 1 && round < k_parting_rounds; ++round) t = s.candidates.part_blocked(cloth, s.piece);
   for (int round = 0; t < 1 && round < k_joining_rounds; ++round) t = s.candidates.join_blocked(cloth, s.piece);
   return t;
 }
@@ -107,7 +110,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
   const StepResult result = s.step.solve(step, s.x, s.v);
   report.newton_iterations += result.newton_iterations;
-  if (result.hanging) report.hanging_backtracks += result.backtracks;
+  report.lost_weight += h / in.h * result.lost_weight;
   report.linear_iterations += result.linear_iterations;
   report.seconds_assembly += result.seconds_assembly;
   report.seconds_linear += result.seconds_linear;

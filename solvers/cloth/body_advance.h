@@ -27,7 +27,7 @@ struct SubstepInput {
 /// What the pieces of a substep add up to.
 struct AdvanceReport {
   int pieces = 0, newton_iterations = 0, linear_iterations = 0;
-  int hanging_backtracks = 0;  ///< Newton steps that were halved while a garment hung on others
+  double lost_weight = 0;  ///< mean of StepResult::lost_weight over the substep
   double smallest_gap = 0;
   bool finite = true;
   struct OnBody {

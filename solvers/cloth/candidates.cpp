@@ -52,10 +52,6 @@ Vec3 mean_of(std::span<const Vec3> values) {
   return sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
 }
 
-std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
-  return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
-}
-
 }  // namespace
 
 Candidates::Candidates(const ClothModel& model)
@@ -138,6 +134,7 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   zones_.clear(static_cast<int>(cloth.x.size()));
+  limits_.clear();
   inertia_.resize(cloth.x.size());
   for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = h * cloth.v[i];
   piece.carry = inertia_;
@@ -252,6 +249,17 @@ void Candidates::join_zones(const PieceMotion& piece) {
 double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
   join_zones(piece);
   zones_.apply(piece.carry);
+  return renew_carried(cloth, piece);
+}
+
+double Candidates::part_blocked(const ClothMotion& cloth, PieceMotion& piece) {
+  limits_.add(blocked_, piece.start, piece.all);
+  limits_.apply(piece.carry, piece.body_motion);
+  return renew_carried(cloth, piece);
+}
+
+/// Brings pairs() and piece up to piece.carry, where it differs from the motion that they are of.
+double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
   changed_.assign(boxes_.size(), 0);
   for (std::size_t i = 0; i < piece.carry.size(); ++i) {
     if (piece.carry[i] == piece.all[i]) continue;

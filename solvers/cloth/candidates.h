@@ -10,6 +10,7 @@
 #include "collision/flat_patches.h"
 #include "collision/pair_geometry.h"
 #include "collision/pair_runs.h"
+#include "solvers/cloth/approach_limits.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/motion_zones.h"
 
@@ -37,8 +38,11 @@ class Candidates {
   /// Collects pairs(); returns the share of the motion, in (0, 1], after which the first of them is about to touch.
   /// After carry().
   double collect(const ClothMotion& cloth, double h, PieceMotion& piece);
-  /// After a collect() or join_blocked() that gave less than 1: carries the cloth of the pairs that would touch as one,
-  /// brings pairs() up to it, no longer in order, and returns the share anew.
+  /// After a collect() that gave less than 1: carries the cloth of all pairs that would have touched since then so that
+  /// they keep apart, if that can be, brings pairs() up to it, no longer in order, and returns the share anew.
+  double part_blocked(const ClothMotion& cloth, PieceMotion& piece);
+  /// After collect(), part_blocked() or join_blocked() that gave less than 1: carries the cloth of the pairs that would
+  /// touch as one, brings pairs() up to it, no longer in order, and returns the share anew.
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
   /// Whether cloth is about to touch cloth, by the last collect() or join_blocked().
   bool cloth_blocks_cloth() const;
@@ -65,6 +69,7 @@ class Candidates {
   void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);
   void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
+  double renew_carried(const ClothMotion& cloth, PieceMotion& piece);
   void begin_flat(const ClothMotion& cloth, const PieceMotion& piece);
   void mark_lost();
   void add_missing(const ClothMotion& cloth, const PieceMotion& piece);
@@ -99,6 +104,7 @@ class Candidates {
   };
   std::vector<Kept> kept_;
   ContactPairs blocked_;
+  ApproachLimits limits_;
   MotionZones zones_;
   std::vector<Vec3> carried_;
   std::vector<int> lost_;  ///< patches that are flat no longer

@@ -32,10 +32,11 @@ constexpr int k_rewinds = 3;
 /// turning()): cloth that whips about turns and strains by as much, and Newton's method starts that far from the
 /// answer.
 constexpr double k_most_turn = 0.2;
-/// A frame is walked anew with so many times the substeps where a Newton step was halved while a garment hung on others
-/// by buttons or zips alone: cords are stiff and pull one way only, and what the iterations leave is lost to a garment
-/// that swings on them. It fell half as far as it should.
-constexpr int k_times_hanging = 4;
+/// A frame in which Newton's method leaves a garment that is buttoned or zipped to others with more force than this
+/// share of its weight, on average, is walked anew with so many times the substeps: cords are stiff and pull one way
+/// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
+constexpr double k_most_lost = 0.1;
+constexpr int k_times_lost = 4;
 /// What vertices may move against the mean motion of their garment in one substep, in its typical edges (see
 /// scatter()): pairs that may meet grow with a power of it, and folds of fine cloth are cheaper in more and shorter
 /// steps.
@@ -85,7 +86,7 @@ class ClothSolver final : public Solver {
  private:
   struct Frame;
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
-  int walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
   int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
@@ -253,10 +254,10 @@ void ClothSolver::add_forces(const AdvanceReport& step, double duration, FrameRe
   }
 }
 
-/// Returns how many Newton steps were halved while a garment hung on others.
-int ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
+/// Returns the mean of StepResult::lost_weight.
+double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
-  int halved = 0;
+  double lost = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
   for (int k = 0; k < substeps; ++k) {
@@ -282,7 +283,7 @@ int ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRep
     report.linear_iterations += step.linear_iterations;
     report.smallest_gap = std::min(report.smallest_gap, step.smallest_gap);
     report.finite = report.finite && step.finite;
-    halved += step.hanging_backtracks;
+    lost += step.lost_weight / substeps;
     add_forces(step, frame.t1 - frame.t0, report);
     report.profile.candidates += step.seconds_candidates;
     report.profile.assembly += step.seconds_assembly;
@@ -291,7 +292,7 @@ int ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameRep
     body = next.feasible;
     pins.swap(pins_next);
   }
-  return halved;
+  return lost;
 }
 
 /// Something lets go or takes hold at once. The integrator is then started anew by a step of implicit Euler: the
@@ -348,11 +349,11 @@ FrameReport ClothSolver::advance_frame(State& state) const {
       report.rewinds = attempt;
       report.smallest_gap = std::numeric_limits<double>::infinity();
       report.profile = spent;
-      const int halved = walk(frame, count, motion, report);
+      const double lost = walk(frame, count, motion, report);
       spent = report.profile;
-      return halved;
+      return lost;
     };
-    if (walk_anew(substeps << attempt) > 0) walk_anew(k_times_hanging * (substeps << attempt));
+    if (walk_anew(substeps << attempt) > k_most_lost) walk_anew(k_times_lost * (substeps << attempt));
     if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
     const int avoidable = certificate_.certify(body_.end().feasible, motion, report);

@@ -296,7 +296,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       const double after = of_trial + s.contact.value(s.trial);
       finite = std::isfinite(after);
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
-      if (!accepted) ++result.backtracks, whole = false;
+      if (!accepted) whole = false;
     }
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
@@ -312,10 +312,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     }
     result.seconds_contact += watch.lap();
   }
-  for (const AttachPoint& point : model_.attachments)
-    result.hanging = result.hanging || s.touches[at(model_.garment_of(point.vertex))] == 0;
   result.smallest_gap = s.contact.smallest_gap();
   measure_on_body(in, inertia, result);
+  measure_lost(in, inertia, result);
   const std::span<const Vec3> x = cloth(s.all);
   for (std::size_t i = 0; i < n; ++i) {
     x_out[i] = x[i];
@@ -323,6 +322,17 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   }
   result.finite = result.finite && all_finite(x_out);
   return result;
+}
+
+/// Adds what the pins, or those to the world alone, pull with at the end of the solve.
+void ImplicitStep::add_pin_gradient(const StepInput& in, bool to_world_only) {
+  Scratch& s = *scratch_;
+  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+    const PinPoint& pin = model_.pins[p];
+    if (s.pin_share[p] == 0 || (to_world_only && !pin.to_world)) continue;
+    const Vec3 d = s.all[at(pin.vertex)] - in.pin_target[p];
+    s.gradient[at(pin.vertex)] += pin_spring(pin, s.pin_share[p], d.norm()).secant * d;
+  }
 }
 
 /// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has
@@ -338,15 +348,35 @@ void ImplicitStep::measure_on_body(const StepInput& in, double inertia, StepResu
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   if (garments > 1) s.contact.add_gradient_between_garments(s.all, s.gradient);
-  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
-    const PinPoint& pin = model_.pins[p];
-    if (s.pin_share[p] == 0 || !pin.to_world) continue;
-    const Vec3 d = x[at(pin.vertex)] - in.pin_target[p];
-    s.gradient[at(pin.vertex)] += pin_spring(pin, s.pin_share[p], d.norm()).secant * d;
-  }
+  add_pin_gradient(in, true);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t g = at(model_.contact.garment[i]);
     if (s.touches[g] != 0) result.on_body[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));
+  }
+}
+
+/// What is left of the gradient of a whole garment: inner forces cancel out, and all others have to make its momentum.
+void ImplicitStep::measure_lost(const StepInput& in, double inertia, StepResult& result) {
+  const double gravity = model_.setup.gravity.norm();
+  if (model_.attachments.empty() || !(gravity > 0)) return;
+  Scratch& s = *scratch_;
+  const std::span<const Vec3> x(s.all.data(), s.y.size());
+  std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
+  for (const auto& energy : model_.energies)
+    if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
+  s.contact.add_gradient(s.all, s.gradient);
+  add_pin_gradient(in, false);
+  std::vector<char> attached(model_.setup.garments.size(), 0);
+  for (const AttachPoint& point : model_.attachments) attached[at(model_.garment_of(point.vertex))] = 1;
+  for (std::size_t g = 0; g < attached.size(); ++g) {
+    if (attached[g] == 0) continue;
+    Vec3 left = Vec3::Zero();
+    double mass = 0;
+    for (auto i = at(model_.first_vertex[g]); i < at(model_.first_vertex[g + 1]); ++i) {
+      left += model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i];
+      mass += model_.mass[i];
+    }
+    result.lost_weight = std::max(result.lost_weight, left.norm() / (mass * gravity));
   }
 }
 

@@ -41,8 +41,10 @@ struct StepInput {
 };
 
 struct StepResult {
-  int newton_iterations = 0, linear_iterations = 0, backtracks = 0;
-  bool hanging = false;     ///< a garment hangs on others by its attachments, and the body has no hold on it
+  int newton_iterations = 0, linear_iterations = 0;
+  /// Of garments with attachments, the largest force that Newton's method has left over on one of them as a whole, by
+  /// its weight [1]: the step has lost that much of its momentum, or made it. 0 without gravity.
+  double lost_weight = 0;
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
   bool finite = true;
@@ -60,6 +62,8 @@ class ImplicitStep {
 
  private:
   void measure_on_body(const StepInput& in, double inertia, StepResult& result);
+  void measure_lost(const StepInput& in, double inertia, StepResult& result);
+  void add_pin_gradient(const StepInput& in, bool to_world_only);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;

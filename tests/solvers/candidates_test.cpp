@@ -174,6 +174,21 @@ TEST(Candidates, are_complete_when_what_would_meet_is_carried_as_one) {
   EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
 }
 
+TEST(Candidates, are_complete_when_what_would_meet_is_kept_apart) {
+  TwoSheets s(-2);
+  for (std::size_t i = s.cloth.v.size() / 2; i < s.cloth.v.size(); ++i) s.cloth.v[i].x() = 0.3;
+  Candidates candidates(*s.model);
+  ASSERT_LT(s.collect(candidates), 1);
+  const std::vector<Vec3> wanted = s.piece.carry;
+  double t = 0;
+  int rounds = 0;
+  for (; t < 1 && rounds < 8; ++rounds) t = candidates.part_blocked(s.cloth, s.piece);
+  EXPECT_EQ(t, 1);
+  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_NEAR(s.piece.carry[i].x(), wanted[i].x(), 1e-4) << "only what they approach by is taken";
+}
+
 TEST(Candidates, that_were_let_pass_stay_out_when_the_room_grows) {
   TwoSheets s(-2);
   Candidates candidates(*s.model);
