@@ -66,7 +66,7 @@ void add_bake_command(CLI::App& app, int& exit_code) {
   command->add_option("--frames", a->frames, "Bake these frames only, with a pre-roll of their own")->type_name("A-B");
   command
       ->add_option("--quality", a->quality,
-                   "preview: about four times as fast, on garments with a quarter of the vertices; final: as they are")
+                   "preview: about four times as fast, on garments with a fifth of the vertices; final: as they are")
       ->type_name("QUALITY")
       ->check(CLI::IsMember({"preview", "final"}));
   command->add_option("--threads", a->threads, "Threads; 0 takes all cores. The result does not depend on it")

@@ -58,7 +58,7 @@ struct ClothSetup {
   Vec3 wind = Vec3::Zero();                 ///< m/s
   double air_density = 1.225;               ///< kg/m3; 0: vacuum
   int min_substeps = 3, max_substeps = 32;  ///< a frame
-  double travel = 4;  ///< most that the body goes against the cloth in a substep, in contact radii; 16 is coarse
+  double travel = 5.5;  ///< most that the body goes against the cloth in a substep, in contact radii; 16 is coarse
   int newton_iterations = 3;
   double linear_tolerance = 3e-2;
   /// What moves has edges this many times as long as the garments', 1..4; their vertices ride on it. For previews.

@@ -40,6 +40,17 @@ TEST(Quality, A_preview_is_coarser_in_everything_and_a_final_bake_in_nothing) {
   EXPECT_GT(preview_setup.feasible.max_edge, final_setup.feasible.max_edge);
 }
 
+TEST(Quality, A_preview_of_what_is_sewn_keeps_the_substeps_as_its_seams_keep_their_edges) {
+  Shot shot;
+  shot.quality = "preview";
+  ClothSetup setup;
+  setup.garments.resize(2);
+  setup.garments[1].mesh.stitches.push_back({});
+  apply_quality(shot, setup);
+  EXPECT_GT(setup.coarsen, 1);
+  EXPECT_EQ(setup.min_substeps, ClothSetup{}.min_substeps);
+}
+
 TEST(Quality, A_preview_moves_in_a_coarser_body) {
   Surface ball;
   std::vector<Vec3> bind;
