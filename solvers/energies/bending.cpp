@@ -250,14 +250,15 @@ void Bending::add_group_hessian(std::size_t group, const HingeShape& shape, Bloc
     v[0][k] = -(v[1][k] + v[2][k] + v[3][k]);
   }
   const std::size_t first = group * k_lanes, used = hinge_schedule_.used(group);
-  Mat3f* blocks = hessian.blocks.data();
+  LaneInts vertex[4];
+  for (std::size_t a = 0; a < 4; ++a) std::memcpy(&vertex[a], &g.vertex[a], sizeof vertex[a]);
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = a; b < 4; ++b) {
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) block[3 * c + r] = v[a][r] * v[b][c];
-      add_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * a + b]; });
-      if (a != b)
-        add_transposed_blocks(block, used, blocks, [&](std::size_t l) { return positions_[first + l][4 * b + a]; });
+      if (a != b) transpose_where(vertex[a] > vertex[b], block);
+      const std::size_t index = positions_.index_of(a, b);
+      add_blocks(block, used, hessian.blocks.data(), [&](std::size_t l) { return positions_[first + l][index]; });
     }
 }
 

@@ -1,8 +1,10 @@
-// Where the blocks of every element sit in the matrix, looked up once per pattern, so that assembly never searches.
+// Where the blocks of every element on and above the diagonal sit in the matrix, looked up once per pattern, so that
+// assembly never searches.
 // For the energies that add element matrices. Caution: a pattern is recognised by its address and size; it must not be
 // edited in place.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -12,11 +14,13 @@
 
 namespace ft {
 
-/// Blocks (a, b) of each slot at Corners * a + b; slots of element -1 are left at -1.
+/// Corners a and b >= a of each slot at index_of(a, b), in the row of the lower of the two vertices; slots of element
+/// -1 are left at -1.
 template <int Corners>
 class BlockPositions {
  public:
-  using Positions = std::array<int, Corners * Corners>;
+  using Positions = std::array<int, Corners*(Corners + 1) / 2>;
+  static constexpr std::size_t index_of(std::size_t a, std::size_t b) { return a * (2 * Corners - 1 - a) / 2 + b; }
 
   /// Slots hold indices of stencils; corners of -1 are left at -1, too.
   template <class Stencils>
@@ -28,11 +32,11 @@ class BlockPositions {
       if (slots[s] < 0) continue;
       const auto& v = stencils[static_cast<std::size_t>(slots[s])];
       for (std::size_t a = 0; a < Corners; ++a)
-        for (std::size_t b = 0; b < Corners; ++b) {
+        for (std::size_t b = a; b < Corners; ++b) {
           if (v[a] < 0 || v[b] < 0) continue;
-          const int p = pattern.find(v[a], v[b]);
+          const int p = pattern.find(std::min(v[a], v[b]), std::max(v[a], v[b]));
           CHECK(p >= 0);
-          positions_[s][Corners * a + b] = p;
+          positions_[s][index_of(a, b)] = p;
         }
     }
     pattern_ = &pattern;

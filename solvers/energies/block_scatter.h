@@ -10,7 +10,8 @@
 
 namespace ft {
 
-using Lanes = float __attribute__((vector_size(4 * k_lanes)));  ///< one number of k_lanes elements
+using Lanes = float __attribute__((vector_size(4 * k_lanes)));   ///< one number of k_lanes elements
+using LaneInts = int __attribute__((vector_size(4 * k_lanes)));  ///< or one integer; of a comparison, -1 or 0
 
 namespace detail {
 
@@ -52,11 +53,15 @@ inline void add_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, Posi
   }
 }
 
-/// The same blocks, transposed.
-template <class Position>
-inline void add_transposed_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, Position&& position) {
-  const Lanes turned[9] = {block[0], block[3], block[6], block[1], block[4], block[7], block[2], block[5], block[8]};
-  add_blocks(turned, used, blocks, position);
+/// Transposes the blocks of the lanes where turned is -1: those that are the lower ones of their elements' two.
+inline void transpose_where(const LaneInts& turned, Lanes* block) {
+  for (int column = 0; column < 3; ++column)
+    for (int row = column + 1; row < 3; ++row) {
+      Lanes &a = block[3 * column + row], &b = block[3 * row + column];
+      const Lanes other = turned ? b : a;
+      b = turned ? a : b;
+      a = other;
+    }
 }
 
 }  // namespace ft

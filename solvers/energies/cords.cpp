@@ -60,9 +60,12 @@ void Cords::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
       stiffness = pull.secant * along + (pull.force / length) * (Mat3::Identity() - along);
     }
     for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t b = 0; b < 4; ++b)
-        if (c.vertex[a] >= 0 && c.vertex[b] >= 0)
-          hessian.blocks[at(positions_[i][4 * a + b])] += (c.weight[a] * c.weight[b] * stiffness).cast<float>();
+      for (std::size_t b = a; b < 4; ++b) {
+        if (c.vertex[a] < 0 || c.vertex[b] < 0) continue;
+        const double times = a != b && c.vertex[a] == c.vertex[b] ? 2 : 1;
+        hessian.blocks[at(positions_[i][positions_.index_of(a, b)])] +=
+            (times * c.weight[a] * c.weight[b] * stiffness).cast<float>();
+      }
   }
 }
 

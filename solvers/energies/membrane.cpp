@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "baker/core/check.h"
 #include "solvers/energies/block_scatter.h"
@@ -131,29 +132,27 @@ void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* 
   element_block(e, bx, by, bx, by, out.b22);
 }
 
-/// Adds the nine blocks of `used` elements.
-void scatter(const ElementBlocks& e, const BlockPositions<3>& positions, std::size_t first, std::size_t used,
-             Mat3f* blocks) {
-  const auto at_block = [&](std::size_t k) {
-    return [&positions, first, k](std::size_t l) { return positions[first + l][k]; };
-  };
-  Lanes b00[9], b10[9], b20[9];
+/// Adds the six blocks of `used` elements that lie on and above the diagonal.
+void scatter(ElementBlocks& e, const Membrane::Group& g, const BlockPositions<3>& positions, std::size_t first,
+             std::size_t used, Mat3f* blocks) {
+  Lanes b00[9], b01[9], b02[9];
   for (std::size_t column = 0; column < 3; ++column)
     for (std::size_t row = 0; row < 3; ++row) {
-      const std::size_t k = 3 * column + row;
-      b10[k] = -(e.b11[k] + e.b12[k]);
-      b20[k] = -(e.b12[3 * row + column] + e.b22[k]);
+      const std::size_t k = 3 * column + row, transposed = 3 * row + column;
+      b01[k] = -(e.b11[k] + e.b12[transposed]);
+      b02[k] = -(e.b12[k] + e.b22[k]);
     }
-  for (std::size_t k = 0; k < 9; ++k) b00[k] = -(b10[k] + b20[k]);
-  add_blocks(b00, used, blocks, at_block(0));
-  add_transposed_blocks(b10, used, blocks, at_block(1));
-  add_transposed_blocks(b20, used, blocks, at_block(2));
-  add_blocks(b10, used, blocks, at_block(3));
-  add_blocks(e.b11, used, blocks, at_block(4));
-  add_blocks(e.b12, used, blocks, at_block(5));
-  add_blocks(b20, used, blocks, at_block(6));
-  add_transposed_blocks(e.b12, used, blocks, at_block(7));
-  add_blocks(e.b22, used, blocks, at_block(8));
+  for (std::size_t k = 0; k < 9; ++k) b00[k] = -(b01[k] + b02[k]);
+  LaneInts vertex[3];
+  for (std::size_t a = 0; a < 3; ++a) std::memcpy(&vertex[a], &g.vertex[a], sizeof vertex[a]);
+  transpose_where(vertex[0] > vertex[1], b01);
+  transpose_where(vertex[0] > vertex[2], b02);
+  transpose_where(vertex[1] > vertex[2], e.b12);
+  const auto add = [&](const Lanes* block, std::size_t a, std::size_t b) {
+    const std::size_t index = positions.index_of(a, b);
+    add_blocks(block, used, blocks, [&](std::size_t l) { return positions[first + l][index]; });
+  };
+  add(b00, 0, 0), add(b01, 0, 1), add(b02, 0, 2), add(e.b11, 1, 1), add(e.b12, 1, 2), add(e.b22, 2, 2);
 }
 
 /// Green strain of a line that is longer by this share; a limit of 0 is none.
@@ -317,7 +316,7 @@ void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, s
 void Membrane::add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const {
   ElementBlocks blocks;
   element_blocks(groups_[group], stressed.d, stressed.e, stressed.s, inverse_rate_time_, blocks);
-  scatter(blocks, positions_, group * k_lanes, schedule_.used(group), hessian.blocks.data());
+  scatter(blocks, groups_[group], positions_, group * k_lanes, schedule_.used(group), hessian.blocks.data());
 }
 
 }  // namespace ft

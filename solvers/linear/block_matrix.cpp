@@ -16,12 +16,12 @@ int BlockPattern::find(int row, int col) const {
   const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
   const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
   const auto it = std::lower_bound(begin, end, col);
-  return it != end && *it == col ? static_cast<int>(it - column.begin()) : -1;
+  return it != end && *it == col ? place[static_cast<std::size_t>(it - column.begin())] : -1;
 }
 
 void BlockMatrix::reset(const BlockPattern& p) {
   pattern = &p;
-  blocks.resize(p.column.size() + 1);
+  blocks.resize(p.block_count() + 1);
   parallel_for(blocks.size(), k_block,
                [&](std::size_t begin, std::size_t end) { std::fill_n(&blocks[begin], end - begin, Mat3f::Zero()); });
 }
@@ -39,13 +39,18 @@ BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::arr
         }
   BlockPattern pattern;
   pattern.row_start.push_back(0);
+  std::vector<int> next;  // above the diagonal of each row so far: the next place, since rows come in ascending order
+  int count = 0;
   for (int v = 0; v < vertex_count; ++v) {
     auto& row = rows[static_cast<std::size_t>(v)];
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
-    const auto self = std::lower_bound(row.begin(), row.end(), v) - row.begin();
-    pattern.diagonal.push_back(static_cast<int>(pattern.column.size()) + static_cast<int>(self));
-    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.diagonal.push_back(count);
+    next.push_back(count + 1);
+    for (const int u : row) {
+      pattern.column.push_back(u);
+      pattern.place.push_back(u < v ? next[at(u)]++ : count++);
+    }
     pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
   }
   return pattern;

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "baker/core/check.h"
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 
@@ -65,57 +66,63 @@ bool link_levels(Level& fine, Level& coarse) {
     fine.children_start.push_back(static_cast<int>(fine.children.size()));
   }
 
-  // Contributions per coarse block (I, J) with J >= I.
-  std::vector<std::map<int, std::vector<Level::Contribution>>> upper(nc);
+  // Contributions per coarse block (I, J) with J >= I: of a fine block, and of the one that mirrors it.
+  struct Contributions {
+    std::vector<Level::Contribution> straight, transposed;
+  };
+  std::vector<std::map<int, Contributions>> upper(nc);
   for (std::size_t i = 0; i < p.rows.size(); ++i)
     for (int k = fine.pattern->row_start[i]; k < fine.pattern->row_start[i + 1]; ++k) {
-      const Interpolation::Row& row = p.rows[i];
-      const Interpolation::Row& col = p.rows[at(fine.pattern->column[at(k)])];
+      const std::size_t j = at(fine.pattern->column[at(k)]);
+      const Interpolation::Row &row = p.rows[i], &col = p.rows[j];
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b) {
           if (row.coarse[a] < 0 || col.coarse[b] < row.coarse[a]) continue;
-          upper[at(row.coarse[a])][col.coarse[b]].push_back({k, row.weight[a] * col.weight[b]});
+          Contributions& to = upper[at(row.coarse[a])][col.coarse[b]];
+          (j < i ? to.transposed : to.straight).push_back({fine.pattern->place[at(k)], row.weight[a] * col.weight[b]});
         }
     }
   std::vector<std::vector<std::array<int, 4>>> stencils(1);
   for (std::size_t i = 0; i < nc; ++i)
-    for (const auto& [j, list] : upper[i]) stencils[0].push_back({static_cast<int>(i), j, -1, -1});
+    for (const auto& entry : upper[i]) stencils[0].push_back({static_cast<int>(i), entry.first, -1, -1});
   coarse.own_pattern = make_pattern(static_cast<int>(nc), stencils);
   coarse.pattern = &coarse.own_pattern;
   coarse.build();
   fine.gather_start.assign(1, 0);
   for (std::size_t i = 0; i < nc; ++i)
-    for (auto& [j, list] : upper[i]) {
-      std::sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.place < y.place; });
-      fine.gather.insert(fine.gather.end(), list.begin(), list.end());
-      fine.gather_start.push_back(static_cast<int>(fine.gather.size()));
-      const int row = static_cast<int>(i);
-      fine.upper.push_back(coarse.pattern->find(row, j));
-      fine.lower.push_back(coarse.pattern->find(j, row));
-    }
+    for (auto& [j, both] : upper[i])
+      for (auto* list : {&both.straight, &both.transposed}) {
+        std::sort(list->begin(), list->end(), [](const auto& x, const auto& y) { return x.place < y.place; });
+        fine.gather.insert(fine.gather.end(), list->begin(), list->end());
+        fine.gather_start.push_back(static_cast<int>(fine.gather.size()));
+      }
+  CHECK(fine.gather_start.size() == 2 * coarse.pattern->block_count() + 1);
   return true;
 }
 
 void galerkin(const Level& fine, Level& coarse) {
-  parallel_for(fine.upper.size(), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      using Eight = Eigen::Array<float, 8, 1>;
-      Eight first = Eight::Zero();
-      float ninth = 0;
-      for (int k = fine.gather_start[e]; k < fine.gather_start[e + 1]; ++k) {
-        const Level::Contribution& g = fine.gather[at(k)];
-        const float* block = fine.matrix.blocks[at(g.place)].data();
-        first += g.weight * Eigen::Map<const Eight>(block);
-        ninth += g.weight * block[8];
-      }
-      Mat3f sum;
-      Eigen::Map<Eight>(sum.data()) = first;
-      sum(2, 2) = ninth;
-      if (fine.upper[e] == fine.lower[e]) sum = (0.5f * (sum + sum.transpose())).eval();
-      coarse.matrix.blocks[at(fine.upper[e])] = sum;
-      coarse.matrix.blocks[at(fine.lower[e])] = sum.transpose();
+  const auto sum_of = [&fine](std::size_t list) {
+    using Eight = Eigen::Array<float, 8, 1>;
+    Eight first = Eight::Zero();
+    float ninth = 0;
+    for (int k = fine.gather_start[list]; k < fine.gather_start[list + 1]; ++k) {
+      const Level::Contribution& g = fine.gather[at(k)];
+      const float* block = fine.matrix.blocks[at(g.place)].data();
+      first += g.weight * Eigen::Map<const Eight>(block);
+      ninth += g.weight * block[8];
     }
+    Mat3f sum;
+    Eigen::Map<Eight>(sum.data()) = first;
+    sum(2, 2) = ninth;
+    return sum;
+  };
+  parallel_for(coarse.pattern->block_count(), k_rows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) coarse.matrix.blocks[e] = sum_of(2 * e) + sum_of(2 * e + 1).transpose();
   });
+  for (const int d : coarse.pattern->diagonal) {  // symmetric, but for rounding
+    Mat3f& block = coarse.matrix.blocks[at(d)];
+    block = (0.5f * (block + block.transpose())).eval();
+  }
 }
 
 void invert_diagonal(Level& level) {

@@ -70,13 +70,16 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   for (const PairTerm& term : terms)
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b) {
-        if (term.vertex[a] < 0 || term.vertex[b] < 0) continue;
+        const int row = term.vertex[a], column = term.vertex[b];
+        if (row < 0 || column < row) continue;
         const Mat3f value = (term.weight[a] * term.weight[b]) * term.stiffness;
-        const int place = a == b ? pattern.diagonal[at(term.vertex[a])] : pattern.find(term.vertex[a], term.vertex[b]);
-        if (place >= 0)
+        const int place = row == column ? pattern.diagonal[at(row)] : pattern.find(row, column);
+        if (place >= 0) {
           matrix.blocks[at(place)] += value;
-        else
-          s.added.push_back({term.vertex[a], term.vertex[b], value});
+        } else {
+          s.added.push_back({row, column, value});
+          s.added.push_back({column, row, value});
+        }
       }
   s.fine().extra.gather(s.added, at(s.fine().size()));
 }
@@ -92,7 +95,8 @@ void LinearSystem::Impl::hold(std::span<const char> fixed) {
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (int k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-        if (held[i] || held[at(p.column[at(k)])]) level.matrix.blocks[at(k)].setZero();
+        if (at(p.column[at(k)]) >= i && (held[i] || held[at(p.column[at(k)])]))
+          level.matrix.blocks[at(p.place[at(k)])].setZero();
       for (int k = extra.start[i]; k < extra.start[i] + extra.used[i]; ++k)
         if (held[i] || held[at(extra.column[at(k)])]) extra.value[at(k)].setZero();
     }
@@ -100,9 +104,11 @@ void LinearSystem::Impl::hold(std::span<const char> fixed) {
 }
 
 void LinearSystem::Impl::refresh_hierarchy() {
+  fine().rows.fill(fine().matrix);
   invert_diagonal(fine());
   for (std::size_t d = 1; d < levels.size(); ++d) {
     galerkin(*levels[d - 1], *levels[d]);
+    levels[d]->rows.fill(levels[d]->matrix);
     invert_diagonal(*levels[d]);
     if (d + 1 < levels.size()) estimate_damping(*levels[d]);
   }
@@ -111,8 +117,13 @@ void LinearSystem::Impl::refresh_hierarchy() {
   if (levels.size() < 2 || last.size() > k_dense_limit) return;
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * last.size(), 3 * last.size());
   for (int i = 0; i < last.size(); ++i)
-    for (int k = last.pattern->row_start[at(i)]; k < last.pattern->row_start[at(i) + 1]; ++k)
-      dense.block<3, 3>(3 * i, 3 * last.pattern->column[at(k)]) = last.matrix.blocks[at(k)].cast<double>();
+    for (int k = last.pattern->row_start[at(i)]; k < last.pattern->row_start[at(i) + 1]; ++k) {
+      const int j = last.pattern->column[at(k)];
+      if (j < i) continue;
+      const Mat3 block = last.matrix.blocks[at(last.pattern->place[at(k)])].cast<double>();
+      dense.block<3, 3>(3 * i, 3 * j) = block;
+      if (j > i) dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
+    }
   const double largest = dense.diagonal().maxCoeff();
   for (int i = 0; i < dense.rows(); ++i) dense(i, i) += dense(i, i) > 0 ? 1e-6 * dense(i, i) : std::max(largest, 1.0);
   coarse_factor.compute(dense);

@@ -9,6 +9,7 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
+#include "solvers/energies/cords.h"
 #include "solvers/energies/registry.h"
 #include "tests/solvers/cloth_patches.h"
 
@@ -48,8 +49,11 @@ Eigen::MatrixXd dense(const BlockMatrix& m) {
   const int n = m.pattern->vertex_count();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (int i = 0; i < n; ++i)
-    for (int p = m.pattern->row_start[at(i)]; p < m.pattern->row_start[at(i) + 1]; ++p)
-      out.block<3, 3>(3 * i, 3 * m.pattern->column[at(p)]) = m.blocks[at(p)].cast<double>();
+    for (int k = m.pattern->row_start[at(i)]; k < m.pattern->row_start[at(i) + 1]; ++k) {
+      const int j = m.pattern->column[at(k)];
+      const Mat3 block = m.blocks[at(m.pattern->place[at(k)])].cast<double>();
+      out.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
+    }
   return out;
 }
 
@@ -337,6 +341,26 @@ TEST_P(EnergyContract, Hessian_is_the_true_one_or_more_than_half_of_it) {
   RecordProperty("largest_ratio", std::to_string(largest));
   EXPECT_LT(largest, 2.0);
   EXPECT_GT(largest, 1.0);
+}
+
+/// One cord, always drawn.
+class OneCord : public Cords {
+ public:
+  explicit OneCord(const Cord& cord) : Cords({cord}) {}
+  std::string_view name() const override { return "one cord"; }
+};
+
+TEST(Cords, That_hold_a_vertex_to_a_triangle_of_its_own_have_the_Hessian_of_their_energy) {
+  const OneCord energy({{2, 0, 1, 2}, {1, -0.5, -0.2, -0.3}, 0, 100, 1e9});
+  std::vector<Vec3> x{{0, 0, 0}, {0.1, 0.02, 0}, {0.03, 0.1, 0.05}};
+  const auto stencils = energy.stencils();
+  const BlockPattern pattern = make_pattern(3, std::array{stencils});
+  BlockMatrix m;
+  m.reset(pattern);
+  energy.add_hessian(x, m);
+  const Eigen::MatrixXd h = dense(m), exact = true_hessian(energy, x);
+  EXPECT_GT(exact.norm(), 1);
+  EXPECT_LT((h - exact).norm(), 1e-5 * exact.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EnergyContract,

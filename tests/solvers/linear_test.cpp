@@ -8,6 +8,7 @@
 #include "baker/core/random.h"
 #include "solvers/linear/interpolation.h"
 #include "solvers/linear/linear_system.h"
+#include "solvers/linear/packed_rows.h"
 
 namespace ft {
 namespace {
@@ -48,7 +49,7 @@ struct Sheet {
       const Vec3 d = (x[at(s[1])] - x[at(s[0])]).normalized();
       const Mat3f k = (1000 * d * d.transpose() + Mat3::Identity()).cast<float>();
       for (const int a : {0, 1})
-        for (const int b : {0, 1}) m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += a == b ? k : Mat3f(-k);
+        for (int b = a; b < 2; ++b) m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += a == b ? k : Mat3f(-k);
     }
   }
 
@@ -66,8 +67,11 @@ Eigen::VectorXd dense_solution(const Sheet& sheet, std::span<const PairTerm> ter
   const int n = sheet.pattern.vertex_count();
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (int i = 0; i < n; ++i)
-    for (int k = sheet.pattern.row_start[at(i)]; k < sheet.pattern.row_start[at(i) + 1]; ++k)
-      a.block<3, 3>(3 * i, 3 * sheet.pattern.column[at(k)]) += m.blocks[at(k)].cast<double>();
+    for (int k = sheet.pattern.row_start[at(i)]; k < sheet.pattern.row_start[at(i) + 1]; ++k) {
+      const int j = sheet.pattern.column[at(k)];
+      const Mat3 block = m.blocks[at(sheet.pattern.place[at(k)])].cast<double>();
+      a.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
+    }
   for (const PairTerm& t : terms)
     for (std::size_t p = 0; p < 4; ++p)
       for (std::size_t q = 0; q < 4; ++q)
@@ -106,7 +110,7 @@ std::vector<PairTerm> contacts(const Sheet& sheet) {
   return terms;
 }
 
-TEST(BlockMatrix, Multiplies_rows_of_even_and_odd_length) {
+TEST(PackedRows, Multiply_rows_of_even_and_odd_length_by_both_halves_of_a_symmetric_matrix) {
   std::vector<std::array<int, 4>> springs;
   for (int i = 1; i < 12; ++i)
     for (int j = 0; j < i; j += 1 + i % 3) springs.push_back({i, j, -1, -1});
@@ -121,18 +125,25 @@ TEST(BlockMatrix, Multiplies_rows_of_even_and_odd_length) {
     odd += (pattern.row_start[at(i) + 1] - pattern.row_start[at(i)]) % 2;
     x[at(i)] = Vec4f(float(noise(at(i), 90)), float(noise(at(i), 91)), float(noise(at(i), 92)), 0);
     flat.segment<3>(3 * i) = x[at(i)].head<3>();
-    for (int k = pattern.row_start[at(i)]; k < pattern.row_start[at(i) + 1]; ++k) {
+    EXPECT_EQ(pattern.find(i, i), pattern.diagonal[at(i)]);
+    for (int j = i; j < 12; ++j) {
+      const int place = pattern.find(i, j);
+      if (place < 0) continue;
       Mat3f block;
-      for (int c = 0; c < 9; ++c) block.data()[c] = float(noise(at(k), static_cast<std::uint64_t>(c)));
-      matrix.blocks[at(k)] = block;
-      dense.block<3, 3>(3 * i, 3 * pattern.column[at(k)]) = block;
+      for (int c = 0; c < 9; ++c) block.data()[c] = float(noise(at(place), static_cast<std::uint64_t>(c)));
+      if (j == i) block = (block + block.transpose()).eval();
+      matrix.blocks[at(place)] = block;
+      dense.block<3, 3>(3 * i, 3 * j) = block;
+      dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
     }
   }
   EXPECT_GT(odd, 0);
   EXPECT_LT(odd, 12);
+  PackedRows rows;
+  rows.fill(matrix);
   const Eigen::VectorXf expected = dense * flat;
   for (int i = 0; i < 12; ++i) {
-    const Vec4f row = matrix.row_product(at(i), x.data());
+    const Vec4f row = rows.product(at(i), x.data());
     EXPECT_LT((row.head<3>() - expected.segment<3>(3 * i)).norm(), 1e-5f);
     EXPECT_EQ(row[3], 0);
   }
@@ -226,7 +237,7 @@ TEST(LinearSystem, solves_loose_vertices_and_separate_pieces) {
   for (std::size_t i = 0; i < 400; ++i) m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity();
   for (const auto& s : springs)
     for (const int a : {0, 1})
-      for (const int b : {0, 1})
+      for (int b = a; b < 2; ++b)
         m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += Mat3f::Identity() * (a == b ? 50.f : -50.f);
   system.add_pair_terms({});
   std::vector<Vec3> x(400);
