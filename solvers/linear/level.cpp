@@ -174,25 +174,41 @@ void residual(Level& level) {
   });
 }
 
-void restrict_residual(const Level& fine, Level& coarse) {
+void restrict_to(Level& coarse, const Level& fine, std::span<const Vec4f> residual) {
   parallel_for(at(coarse.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       Vec4f sum = Vec4f::Zero();
       for (int k = fine.children_start[c]; k < fine.children_start[c + 1]; ++k)
-        sum += fine.children_weight[at(k)] * fine.r[at(fine.children[at(k)])];
+        sum += fine.children_weight[at(k)] * residual[at(fine.children[at(k)])];
       coarse.b[c] = sum;
     }
   });
 }
 
-void prolong(Level& fine, const Level& coarse) {
+namespace {
+
+template <bool k_add>
+void interpolate_onto(Level& fine, const Level& coarse) {
   parallel_for(at(fine.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Interpolation::Row& row = fine.interpolation.rows[i];
+      Vec4f sum = Vec4f::Zero();
+      if (k_add) sum = fine.x[i];
       for (std::size_t k = 0; k < 3; ++k)
-        if (row.coarse[k] >= 0) fine.x[i] += row.weight[k] * coarse.x[at(row.coarse[k])];
+        if (row.coarse[k] >= 0) sum += row.weight[k] * coarse.x[at(row.coarse[k])];
+      fine.x[i] = sum;
     }
   });
+}
+
+}  // namespace
+
+void interpolate(Level& fine, const Level& coarse) {
+  interpolate_onto<false>(fine, coarse);
+}
+
+void add_interpolated(Level& fine, const Level& coarse) {
+  interpolate_onto<true>(fine, coarse);
 }
 
 }  // namespace ft

@@ -78,9 +78,11 @@ void smooth_first(Level& level);
 void smooth(Level& level);
 /// r = b - A x.
 void residual(Level& level);
-/// coarse b = P^T fine r.
-void restrict_residual(const Level& fine, Level& coarse);
+/// coarse b = P^T residual, which is of the fine level.
+void restrict_to(Level& coarse, const Level& fine, std::span<const Vec4f> residual);
+/// fine x = P coarse x.
+void interpolate(Level& fine, const Level& coarse);
 /// fine x += P coarse x.
-void prolong(Level& fine, const Level& coarse);
+void add_interpolated(Level& fine, const Level& coarse);
 
 }  // namespace ft

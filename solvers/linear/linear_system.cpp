@@ -15,6 +15,18 @@ constexpr int k_dense_size = 64;     ///< vertices of the level that is factored
 constexpr int k_dense_limit = 400;   ///< no dense factor above this size: the coarsest level is only smoothed then
 constexpr std::size_t k_rows = 256;  ///< per block of a loop
 
+/// Where the cycle turns the residual so far that less is left along it than this share of its norm, it is made
+/// symmetric.
+constexpr double k_least_along = 0.1;
+
+/// Of what the preconditioner makes of the residual.
+struct Products {
+  double with_residual, with_product;  ///< product: of the matrix and the last direction
+  /// Of the residual, near the energy of the error, never negative: what the coarse correction meets of it, and the
+  /// last smoothing step of the rest.
+  double norm_squared;
+};
+
 }  // namespace
 
 struct LinearSystem::Impl {
@@ -25,6 +37,8 @@ struct LinearSystem::Impl {
   std::vector<ExtraBlock> added;
   std::vector<char> held;
   std::vector<Vec4f> solution, best, direction, product, preconditioned;
+  bool symmetric = false;  ///< the finest level smooths before the correction too
+  float alpha = 0;         ///< of the last step: the residual has lost so much of product
 
   Level& fine() { return *levels.front(); }
   void hold(std::span<const char> fixed);
@@ -33,7 +47,8 @@ struct LinearSystem::Impl {
   bool step(double rz, bool keep);
   void correct(std::size_t depth);
   void solve_coarsest(Level& level);
-  double precondition();
+  Products precondition();
+  Products apply_cycle();
 };
 
 LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> rest_positions,
@@ -141,42 +156,71 @@ void LinearSystem::Impl::solve_coarsest(Level& level) {
   for (int i = 0; i < level.size(); ++i) level.x[at(i)].head<3>() = b.segment<3>(3 * i).cast<float>();
 }
 
-/// A V(1,1) cycle from this level on, but for its last smoothing step.
+/// A V(1,1) cycle from this level on, of the finest V(0,1) unless symmetric, but for its last smoothing step. What the
+/// finest smooths before the correction is a third of its products and saves a sixth of the iterations.
 void LinearSystem::Impl::correct(std::size_t depth) {
   Level& level = *levels[depth];
-  smooth_first(level);
-  residual(level);
   Level& coarse = *levels[depth + 1];
-  restrict_residual(level, coarse);
+  const bool from_zero = depth == 0 && !symmetric;
+  if (from_zero) {
+    restrict_to(coarse, level, level.b);
+  } else {
+    smooth_first(level);
+    residual(level);
+    restrict_to(coarse, level, level.r);
+  }
   if (depth + 2 == levels.size()) {
     solve_coarsest(coarse);
   } else {
     correct(depth + 1);
     smooth(coarse);
   }
-  prolong(level, coarse);
+  if (from_zero)
+    interpolate(level, coarse);
+  else
+    add_interpolated(level, coarse);
 }
 
-/// preconditioned = M^-1 residual, which is the finest level's b; returns the product of the two. Held rows have a zero
-/// inverse, yet interpolation writes to them.
-double LinearSystem::Impl::precondition() {
+/// preconditioned = M^-1 residual, which is the finest level's b. Held rows have a zero inverse, yet interpolation
+/// writes to them.
+Products LinearSystem::Impl::apply_cycle() {
   Level& level = fine();
   const bool many = levels.size() > 1;
   if (many) correct(0);
-  return parallel_sum(at(level.size()), k_rows, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      Vec4f& z = preconditioned[i];
-      if (held[i])
-        z.setZero();
-      else if (many)
-        z = level.x[i] + level.damping * (level.inverse[i] * (level.b[i] - level.product(i, level.x)));
-      else
-        z = level.inverse[i] * level.b[i];
-      sum += static_cast<double>(level.b[i].dot(z));
-    }
-    return sum;
-  });
+  using Lanes = Eigen::Array4d;
+  const Vec3 sums =
+      parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
+        Lanes with_residual = Lanes::Zero(), with_product = with_residual, norm_squared = with_residual;
+        for (std::size_t i = begin; i < end; ++i) {
+          Vec4f& z = preconditioned[i];
+          z.setZero();
+          if (held[i]) continue;
+          const Vec4f& b = level.b[i];
+          if (many) {
+            const Vec4f& corrected = level.x[i];
+            const Vec4f rest = b - level.product(i, level.x), smoothed = level.damping * (level.inverse[i] * rest);
+            z = corrected + smoothed;
+            norm_squared += (b.array() * corrected.array() + rest.array() * smoothed.array()).cast<double>();
+          } else {
+            z = level.inverse[i] * b;
+          }
+          with_residual += (b.array() * z.array()).cast<double>();
+          with_product += (product[i].array() * z.array()).cast<double>();
+        }
+        return {with_residual.sum(), with_product.sum(), norm_squared.sum()};
+      });
+  return {sums[0], sums[1], symmetric || !many ? sums[0] : sums[2]};
+}
+
+/// V(0,1) can turn a residual to the wrong side. For the rest of the solve the cycle is symmetric then, which cannot;
+/// without a product with the last direction the next is its own alone.
+Products LinearSystem::Impl::precondition() {
+  const Products first = apply_cycle();
+  if (first.with_residual >= k_least_along * first.norm_squared || symmetric) return first;
+  symmetric = true;
+  Products second = apply_cycle();
+  second.with_product = 0;
+  return second;
 }
 
 /// Vectors for a solve from zero. False where a row has no positive diagonal: it is not seen by the preconditioner, and
@@ -184,6 +228,7 @@ double LinearSystem::Impl::precondition() {
 bool LinearSystem::Impl::start(std::span<const Vec3> right_side) {
   Level& level = fine();
   bool sound = true;
+  symmetric = false;
   for (std::size_t i = 0; i < at(level.size()); ++i) {
     level.b[i].setZero();
     if (held[i]) continue;
@@ -207,7 +252,7 @@ bool LinearSystem::Impl::step(double rz, bool keep) {
     return sum;
   });
   if (!(curvature > 0) || !std::isfinite(curvature)) return false;
-  const float alpha = static_cast<float>(rz / curvature);
+  alpha = static_cast<float>(rz / curvature);
   parallel_for(direction.size(), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (keep) best[i] = solution[i];
@@ -229,19 +274,21 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
       std::all_of(s.fine().b.begin(), s.fine().b.end(), [](const Vec4f& v) { return v == Vec4f::Zero(); });
   double best_residual = report.converged ? 0 : 1;
   bool is_best = true;  // the solution so far, of all there were
-  double rz = s.precondition();
-  const double first = rz;
+  const Products first = s.precondition();
+  double rz = first.with_residual;
   s.direction = s.preconditioned;
   while (!report.converged && report.iterations < s.settings.max_iterations && std::isfinite(rz) && rz > 0) {
     if (!s.step(rz, is_best)) break;
     ++report.iterations;
-    const double next = s.precondition();
-    const double residual = std::sqrt(next / first);
+    const auto [next, along_last, norm_squared] = s.precondition();
+    const double residual = std::sqrt(norm_squared / first.norm_squared);
     is_best = residual < best_residual;
     if (is_best) best_residual = residual;
     if (!(next >= 0) || !std::isfinite(next)) break;
     report.converged = residual <= s.settings.tolerance && sound;
-    const float beta = static_cast<float>(next / rz);
+    // Flexible: the cycle is not symmetric (Bouwmeester et al. 2015, Nonsymmetric Preconditioning for Conjugate
+    // Gradient and Steepest Descent Methods), so that the difference of two residuals stands for the new one alone.
+    const float beta = -s.alpha * static_cast<float>(along_last / rz);
     rz = next;
     parallel_for(s.direction.size(), k_rows, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) s.direction[i] = s.preconditioned[i] + beta * s.direction[i];

@@ -208,6 +208,29 @@ TEST(LinearSystem, needs_about_as_many_multigrid_iterations_for_a_fine_sheet_as_
   EXPECT_LT(iterations[1], 40);
 }
 
+// Between vertices anywhere, so stiff that a cycle that is not symmetric turns residuals to the wrong side.
+TEST(LinearSystem, solves_sheets_with_contacts_a_thousand_times_stiffer_than_they_are) {
+  const Sheet sheet(20);
+  const std::vector<char> fixed(sheet.x.size(), 0);
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    std::vector<PairTerm> terms(60);
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      for (std::size_t v = 0; v < 4; ++v)
+        terms[k].vertex[v] =
+            static_cast<int>(random_uniform({.element = 4 * k + v}, 100 + seed) * double(sheet.x.size()));
+      terms[k].weight = {1, -0.3f, -0.5f, -0.2f};
+      const Vec3f normal = Vec3f(float(noise(k, 200 + seed)), float(noise(k, 300 + seed)), 0.5f).normalized();
+      terms[k].stiffness = 1e6f * normal * normal.transpose();
+    }
+    LinearSystem system(sheet.pattern, sheet.rest, {.tolerance = 3e-2, .max_iterations = 2000});
+    sheet.fill(system.begin());
+    system.add_pair_terms(terms);
+    std::vector<Vec3> x(sheet.x.size());
+    EXPECT_TRUE(system.solve(sheet.load(), fixed, x).converged) << seed;
+    EXPECT_LT(relative_error(x, dense_solution(sheet, terms, fixed)), 0.1) << seed;
+  }
+}
+
 TEST(LinearSystem, gives_the_same_bits_for_any_number_of_threads) {
   const Sheet sheet(60);
   const std::vector<char> fixed(sheet.x.size(), 0);
