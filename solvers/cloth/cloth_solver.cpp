@@ -49,7 +49,10 @@ double elapsed(std::chrono::steady_clock::time_point since) {
 class ClothSolver final : public Solver {
  public:
   explicit ClothSolver(std::unique_ptr<ClothModel> model)
-      : model_(std::move(model)), advance_(*model_), certificate_(*model_), body_(model_->collider.get()) {}
+      : model_(std::move(model)), advance_(*model_), certificate_(*model_), body_(model_->collider.get()) {
+    mark_tangled(*model_, own_crossings(*model_, crossings_within(model_->start, model_->triangles)),
+                 tangled_at_start_);
+  }
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
   const Mesh& system_mesh(int system) const override { return model_->setup.garments[at(system)].mesh; }
@@ -95,6 +98,7 @@ class ClothSolver final : public Solver {
   double substeps_of_body(const Frame& frame, const ClothMotion& motion) const;
 
   std::unique_ptr<ClothModel> model_;
+  std::vector<double> tangled_at_start_;  ///< as ClothMotion has it
   // Scratch only: forgotten between frames, one frame at a time.
   mutable BodyAdvance advance_;
   mutable Certificate certificate_;
@@ -117,7 +121,7 @@ State ClothSolver::initial_state() const {
   m.x = model_->start;
   m.v.assign(m.x.size(), Vec3::Zero());
   m.released.assign(m.x.size(), -1.0);
-  mark_tangled(*model_, own_crossings(*model_, crossings_within(m.x, model_->triangles)), m.tangled);
+  m.tangled = tangled_at_start_;
   // A history of constant acceleration makes the integrator exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
   m.x_previous = m.x_older = m.x;

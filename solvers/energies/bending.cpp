@@ -98,40 +98,55 @@ Bending::Bending(const ClothTopology& topology) {
       if (row[s % k_lanes] < 0) row[s % k_lanes] = static_cast<int>(s);
 }
 
+bool Bending::Angles::are_of(std::span<const Vec3> x) const {
+  return at.size() == x.size() && std::memcmp(at.data(), x.data(), x.size_bytes()) == 0;
+}
+
+void Bending::work_out(std::span<const Vec3> x, Angles& angles) const {
+  if (angles.are_of(x)) return;
+  angles.at.assign(x.begin(), x.end());
+  angles.angle.resize(phi_.size());
+  parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
+    HingeEdges h;
+    alignas(32) HingeLane angle;
+    for (std::size_t i = begin; i < end; ++i) {
+      edges(hinge_groups_[i], x, h);
+      hinge_angle_lanes(h.e, h.a, h.b, angle);
+      std::copy_n(angle, k_lanes, angles.angle.data() + i * k_lanes);
+    }
+  });
+}
+
 void Bending::begin_step(const StepContext& context) {
   CHECK(context.h > 0 && context.beta_h > 0);
-  measured_at_.clear();
+  measured_ = false;
   inverse_rate_time_ = context.x_t0.empty() ? 0 : 1 / context.rate_time();
   if (inverse_rate_time_ == 0) return;
   const bool history = context.has_history() && context.b != 0;
-  parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
-    HingeEdges h;
-    alignas(32) HingeLane now, before;
-    for (std::size_t i = begin; i < end; ++i) {
-      HingeGroup& g = hinge_groups_[i];
-      edges(g, context.x_t0, h);
-      hinge_angle_lanes(h.e, h.a, h.b, now);
-      if (history) {
-        edges(g, context.x_tm1, h);
-        hinge_angle_lanes(h.e, h.a, h.b, before);
-      }
-      for (int l = 0; l < k_lanes; ++l)
-        g.reference[l] = now[l] + (history ? context.b * angle_difference(now[l], before[l]) : 0.0);
+  std::swap(start_, before_);  // the start of the last step is mostly where this one came from
+  if (history) work_out(context.x_tm1, before_);
+  if (last_.are_of(context.x_t0))
+    start_ = last_;
+  else
+    work_out(context.x_t0, start_);
+  parallel_for(phi_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const double now = start_.angle[s];
+      hinge_groups_[s / k_lanes].reference[s % k_lanes] =
+          now + (history ? context.b * angle_difference(now, before_.angle[s]) : 0.0);
     }
   });
 }
 
 /// Fills phi_, rho_, moment_ and energy_.
 void Bending::measure(std::span<const Vec3> x) const {
-  if (measured_at_.size() == x.size() && std::memcmp(measured_at_.data(), x.data(), x.size_bytes()) == 0) return;
-  measured_at_.assign(x.begin(), x.end());
+  if (measured_ && last_.are_of(x)) return;
+  measured_ = true;
+  work_out(x, last_);
   parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
-    HingeEdges h;
-    alignas(32) HingeLane angle;
     for (std::size_t i = begin; i < end; ++i) {
       const HingeGroup& g = hinge_groups_[i];
-      edges(g, x, h);
-      hinge_angle_lanes(h.e, h.a, h.b, angle);
+      const double* angle = last_.angle.data() + i * k_lanes;
       double* phi = phi_.data() + i * k_lanes;
       double* rho = rho_.data() + i * k_lanes;
       for (int l = 0; l < k_lanes; ++l) {

@@ -44,6 +44,13 @@ class Bending final : public Energy {
 
  private:
   struct HingeShape;
+  /// Of all hinges, where the cloth is `at`; the same bits whenever they are worked out.
+  struct Angles {
+    std::vector<Vec3> at;
+    std::vector<double> angle;  ///< per hinge slot [rad]
+    bool are_of(std::span<const Vec3> x) const;
+  };
+  void work_out(std::span<const Vec3> x, Angles& angles) const;
   void measure(std::span<const Vec3> x) const;
   void add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const;
   void add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const;
@@ -53,8 +60,10 @@ class Bending final : public Energy {
   std::vector<HingeGroup> hinge_groups_;
   double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
   mutable BlockPositions<4> positions_;
-  // Of the last x that was measured: the next question is mostly about the same one.
-  mutable std::vector<Vec3> measured_at_;  ///< empty: none yet in this step
+  Angles start_, before_;  ///< of the step, and scratch
+  // Of the last x that was measured: the next question is mostly about the same one, and the next step starts there.
+  mutable Angles last_;
+  mutable bool measured_ = false;          ///< in this step, what follows
   mutable std::vector<double> phi_, rho_;  ///< per hinge slot
   mutable std::vector<double> moment_;     ///< dU / d theta [N m]
   mutable double energy_ = 0;              ///< J
