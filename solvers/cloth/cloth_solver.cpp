@@ -1,8 +1,7 @@
 // The walk of a frame:
 //   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
-//   2. substeps from the body's speed near the cloth, from how fast the cloth turns and from its own speed in edges; in
-//      each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton, truncation); once more with four
-//      times as many where a garment hangs on buttons and Newton's method does not like it
+//   2. substeps (substep_count.cpp); in each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton,
+//      truncation); once more with four times as many where a garment hangs on buttons and loses momentum
 //   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
 //      the substeps, at most three times and as long as it helps
 //   4. parts that no cloth touches any more hold the cloth again; the report
@@ -13,7 +12,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "baker/core/parallel.h"
 #include "baker/core/volume.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/body_ahead.h"
@@ -21,6 +19,7 @@
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/coarse_solver.h"
 #include "solvers/cloth/sewing.h"
+#include "solvers/cloth/substep_count.h"
 #include "solvers/cloth/tangles.h"
 #include "solvers/cloth/untangle.h"
 
@@ -28,19 +27,11 @@ namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
-/// What the ends of an edge may move against each other in one substep, by its length at rest (of all edges, see
-/// turning()): cloth that whips about turns and strains by as much, and Newton's method starts that far from the
-/// answer.
-constexpr double k_most_turn = 0.2;
 /// A frame in which Newton's method leaves a garment that is buttoned or zipped to others with more force than this
 /// share of its weight, on average, is walked anew with so many times the substeps: cords are stiff and pull one way
 /// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
 constexpr double k_most_lost = 0.1;
 constexpr int k_times_lost = 4;
-/// What vertices may move against the mean motion of their garment in one substep, in its typical edges (see
-/// scatter()): pairs that may meet grow with a power of it, and folds of fine cloth are cheaper in more and shorter
-/// steps.
-constexpr double k_most_scatter = 1.25;
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -92,10 +83,6 @@ class ClothSolver final : public Solver {
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
-  int choose_substeps(const Frame& frame, const ClothMotion& motion) const;
-  double turning(const ClothMotion& motion) const;
-  double scatter(const ClothMotion& motion) const;
-  double substeps_of_body(const Frame& frame, const ClothMotion& motion) const;
 
   std::unique_ptr<ClothModel> model_;
   std::vector<double> tangled_at_start_;  ///< as ClothMotion has it
@@ -146,104 +133,6 @@ State ClothSolver::initial_state() const {
   m.h_previous = m.h_older = h;
   store(state, m);
   return state;
-}
-
-int ClothSolver::choose_substeps(const Frame& frame, const ClothMotion& m) const {
-  const ClothSetup& setup = model_->setup;
-  const double dt = frame.t1 - frame.t0;
-  const double own = std::max(dt * turning(m) / k_most_turn, dt * scatter(m) / k_most_scatter);
-  const double wanted = std::ceil(std::max(own, substeps_of_body(frame, m)));
-  return static_cast<int>(std::clamp<double>(wanted, setup.min_substeps, setup.max_substeps));
-}
-
-/// How fast the ends of the edges move against each other, by their lengths at rest; both root mean square [1/s], so
-/// that an edge counts as much as the cloth that it is in, and tiny ones hardly.
-double ClothSolver::turning(const ClothMotion& m) const {
-  const RestEdges& rest = model_->rest_edges;
-  const Vec2 squares =
-      parallel_sum(rest.edges.size(), 1024, Vec2(0, 0), [&](std::size_t begin, std::size_t end) -> Vec2 {
-        Vec2 sum(0, 0);
-        for (std::size_t k = begin; k < end; ++k) {
-          const auto [a, b] = rest.edges[k];
-          sum += Vec2((m.v[at(a)] - m.v[at(b)]).squaredNorm(), rest.lengths[k] * rest.lengths[k]);
-        }
-        return sum;
-      });
-  return squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
-}
-
-/// How fast the vertices of a garment move against its mean motion, by its typical edge; root mean square over all
-/// garments [1/s]. What may meet in a step grows with it: folds of fine cloth that pass each other.
-double ClothSolver::scatter(const ClothMotion& m) const {
-  double sum = 0;
-  for (std::size_t g = 0; g + 1 < model_->first_vertex.size(); ++g) {
-    const auto first = at(model_->first_vertex[g]), count = at(model_->first_vertex[g + 1]) - first;
-    const Vec3 total = parallel_sum(count, 1024, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
-      Vec3 own(0, 0, 0);
-      for (std::size_t i = first + begin; i < first + end; ++i) own += m.v[i];
-      return own;
-    });
-    const Vec3 mean = total / static_cast<double>(std::max<std::size_t>(count, 1));
-    sum += parallel_sum(count, 1024, 0.0,
-                        [&](std::size_t begin, std::size_t end) {
-                          double own = 0;
-                          for (std::size_t i = first + begin; i < first + end; ++i)
-                            own += (m.v[i] - mean).squaredNorm();
-                          return own;
-                        }) /
-           (model_->typical_edge[g] * model_->typical_edge[g]);
-  }
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(m.v.size(), 1)));
-}
-
-/// So many that the body moves no farther against the cloth in one than the setup says.
-double ClothSolver::substeps_of_body(const Frame& frame, const ClothMotion& m) const {
-  const ClothSetup& setup = model_->setup;
-  const std::vector<Vec3>& body_t0 = body_.start().feasible;
-  const std::vector<Vec3>& body_t1 = body_.end().feasible;
-  if (body_t0.empty()) return 0;
-  // Speed of the body relative to the cloth's own mean motion, where cloth is near.
-  const double dt = frame.t1 - frame.t0, cell = 0.06;
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& v : m.v) mean += v * (dt / static_cast<double>(m.v.size()));
-  std::vector<std::array<int, 3>> cells;
-  cells.reserve(m.x.size());
-  const auto cell_of = [&](const Vec3& p) {
-    return std::array<int, 3>{static_cast<int>(std::floor(p.x() / cell)), static_cast<int>(std::floor(p.y() / cell)),
-                              static_cast<int>(std::floor(p.z() / cell))};
-  };
-  for (const Vec3& p : m.x) cells.push_back(cell_of(p));
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  const auto is_near = [&](const Vec3& from, const Vec3& way, double length) {
-    // What starts before the cloth and ends behind it was near on its way.
-    const int stops = 1 + static_cast<int>(std::min(length / cell, 256.0));
-    for (int stop = 0; stop <= stops; ++stop) {
-      const auto c = cell_of(from + (static_cast<double>(stop) / stops) * way);
-      for (int k = 0; k < 27; ++k)
-        if (std::binary_search(cells.begin(), cells.end(),
-                               std::array<int, 3>{c[0] + k % 3 - 1, c[1] + k / 3 % 3 - 1, c[2] + k / 9 - 1}))
-          return true;
-    }
-    return false;
-  };
-  double radius = 1e-3;
-  for (const double r : model_->contact.radius) radius = std::max(radius, r);
-  const double travel = setup.travel * radius;
-  // The fastest first: the first that is near decides, and slow ones change nothing.
-  std::vector<std::pair<double, std::size_t>> by_speed;
-  for (std::size_t i = 0; i < body_t0.size(); ++i) {
-    const double speed = (body_t1[i] - body_t0[i] - mean).norm();
-    if (speed > setup.min_substeps * travel) by_speed.emplace_back(-speed, i);
-  }
-  std::sort(by_speed.begin(), by_speed.end());
-  double fastest = 0;
-  for (const auto& [negative_speed, i] : by_speed) {
-    if (!is_near(body_t0[i], body_t1[i] - mean - body_t0[i], -negative_speed)) continue;
-    fastest = -negative_speed;
-    break;
-  }
-  return fastest / travel;
 }
 
 /// Adds what a substep did to the body; torques are about the origin until the frame is over.
@@ -339,7 +228,8 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     carry(*teleport, start);
     body_.cut(*teleport);
   }
-  const int substeps = expected_substeps_ = choose_substeps(frame, start);
+  const int substeps = expected_substeps_ =
+      substep_count(*model_, start, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible);
   FrameReport report, best_report;
   ClothMotion motion, best;
   int fewest = -1;

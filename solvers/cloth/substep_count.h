@@ -1,0 +1,17 @@
+// How many substeps a frame takes.
+#pragma once
+
+#include <span>
+
+#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/cloth_motion.h"
+
+namespace ft {
+
+/// Between the setup's least and most: so many that neither the body moves too far against cloth that is near, nor the
+/// cloth turns too far, nor its vertices pass too many of each other. duration: of the frame [s]; body: its vertices at
+/// the frame's start and end [m], empty for none.
+int substep_count(const ClothModel& model, const ClothMotion& motion, double duration, std::span<const Vec3> body_t0,
+                  std::span<const Vec3> body_t1);
+
+}  // namespace ft
