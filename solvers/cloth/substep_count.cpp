@@ -17,6 +17,9 @@ constexpr double k_most_turn = 0.2;
 /// scatter()): pairs that may meet grow with a power of it, and folds of fine cloth are cheaper in more and shorter
 /// steps.
 constexpr double k_most_scatter = 1.25;
+/// What the body may move against the cloth in one substep, in the smallest typical edge of the garments: of fine cloth
+/// it meets more with each contact radius of its way.
+constexpr double k_most_way = 3.5;
 
 /// How fast the ends of the edges move against each other, by their lengths at rest; both root mean square [1/s], so
 /// that an edge counts as much as the cloth that it is in, and tiny ones hardly.
@@ -89,7 +92,8 @@ double substeps_of_body(const ClothModel& model, const ClothMotion& m, double du
   };
   double radius = 1e-3;
   for (const double r : model.contact.radius) radius = std::max(radius, r);
-  const double travel = setup.travel * radius;
+  double travel = setup.travel * radius;
+  for (const double edge : model.typical_edge) travel = std::min(travel, k_most_way * edge);
   // The fastest first: the first that is near decides, and slow ones change nothing.
   std::vector<std::pair<double, std::size_t>> by_speed;
   for (std::size_t i = 0; i < body_t0.size(); ++i) {
