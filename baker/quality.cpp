@@ -8,8 +8,8 @@
 namespace ft {
 namespace {
 
-// Tuned on the benchmark's scene S2 for a quarter of the time: longer steps alone cost more than they save, since what
-// may meet in a step grows faster than the step.
+// Tuned for less than a quarter of a final bake's time in the benchmark's scene S2 and in the samples: longer steps
+// alone cost more than they save, since what may meet in a step grows faster than the step.
 constexpr double k_coarsen = 2.2;          ///< edges of garments, in those of a final bake [1]
 constexpr double k_coarsen_body = 2.5;     ///< of body and collider [1]
 constexpr double k_deviation = 2. / 3;     ///< of the body's surface, aimed at, in the least contact distance [1]

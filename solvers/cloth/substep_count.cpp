@@ -60,7 +60,7 @@ double scatter(const ClothModel& model, const ClothMotion& m) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(m.v.size(), 1)));
 }
 
-/// So many that the body moves no farther against the cloth in one than the setup says.
+/// So many that the body moves no farther against the cloth in one than the setup says, nor than k_most_way.
 double substeps_of_body(const ClothModel& model, const ClothMotion& m, double duration, std::span<const Vec3> body_t0,
                         std::span<const Vec3> body_t1) {
   const ClothSetup& setup = model.setup;
