@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t k_block = 1024;  // pairs per block
 constexpr int k_most_rounds = 12;      ///< looks at the pairs
+constexpr int k_most_joins = 40;       ///< looks after those, after each of which more moves as one
 constexpr int k_sweeps = 3;            ///< over the pairs that a look has found
 /// Pairs that would use more than their room are left with this share of it, so that they do not come back in the next
 /// round for what a neighbour changes, and the rest of the displacement finds some.
@@ -20,16 +21,55 @@ double excess(PairKind kind, const PairRoom& room, const std::array<Vec3, 4>& di
   return pair_approach(kind, pair_advance(kind, room, displacement)).sum() - may_use(room, floor);
 }
 
+/// Who makes the change that a pair's corner is given.
+enum class Sharers {
+  k_alone,    ///< it alone: it is in no clump, or in one that both features have vertices of
+  k_clump,    ///< its whole clump
+  k_another,  ///< nobody: the clump makes that of another corner, which is larger
+};
+
+Sharers sharers(const VertexClumps& clumps, PairKind kind, const Stencil& stencil, std::size_t corner,
+                const std::array<double, 4>& along) {
+  const int clump = clumps.of(stencil.v[corner]);
+  if (clump < 0) return Sharers::k_alone;
+  const auto split = static_cast<std::size_t>(first_feature_size(kind));
+  bool largest = true;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (k == corner || clumps.of(stencil.v[k]) != clump) continue;
+    if ((k < split) != (corner < split)) return Sharers::k_alone;
+    const double own = std::abs(along[corner]), other = std::abs(along[k]);
+    largest = largest && (own > other || (own == other && corner < k));
+  }
+  return largest ? Sharers::k_clump : Sharers::k_another;
+}
+
+/// The clump that both features have vertices of, -1: none. A clump has its motion in common: what approaches in it is
+/// what its vertices do against that.
+int clump_across(const VertexClumps& clumps, PairKind kind, const Stencil& stencil) {
+  const auto split = static_cast<std::size_t>(first_feature_size(kind));
+  for (std::size_t i = 0; i < split; ++i)
+    for (std::size_t k = split; k < 4; ++k)
+      if (const int clump = clumps.of(stencil.v[i]); clump >= 0 && clumps.of(stencil.v[k]) == clump) return clump;
+  return -1;
+}
+
 }  // namespace
 
 struct CommonMotion::Problem {
   std::span<const Vec3> x, dx;
   std::size_t movable_end;
   double floor;
+  const VertexClumps& clumps;
   std::span<Vec3> common;
 
   bool movable(int v) const { return static_cast<std::size_t>(v) < movable_end; }
 };
+
+void CommonMotion::look_at_all(const Problem& problem, const ContactPairs& pairs) {
+  tight_.clear();
+  look(problem, PairKind::k_vertex_face, pairs.vertex_face);
+  look(problem, PairKind::k_edge_edge, pairs.edge_edge);
+}
 
 /// Finds the pairs that would come too near, of those with a vertex that has changed.
 void CommonMotion::look(const Problem& problem, PairKind kind, std::span<const Stencil> stencils) {
@@ -70,12 +110,19 @@ void CommonMotion::look(const Problem& problem, PairKind kind, std::span<const S
 void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   const std::array<int, 4>& v = pair.stencil.v;
   if (!(pair.room.gap > 0)) {  // no normal separates them: nothing is proved, nothing moves
-    for (const int i : v)
-      if (problem.movable(i)) problem.common[static_cast<std::size_t>(i)].setZero(), changing_[at(i)] = 1;
+    for (const int& i : v) {
+      if (!problem.movable(i)) continue;
+      for (const int j : problem.clumps.with(i)) problem.common[at(j)].setZero(), changing_[at(j)] = 1;
+    }
     return;
   }
-  const std::array<double, 4> advance = pair_advance(
-      pair.kind, pair.room, pair_move(pair.stencil, problem.x, problem.dx, problem.common, problem.movable_end).common);
+  std::array<Vec3, 4> motion =
+      pair_move(pair.stencil, problem.x, problem.dx, problem.common, problem.movable_end).common;
+  if (const int clump = clump_across(problem.clumps, pair.kind, pair.stencil); clump >= 0) {
+    const Vec3 mean = problem.clumps.mean(clump, problem.common);
+    for (Vec3& m : motion) m -= mean;
+  }
+  const std::array<double, 4> advance = pair_advance(pair.kind, pair.room, motion);
   const PairApproach approach = pair_approach(pair.kind, advance);
   const double too_much = approach.sum() - k_left_in_common * may_use(pair.room, problem.floor);
   if (!(too_much > 0)) return;
@@ -83,28 +130,85 @@ void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   const std::array<double, 4> along = pair_retreat(pair.kind, advance, approach, first / (first + second), too_much);
   for (std::size_t i = 0; i < 4; ++i) {
     if (!problem.movable(v[i]) || along[i] == 0) continue;
-    problem.common[at(v[i])] += along[i] * pair.room.normal;
-    changing_[at(v[i])] = 1;
+    const Vec3 change = along[i] * pair.room.normal;
+    switch (sharers(problem.clumps, pair.kind, pair.stencil, i, along)) {
+      case Sharers::k_alone:
+        problem.common[at(v[i])] += change;
+        for (const int j : problem.clumps.with(v[i])) changing_[at(j)] = 1;
+        break;
+      case Sharers::k_clump:
+        for (const int j : problem.clumps.with(v[i])) problem.common[at(j)] += change, changing_[at(j)] = 1;
+        break;
+      case Sharers::k_another: break;
+    }
+  }
+}
+
+/// Shortens what has changed, in a clump all of it, to what stays in the balls and, in clumps, is no longer than the
+/// longest of their dx.
+void CommonMotion::stay_inside(const Problem& problem, const MotionBounds& bounds) {
+  for (int v = 0; problem.movable(v); ++v) {
+    const std::span<const int> together = problem.clumps.with(v);
+    if (!changing_[at(v)] || together.front() != v) continue;
+    double share = 1, farthest = 0;
+    for (const int i : together) farthest = std::max(farthest, problem.dx[at(i)].norm());
+    for (const int i : together) {
+      const Vec3& own = problem.common[at(i)];
+      if (together.size() > 1 && own.norm() > farthest) share = std::min(share, farthest / own.norm());
+      if (!bounds.radius.empty())
+        share = std::min(share, share_inside_ball(problem.x[at(i)] - bounds.centre[at(i)], own, bounds.radius[at(i)]));
+    }
+    for (const int i : together) problem.common[at(i)] *= share;
+  }
+}
+
+/// Lets the vertices of the pairs that were found move as one, with all that moves as one with them already; not at all
+/// where one of them is not movable.
+void CommonMotion::join(const Problem& problem, const MotionBounds& bounds) {
+  const std::array<Vec3, 4> still{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (const TightPair& pair : tight_) {
+    std::array<Vec3, 4> x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = problem.x[at(pair.stencil.v[k])];
+    zones_.join(pair.kind, pair.stencil, x, still);
+  }
+  const std::span<Vec3> common = problem.common.first(problem.movable_end);
+  const std::vector<Vec3> before(common.begin(), common.end());
+  zones_.apply(common);
+  std::vector<double> share(common.size(), 1.0);  // at the root
+  for (int v = 0; problem.movable(v); ++v) {
+    double& least = share[at(zones_.root(v))];
+    const double length = common[at(v)].norm(), wanted = problem.dx[at(v)].norm();
+    if (length > wanted) least = std::min(least, wanted / length);
+    if (!bounds.radius.empty())
+      least = std::min(least,
+                       share_inside_ball(problem.x[at(v)] - bounds.centre[at(v)], common[at(v)], bounds.radius[at(v)]));
+  }
+  for (int v = 0; problem.movable(v); ++v) {
+    common[at(v)] *= share[at(zones_.root(v))];
+    changed_[at(v)] = common[at(v)] != before[at(v)];
   }
 }
 
 void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const ContactPairs& pairs,
-                        double floor, const MotionBounds& bounds, std::span<Vec3> common) {
-  const Problem problem{x, dx, at(movable_count), floor, common};
+                        double floor, const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common) {
+  const Problem problem{x, dx, at(movable_count), floor, clumps, common};
   CHECK(common.size() >= problem.movable_end && dx.size() >= problem.movable_end && x.size() >= problem.movable_end);
   std::copy_n(dx.begin(), problem.movable_end, common.begin());
   changed_.assign(problem.movable_end, 1);
   for (rounds_ = 1; rounds_ <= k_most_rounds; ++rounds_) {
-    tight_.clear();
-    look(problem, PairKind::k_vertex_face, pairs.vertex_face);
-    look(problem, PairKind::k_edge_edge, pairs.edge_edge);
+    look_at_all(problem, pairs);
     if (tight_.empty()) return;
     changing_.assign(problem.movable_end, 0);
     for (int sweep = 0; sweep < k_sweeps; ++sweep)
       for (const TightPair& pair : tight_) relax(problem, pair);
-    for (std::size_t i = 0; i < problem.movable_end && !bounds.radius.empty(); ++i)
-      if (changing_[i]) common[i] *= share_inside_ball(x[i] - bounds.centre[i], common[i], bounds.radius[i]);
+    stay_inside(problem, bounds);
     changed_.swap(changing_);
+  }
+  zones_.clear(movable_count, clumps);
+  for (; rounds_ <= k_most_rounds + k_most_joins; ++rounds_) {
+    look_at_all(problem, pairs);
+    if (tight_.empty()) return;
+    join(problem, bounds);
   }
   std::fill_n(common.begin(), problem.movable_end, Vec3::Zero());
 }

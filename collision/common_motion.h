@@ -2,7 +2,8 @@
 // near. It begins with the whole displacements; where a pair would use more than its room, they lose what the two
 // features approach each other by, along the pair's normal and nothing else, until no pair is left. A patch of cloth
 // that moves by many of its edges' lengths keeps nearly all of its motion in this way, and cloth that meets something
-// keeps what slides along it. The rest is for truncate_dat.h.
+// keeps what slides along it. Where many layers leave pairs after all, their vertices move as one. The rest is for
+// truncate_dat.h.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include <vector>
 
 #include "collision/contact_pairs.h"
+#include "collision/motion_zones.h"
 #include "collision/pair_room.h"
+#include "collision/vertex_clumps.h"
 
 namespace ft {
 
@@ -31,10 +34,12 @@ inline double share_inside_ball(const Vec3& from, const Vec3& d, double radius) 
 class CommonMotion {
  public:
   /// Fills `common` from the displacements dx of the first movable_count vertices [m]; the others do not move. No
-  /// vertex moves farther than by its dx, so pairs that are complete for dx are complete for it. Where pairs are left
-  /// after the last round nothing is in common. Depends on the order of the pairs, not on the number of threads.
+  /// vertex moves farther than by the longest dx in its clump, so pairs that are complete for that are complete for it.
+  /// Where pairs are left after the last round nothing is in common. What a vertex of a clump loses the whole clump
+  /// loses, but for what its vertices approach each other by. Depends on the order of the pairs, not on the number of
+  /// threads.
   void find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const ContactPairs& pairs,
-            double floor, const MotionBounds& bounds, std::span<Vec3> common);
+            double floor, const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common);
   int rounds() const { return rounds_; }  ///< of the last find()
 
  private:
@@ -44,12 +49,16 @@ class CommonMotion {
     PairRoom room;
   };
   struct Problem;
+  void look_at_all(const Problem& problem, const ContactPairs& pairs);
   void look(const Problem& problem, PairKind kind, std::span<const Stencil> stencils);
   void relax(const Problem& problem, const TightPair& pair);
+  void join(const Problem& problem, const MotionBounds& bounds);
+  void stay_inside(const Problem& problem, const MotionBounds& bounds);
 
   std::vector<char> changed_;  ///< per vertex: in the last round
   std::vector<char> changing_;
   std::vector<TightPair> tight_;
+  MotionZones zones_;                          ///< of what moves as one
   std::vector<std::vector<TightPair>> found_;  ///< per block of pairs
   int rounds_ = 0;
 };

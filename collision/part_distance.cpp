@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "baker/core/check.h"
+#include "baker/core/disjoint_sets.h"
 #include "collision/weld.h"
 
 namespace ft {
@@ -16,11 +17,6 @@ struct HalfEdge {
   int triangle, side;
   auto operator<=>(const HalfEdge&) const = default;
 };
-
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-  return i;
-}
 
 }  // namespace
 
@@ -49,8 +45,7 @@ PartSurface::PartSurface(std::span<const Vec3> bind, std::span<const Triangle> t
     }
   }
   std::sort(halves.begin(), halves.end());
-  std::vector<int> root(at(part_count));
-  std::iota(root.begin(), root.end(), 0);
+  DisjointSets shells(at(part_count));
   closed_.assign(at(part_count), 1);
   for (std::size_t i = 0; i < halves.size();) {
     std::size_t end = i + 1;
@@ -68,14 +63,13 @@ PartSurface::PartSurface(std::span<const Vec3> bind, std::span<const Triangle> t
       const int part = part_of_triangle_[at(halves[k].triangle)];
       if (part == first_part) continue;
       closed_[at(part)] = closed_[at(first_part)] = 0;
-      const int a = find_root(root, part), b = find_root(root, first_part);
-      root[at(std::max(a, b))] = std::min(a, b);
+      shells.join(part, first_part);
     }
     i = end;
   }
   around_ = vertex_triangles(static_cast<int>(bind.size()), triangles_);
   shell_.resize(at(part_count));
-  for (int p = 0; p < part_count; ++p) shell_[at(p)] = find_root(root, p);
+  for (int p = 0; p < part_count; ++p) shell_[at(p)] = shells.root(p);
   for (int p = 0; p < part_count; ++p) trees_.emplace_back(bind, triangles_, members[at(p)]);
 
   // Shells that are inside out are read the other way round.

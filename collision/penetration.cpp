@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "baker/core/disjoint_sets.h"
 #include "baker/core/parallel.h"
 
 namespace ft {
@@ -73,16 +73,10 @@ std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<co
   for (const Crossing& c : crossings)
     if (c.edge_of_first) crossing.push_back({std::min(c.edge[0], c.edge[1]), std::max(c.edge[0], c.edge[1])});
   std::sort(crossing.begin(), crossing.end());
-  std::vector<int> parent(points.size());  // of sets of points that are on one side; a root is the smallest in its set
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[at(v)] != v) v = parent[at(v)] = parent[at(parent[at(v)])];
-    return v;
-  };
+  DisjointSets on_one_side(points.size());
   for (const Edge& e : edges) {
     if (std::binary_search(crossing.begin(), crossing.end(), e)) continue;
-    const auto [lo, hi] = std::minmax({root(e[0]), root(e[1])});
-    parent[at(hi)] = lo;
+    on_one_side.join(e[0], e[1]);
   }
   const auto places_of = [&](const std::vector<int>& chosen) {
     std::vector<Vec3> places;
@@ -91,11 +85,11 @@ std::vector<Penetration> penetrations(std::span<const Vec3> points, std::span<co
   };
   std::vector<int> roots, chosen;
   for (int v = 0; v < static_cast<int>(points.size()); ++v)
-    if (root(v) == v) roots.push_back(v);
+    if (on_one_side.root(v) == v) roots.push_back(v);
   std::vector<char> inside(points.size(), 0);  // at the root
   for (const Penetration& p : penetrations(places_of(roots), surface, 0)) inside[at(roots[at(p.vertex)])] = 1;
   for (int v = 0; v < static_cast<int>(points.size()); ++v)
-    if (inside[at(root(v))] != 0) chosen.push_back(v);
+    if (inside[at(on_one_side.root(v))] != 0) chosen.push_back(v);
   std::vector<Penetration> out = penetrations(places_of(chosen), surface, least_depth);
   for (Penetration& p : out) p.vertex = chosen[at(p.vertex)];
   return out;

@@ -28,7 +28,8 @@ void ApproachLimits::add(const ContactPairs& pairs, std::span<const Vec3> x, std
   add_kind(PairKind::k_edge_edge, pairs.edge_edge);
 }
 
-void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion) const {
+void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion,
+                           const VertexClumps& clumps) const {
   const std::size_t n = cloth_motion.size();
   bool changed = true;
   for (int sweep = 0; sweep < k_sweeps && changed; ++sweep) {
@@ -46,7 +47,8 @@ void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> b
       const std::array<double, 4> along = pair_retreat(limit.kind, advance, approach, part_of_first, too_much);
       changed = true;
       for (std::size_t k = 0; k < 4; ++k)
-        if (at(v[k]) < n) cloth_motion[at(v[k])] += along[k] * limit.room.normal;
+        if (at(v[k]) < n && along[k] != 0)
+          for (const int i : clumps.with(v[k])) cloth_motion[at(i)] += along[k] * limit.room.normal;
     }
   }
 }

@@ -133,7 +133,7 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
 }
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
-  zones_.clear(static_cast<int>(cloth.x.size()));
+  zones_.clear(static_cast<int>(cloth.x.size()), model_.clumps);
   limits_.clear();
   inertia_.resize(cloth.x.size());
   for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = h * cloth.v[i];
@@ -145,6 +145,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   input.body_motion = piece.body_motion;
   input.inertia = inertia_;
   input.neighbours = &neighbours_;
+  input.clumps = &model_.clumps;
   input.pairs = &near_body_;
   input.part_of_body_vertex = model_.collider->part_of_vertex();
   input.range = range_;
@@ -254,7 +255,7 @@ double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
 
 double Candidates::part_blocked(const ClothMotion& cloth, PieceMotion& piece) {
   limits_.add(blocked_, piece.start, piece.all);
-  limits_.apply(piece.carry, piece.body_motion);
+  limits_.apply(piece.carry, piece.body_motion, model_.clumps);
   return renew_carried(cloth, piece);
 }
 

@@ -8,11 +8,11 @@
 
 #include "collision/contact_pairs.h"
 #include "collision/flat_patches.h"
+#include "collision/motion_zones.h"
 #include "collision/pair_geometry.h"
 #include "collision/pair_runs.h"
 #include "solvers/cloth/approach_limits.h"
 #include "solvers/cloth/body_advance.h"
-#include "solvers/cloth/motion_zones.h"
 
 namespace ft {
 

@@ -146,6 +146,7 @@ void carry_field(const CarryInput& in, std::span<Vec3> carry) {
     });
     now.swap(next);
   }
+  if (in.clumps != nullptr) in.clumps->take_mean(now);
   double fastest = 0;
   for (const Pull& p : pulls) fastest = std::max(fastest, p.body_motion);
   for (int i = 0; i < n; ++i) fastest = std::max(fastest, in.inertia[at(i)].norm());

@@ -10,6 +10,7 @@
 #include "baker/core/edge_strain.h"
 #include "baker/core/result.h"
 #include "collision/sewn_pairs.h"
+#include "collision/vertex_clumps.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
 #include "solvers/cloth/let_through.h"
@@ -39,6 +40,7 @@ struct ClothModel {
   std::vector<Triangle> triangles;
   RestEdges rest_edges;
   std::vector<double> typical_edge;  ///< per garment: median of its edges at rest; infinite without any [m]
+  VertexClumps clumps;               ///< vertices that are very near each other for their garment
   std::vector<char> self_collides;   ///< per vertex
   std::vector<char> unused;          ///< vertices of no face: carried along, never solved for
   ContactModel contact;

@@ -281,12 +281,12 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
   }
 }
 
-void ContactPotential::near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out) {
+void ContactPotential::near_pairs(std::span<const double> lengths, double floor, ContactPairs& out) {
   const int n = model_.cloth_vertex_count;
   reach_.resize(at(n));
   parallel_for(reach_.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      reach_[i] = static_cast<float>(k_truncation_reach * dx[i].norm() + floor) + 1e-6f;
+      reach_[i] = static_cast<float>(k_truncation_reach * lengths[i] + floor) + 1e-6f;
   });
   const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, bool vertex_face,
                         std::vector<Stencil>& to) {

@@ -68,8 +68,9 @@ class ContactPotential {
   /// Marks the garments that touched the body at the last update.
   void mark_touching(std::span<char> of_garment) const;
 
-  /// Pairs that displacements dx [m] of the cloth can bring nearer than floor [m], for truncation.
-  void near_pairs(std::span<const Vec3> dx, double floor, ContactPairs& out);
+  /// Pairs that displacements of the cloth's vertices by no more than these lengths [m] can bring nearer than floor
+  /// [m], for truncation.
+  void near_pairs(std::span<const double> lengths, double floor, ContactPairs& out);
   std::span<const Contact> contacts() const { return contacts_; }
   double smallest_gap() const;  ///< m, over the contacts of the last update; infinite without any
 

@@ -6,16 +6,13 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/stopwatch.h"
-#include "collision/common_motion.h"
-#include "collision/truncate_dat.h"
+#include "solvers/cloth/step_truncation.h"
 #include "solvers/energies/limited_spring.h"
 
 namespace ft {
 namespace {
 
 constexpr std::size_t k_block = 512;  ///< of a loop over vertices
-/// Distance that truncation always keeps [m].
-constexpr double k_floor = 1e-5;
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
 /// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still strains the edges
@@ -83,17 +80,16 @@ double largest_drift(const ClothModel& model, std::span<const char> held, std::s
 
 struct ImplicitStep::Scratch {
   Scratch(const ClothModel& model, const LinearSettings& settings)
-      : system(model.pattern, model.contact.rest, settings), contact(model.contact) {}
+      : system(model.pattern, model.contact.rest, settings), contact(model.contact), truncation(model) {}
   LinearSystem system;
   ContactPotential contact;
-  CommonMotion common_motion;
-  std::vector<Vec3> past, y, gradient, direction, common, cut, all, trial;
-  std::vector<double> share, missing;
+  StepTruncation truncation;
+  std::vector<Vec3> past, y, gradient, direction, cut, all, trial;
+  std::vector<double> missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
   std::vector<char> held;         ///< per vertex: not solved for
   std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
   std::vector<PairTerm> terms;
-  ContactPairs near;
 };
 
 ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
@@ -141,8 +137,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   s.gradient.resize(n);
   s.direction.resize(n);
   s.cut.resize(n);
-  s.common.resize(n);
-  s.share.resize(n);
   s.missing.resize(n);
 
   s.pin_share.resize(model_.pins.size());
@@ -226,6 +220,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.linear_iterations += s.system.solve(s.gradient, held, s.direction).iterations;
       for (Vec3& d : s.direction)
         if (!d.allFinite()) d.setZero(), result.finite = false;
+      s.truncation.calm_clumps(s.all, s.direction);
       result.seconds_linear += watch.lap();
     };
     find_direction(model_.unused);
@@ -244,35 +239,24 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       watch.lap();
       s.contact.extend(s.all);
     }
-    /// What may be done of the direction: inside the balls, and no pair too near.
+    const StepTruncation::PairsSuffice pairs_suffice = [&](std::span<const Vec3> to) {
+      result.seconds_contact += watch.lap();
+      const bool complete = in.pairs_suffice(to);
+      watch.lap();
+      if (!complete) s.contact.extend(s.all);
+      return complete;
+    };
     const auto truncate = [&] {
-      parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          s.direction[i] *= share_inside_ball(s.all[i] - in.centre[i], s.direction[i], in.slack[i]);
-      });
-      for (bool complete = false; !complete;) {
-        s.contact.near_pairs(s.direction, k_floor, s.near);
-        s.common_motion.find(s.all, s.direction, model_.vertex_count(), s.near, k_floor, {in.centre, in.slack},
-                             s.common);
-        truncate_displacements(s.all, s.direction, s.common, model_.vertex_count(), s.near, k_floor, s.share);
-        parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            s.cut[i] = s.common[i] + s.share[i] * (s.direction[i] - s.common[i]);
-            s.trial[i] = s.all[i] + s.cut[i];
-          }
-        });
-        if (!in.pairs_suffice) break;
-        result.seconds_contact += watch.lap();
-        complete = in.pairs_suffice(cloth(s.trial));
-        watch.lap();
-        if (!complete) s.contact.extend(s.all);
-      }
+      s.truncation.truncate(s.contact, s.all, {in.centre, in.slack},
+                            in.pairs_suffice ? pairs_suffice : StepTruncation::PairsSuffice(), s.direction, s.cut,
+                            s.trial);
     };
     truncate();
     if (descent(s.cut) < k_least_descent * descent(s.direction)) {
       s.held.assign(n, 0);
       for (std::size_t i = 0; i < n; ++i)
         s.held[i] = model_.unused[i] != 0 || (s.cut[i] - s.direction[i]).norm() > k_held * s.direction[i].norm();
+      model_.clumps.take_most(s.held);
       result.seconds_contact += watch.lap();
       find_direction(s.held);
       truncate();

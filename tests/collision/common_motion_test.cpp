@@ -72,12 +72,13 @@ struct Moved {
   int rounds = 0;
 };
 
-Moved move(const Cloth& cloth, const ContactPairs& pairs, bool together, const MotionBounds& bounds = {}) {
+Moved move(const Cloth& cloth, const ContactPairs& pairs, bool together, const MotionBounds& bounds = {},
+           const VertexClumps& clumps = {}) {
   const std::size_t n = at(cloth.movable_count);
   Moved out;
   out.common.assign(n, Vec3::Zero());
   CommonMotion finder;
-  if (together) finder.find(cloth.x, cloth.dx, cloth.movable_count, pairs, k_floor, bounds, out.common);
+  if (together) finder.find(cloth.x, cloth.dx, cloth.movable_count, pairs, k_floor, bounds, clumps, out.common);
   out.rounds = finder.rounds();
   std::vector<double> share(n);
   truncate_displacements(cloth.x, cloth.dx, out.common, cloth.movable_count, pairs, k_floor, share);
@@ -128,17 +129,19 @@ Cloth hostile_sheets(std::uint64_t seed) {
 }
 
 TEST(CommonMotion, Nothing_crosses_whatever_the_displacements) {
-  std::vector<int> crossings(400), unlike(400);
+  std::vector<int> crossings(400), unlike(400), joined(400);
   parallel_tasks(crossings.size(), [&](std::size_t i) {
     const Cloth cloth = hostile_sheets(50 + i);
     const ContactPairs pairs = all_pairs(cloth);
     const Moved moved = move(cloth, pairs, true);
     crossings[i] = crossed(cloth, pairs, moved.common) + crossed(cloth, pairs, moved.displacement);
+    joined[i] = moved.rounds > 12 && way(moved.common) > 0;
     unlike[i] = way(moved.common) > 0 && way(moved.common) < 0.999 * way(cloth.dx);
     EXPECT_GT(crossed(cloth, pairs, cloth.dx) + (way(moved.common) > 0.999 * way(cloth.dx)), 0) << "nothing to do";
   });
   for (std::size_t i = 0; i < crossings.size(); ++i) EXPECT_EQ(crossings[i], 0) << i;
   EXPECT_GT(std::count(unlike.begin(), unlike.end(), 1), 100);
+  EXPECT_GT(std::count(joined.begin(), joined.end(), 1), 50) << "pairs are left after the first rounds";
 }
 
 TEST(CommonMotion, A_patch_that_moves_by_many_edges_keeps_its_motion) {
@@ -183,6 +186,54 @@ TEST(CommonMotion, Bounds_hold) {
     for (std::size_t i = 0; i < radius.size(); ++i)
       EXPECT_LE((cloth.x[i] + moved.displacement[i] - centre[i]).norm(), radius[i] * (1 + 1e-9));
   }
+}
+
+/// Clumps of vertices of a cloth that are joined by edges, however long; each of a few vertices.
+VertexClumps some_clumps(const Cloth& cloth, std::uint64_t seed) {
+  RestEdges edges;
+  Dice dice(seed);
+  for (const auto& e : cloth.edges)
+    if (e[0] < cloth.movable_count && dice.uniform(0, 1) < 0.1) {
+      edges.edges.push_back(e);
+      edges.lengths.push_back(dice.uniform(1, 2));
+    }
+  return VertexClumps(edges, std::vector<double>(at(cloth.movable_count), 3.0));
+}
+
+TEST(CommonMotion, Nothing_crosses_where_vertices_lie_in_clumps_and_these_are_no_faster_than_before) {
+  int clumps_moved = 0;
+  for (std::uint64_t seed = 600; seed < 700; ++seed) {
+    const Cloth cloth = hostile_sheets(seed);
+    const ContactPairs pairs = all_pairs(cloth);
+    const VertexClumps clumps = some_clumps(cloth, seed);
+    EXPECT_GT(clumps.count(), 1);
+    const Moved moved = move(cloth, pairs, true, {}, clumps);
+    EXPECT_EQ(crossed(cloth, pairs, moved.common) + crossed(cloth, pairs, moved.displacement), 0) << seed;
+    for (int v = 0; v < cloth.movable_count; ++v) {
+      double longest = 0;
+      for (const int i : clumps.with(v)) longest = std::max(longest, cloth.dx[at(i)].norm());
+      EXPECT_LE(moved.common[at(v)].norm(), longest * (1 + 1e-9)) << seed;
+      clumps_moved += clumps.of(v) >= 0 && moved.common[at(v)].norm() > 0.1 * longest;
+    }
+  }
+  EXPECT_GT(clumps_moved, 100);
+}
+
+TEST(CommonMotion, Clumps_are_not_torn) {
+  int torn_without = 0;
+  for (std::uint64_t seed = 800; seed < 850; ++seed) {
+    Cloth cloth = hostile_sheets(seed);
+    const VertexClumps clumps = some_clumps(cloth, seed);
+    clumps.take_mean(cloth.dx);
+    const ContactPairs pairs = all_pairs(cloth);
+    const Moved moved = move(cloth, pairs, true, {}, clumps), without = move(cloth, pairs, true);
+    for (int v = 0; v < cloth.movable_count; ++v) {
+      const auto first = at(clumps.with(v).front());
+      EXPECT_LT((moved.common[at(v)] - moved.common[first]).norm(), 1e-12) << seed;
+      torn_without += (without.common[at(v)] - without.common[first]).norm() > 1e-5;
+    }
+  }
+  EXPECT_GT(torn_without, 100);
 }
 
 TEST(CommonMotion, Features_that_touch_do_not_move) {

@@ -73,7 +73,9 @@ Outcome walk(const Heap& heap, double come_late) {
   EXPECT_GT(contact.contacts().size(), 10u);
 
   ContactPairs near;
-  contact.near_pairs(heap.displacement, 1e-5, near);
+  std::vector<double> lengths;
+  for (const Vec3& d : heap.displacement) lengths.push_back(d.norm());
+  contact.near_pairs(lengths, 1e-5, near);
   Outcome out;
   out.near = near.vertex_face;
   out.near.insert(out.near.end(), near.edge_edge.begin(), near.edge_edge.end());

@@ -6,15 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/disjoint_sets.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
+#include "collision/vertex_clumps.h"
 
 namespace ft {
 
 class MotionZones {
  public:
-  /// No zones among so many cloth vertices; vertices of the common numbering past them are the body's.
-  void clear(int cloth_vertex_count);
+  /// No zones among so many cloth vertices but the clumps; vertices of the common numbering past them are the body's.
+  void clear(int cloth_vertex_count, const VertexClumps& clumps);
   /// The cloth of a pair moves as one from now on, with the body if the body is in the pair. x: the pair's places, d:
   /// its motions [m].
   void join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& d);
@@ -22,7 +24,7 @@ class MotionZones {
   void apply(std::span<Vec3> motion) const;
 
   /// The zone of a cloth vertex, named by the smallest vertex in it.
-  int root(int vertex) const;
+  int root(int vertex) const { return zones_.root(vertex); }
   /// A place where a zone met the body.
   struct BodyMotion {
     int vertex;       ///< of the cloth
@@ -32,7 +34,7 @@ class MotionZones {
   std::span<const BodyMotion> body_met() const { return body_; }
 
  private:
-  std::vector<int> parent_;
+  DisjointSets zones_;
   std::vector<BodyMotion> body_;
 };
 

@@ -1,34 +1,20 @@
-#include "solvers/cloth/motion_zones.h"
-
-#include <algorithm>
-#include <numeric>
+#include "collision/motion_zones.h"
 
 namespace ft {
 
-void MotionZones::clear(int cloth_vertex_count) {
-  parent_.resize(at(cloth_vertex_count));
-  std::iota(parent_.begin(), parent_.end(), 0);
+void MotionZones::clear(int cloth_vertex_count, const VertexClumps& clumps) {
+  zones_.reset(at(cloth_vertex_count));
+  for (int c = 0; c < clumps.count(); ++c)
+    for (const int v : clumps.members(c)) zones_.join(clumps.members(c).front(), v);
   body_.clear();
-}
-
-int MotionZones::root(int vertex) const {
-  while (parent_[at(vertex)] != vertex) vertex = parent_[at(vertex)];
-  return vertex;
 }
 
 void MotionZones::join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x,
                        const std::array<Vec3, 4>& d) {
-  const int n = static_cast<int>(parent_.size());
+  const int n = static_cast<int>(zones_.count());
   int first = -1;
-  for (const int v : stencil.v) {
-    if (v >= n) continue;
-    const int own = root(v);
-    if (first < 0) first = own;
-    // The smaller number stays root: zones do not depend on the order of joining.
-    const int low = std::min(first, own), high = std::max(first, own);
-    parent_[at(high)] = low;
-    first = low;
-  }
+  for (const int v : stencil.v)
+    if (v < n) first = zones_.join(first < 0 ? v : first, v);
   if (first < 0) return;
   const PairGeometry g = pair_geometry(kind, x);
   Vec3 motion = Vec3::Zero();
@@ -47,8 +33,8 @@ void MotionZones::apply(std::span<Vec3> motion) const {
     Vec3 body = Vec3::Zero(), own = Vec3::Zero();
     int contacts = 0, vertices = 0;
   };
-  std::vector<Sum> sums(parent_.size());
-  std::vector<int> roots(parent_.size());
+  std::vector<Sum> sums(zones_.count());
+  std::vector<int> roots(zones_.count());
   for (std::size_t v = 0; v < roots.size(); ++v) {
     roots[v] = root(static_cast<int>(v));
     Sum& s = sums[at(roots[v])];

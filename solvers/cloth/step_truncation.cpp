@@ -1,0 +1,73 @@
+#include "solvers/cloth/step_truncation.h"
+
+#include <algorithm>
+
+#include "baker/core/parallel.h"
+#include "collision/truncate_dat.h"
+
+namespace ft {
+namespace {
+
+constexpr std::size_t k_block = 512;  ///< of a loop over vertices
+/// Distance that truncation always keeps [m].
+constexpr double k_floor = 1e-5;
+/// Of the way from a clump's mean to its farthest vertex, now or at rest, that one iteration may turn or stretch it by:
+/// its edges are stiff springs of next to no length, whose directions change with every step.
+constexpr double k_most_turned = 0.5;
+
+double farthest_from(const Vec3& place, std::span<const int> vertices, std::span<const Vec3> x) {
+  double farthest = 0;
+  for (const int v : vertices) farthest = std::max(farthest, (x[at(v)] - place).norm());
+  return farthest;
+}
+
+}  // namespace
+
+void StepTruncation::calm_clumps(std::span<const Vec3> all, std::span<Vec3> direction) const {
+  const VertexClumps& clumps = model_.clumps;
+  const std::span<const Vec3> rest = model_.contact.rest;
+  for (int c = 0; c < clumps.count(); ++c) {
+    const std::span<const int> members = clumps.members(c);
+    const Vec3 mean = clumps.mean(c, direction);
+    const double extent =
+        std::max(farthest_from(clumps.mean(c, all), members, all), farthest_from(clumps.mean(c, rest), members, rest));
+    const double farthest = farthest_from(mean, members, direction), most = k_most_turned * extent;
+    if (farthest <= most) continue;
+    for (const int v : members) direction[at(v)] = mean + most / farthest * (direction[at(v)] - mean);
+  }
+}
+
+void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> all, const MotionBounds& balls,
+                              const PairsSuffice& pairs_suffice, std::span<Vec3> direction, std::span<Vec3> cut,
+                              std::span<Vec3> trial) {
+  const std::size_t n = direction.size();
+  common_.resize(n);
+  share_.resize(n);
+  length_.resize(n);
+  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      share_[i] = share_inside_ball(all[i] - balls.centre[i], direction[i], balls.radius[i]);
+  });
+  model_.clumps.take_least(share_);
+  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      direction[i] *= share_[i];
+      length_[i] = direction[i].norm();
+    }
+  });
+  model_.clumps.take_most(length_);
+  do {
+    contact.near_pairs(length_, k_floor, near_);
+    common_motion_.find(all, direction, model_.vertex_count(), near_, k_floor, balls, model_.clumps, common_);
+    truncate_displacements(all, direction, common_, model_.vertex_count(), near_, k_floor, share_);
+    model_.clumps.take_least(share_);
+    parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        cut[i] = common_[i] + share_[i] * (direction[i] - common_[i]);
+        trial[i] = all[i] + cut[i];
+      }
+    });
+  } while (pairs_suffice && !pairs_suffice(trial.first(n)));
+}
+
+}  // namespace ft
