@@ -130,6 +130,25 @@ Mesh sheet_with_dense_spots(double side, double height, double shrink, int spots
   return make_triangle_mesh("sheet", std::move(points), triangles);
 }
 
+/// The diagonals of some of a sheet's squares are cut in two, a small share from their first end.
+Mesh with_cut_diagonals(const Mesh& sheet, double share, std::size_t every) {
+  std::vector<Vec3> points = sheet.positions;
+  const std::vector<Triangle> whole = triangulate(sheet);
+  std::vector<Triangle> triangles;
+  for (std::size_t k = 0; k + 1 < whole.size(); k += 2) {
+    const auto [a, b, c] = whole[k];
+    const int d = whole[k + 1][2];
+    if (whole[k + 1] != Triangle{a, c, d} || k / 2 % every != 0) {
+      triangles.insert(triangles.end(), {whole[k], whole[k + 1]});
+      continue;
+    }
+    const int cut = static_cast<int>(points.size());
+    points.push_back(points[at(a)] + share * (points[at(c)] - points[at(a)]));
+    triangles.insert(triangles.end(), {{a, b, cut}, {cut, b, c}, {a, cut, d}, {cut, c, d}});
+  }
+  return make_triangle_mesh("sheet", std::move(points), triangles);
+}
+
 }  // namespace
 
 ClothSetup ball_5() {
@@ -178,6 +197,10 @@ ClothSetup needles() {
 
 ClothSetup tiny_triangles() {  // 32 times shorter, so 1000 times smaller
   return setup_of({on_a_ball(sheet_with_dense_spots(0.7, 0.205, std::sqrt(32.0), 10))}, swinging_ball(0.2));
+}
+
+ClothSetup cut_edges() {
+  return setup_of({on_a_ball(with_cut_diagonals(make_sheet(0.7, 32, 0.205), 1.0 / 200, 10))}, swinging_ball(0.2));
 }
 
 ClothSetup tiny_edges() {

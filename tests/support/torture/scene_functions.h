@@ -26,6 +26,7 @@ ClothSetup ball_40();
 ClothSetup stack();
 ClothSetup needles();
 ClothSetup tiny_triangles();
+ClothSetup cut_edges();
 ClothSetup tiny_edges();
 
 }  // namespace ft::torture
