@@ -24,11 +24,13 @@ constexpr int k_most_times = 5;
 /// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
 /// keeps the momentum.
 constexpr double k_settled_drift = 0.05;
-/// Truncation spoils the direction where few vertices are held back and the others go on as if they were not: when less
-/// than this share of the descent is left, what lost more than k_held of its displacement is held where it is, and the
-/// others are solved for anew (an active set). Without it Newton's method stops there, uphill.
+/// Truncation spoils the direction where few vertices are held back and the others go on as if they were not: while
+/// less than this share of the descent is left, what lost more than k_held of its displacement is held where it is, and
+/// the others are solved for anew (an active set); half as much is enough in every round. Without it Newton's method
+/// stops there, uphill.
 constexpr double k_least_descent = 0.1;
 constexpr double k_held = 0.5;
+constexpr int k_most_held = 4;  ///< rounds
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -220,7 +222,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.linear_iterations += s.system.solve(s.gradient, held, s.direction).iterations;
       for (Vec3& d : s.direction)
         if (!d.allFinite()) d.setZero(), result.finite = false;
-      s.truncation.calm_clumps(s.all, s.direction);
+      s.truncation.calm(s.all, s.direction);
       result.seconds_linear += watch.lap();
     };
     find_direction(model_.unused);
@@ -252,11 +254,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
                             s.trial);
     };
     truncate();
-    if (descent(s.cut) < k_least_descent * descent(s.direction)) {
-      s.held.assign(n, 0);
+    s.held.assign(model_.unused.begin(), model_.unused.end());
+    double lost = k_held;
+    for (int round = 0; round < k_most_held && descent(s.cut) < k_least_descent * descent(s.direction); ++round) {
       for (std::size_t i = 0; i < n; ++i)
-        s.held[i] = model_.unused[i] != 0 || (s.cut[i] - s.direction[i]).norm() > k_held * s.direction[i].norm();
+        s.held[i] = s.held[i] != 0 || (s.cut[i] - s.direction[i]).norm() > lost * s.direction[i].norm();
       model_.clumps.take_most(s.held);
+      lost *= 0.5;
       result.seconds_contact += watch.lap();
       find_direction(s.held);
       truncate();
