@@ -11,8 +11,12 @@ namespace {
 constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 /// Distance that truncation always keeps [m].
 constexpr double k_floor = 1e-5;
-/// Of the way from a clump's mean to its farthest vertex, now or at rest, that one iteration may turn or stretch it by:
-/// its edges are stiff springs of next to no length, whose directions change with every step.
+/// Height of the highest cap, and distance of its vertex from the ends of the base, in heights; for the rest there are
+/// clumps.
+constexpr double k_cap_height = 1.0 / 16;  ///< in typical edges
+constexpr double k_cap_middle = 2;
+/// Of the way from a clump's mean to its farthest vertex, or of a cap's height, now or at rest, that one iteration may
+/// turn or stretch it by: they are stiff springs of next to no length, whose directions change with every step.
 constexpr double k_most_turned = 0.5;
 
 double farthest_from(const Vec3& place, std::span<const int> vertices, std::span<const Vec3> x) {
@@ -23,7 +27,22 @@ double farthest_from(const Vec3& place, std::span<const int> vertices, std::span
 
 }  // namespace
 
-void StepTruncation::calm_clumps(std::span<const Vec3> all, std::span<Vec3> direction) const {
+StepTruncation::StepTruncation(const ClothModel& model) : model_(model) {
+  const std::span<const Vec3> rest = model.contact.rest;
+  for (const Triangle& t : model.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[(k + 1) % 3], t[(k + 2) % 3]);
+      const Edge base{low, high};
+      const Vec3 along = rest[at(base[1])] - rest[at(base[0])], up = rest[at(t[k])] - rest[at(base[0])];
+      const double length = along.norm(), way = length > 0 ? up.dot(along) / length : 0;
+      const double height = (up - way / length * along).norm();
+      if (height <= k_cap_height * model.typical_edge[at(model.contact.garment[at(t[k])])] &&
+          way > k_cap_middle * height && way < length - k_cap_middle * height)
+        caps_.push_back({t[k], base, way / length, height});
+    }
+}
+
+void StepTruncation::calm(std::span<const Vec3> all, std::span<Vec3> direction) const {
   const VertexClumps& clumps = model_.clumps;
   const std::span<const Vec3> rest = model_.contact.rest;
   for (int c = 0; c < clumps.count(); ++c) {
@@ -34,6 +53,15 @@ void StepTruncation::calm_clumps(std::span<const Vec3> all, std::span<Vec3> dire
     const double farthest = farthest_from(mean, members, direction), most = k_most_turned * extent;
     if (farthest <= most) continue;
     for (const int v : members) direction[at(v)] = mean + most / farthest * (direction[at(v)] - mean);
+  }
+  for (const Cap& cap : caps_) {
+    const auto on_base = [&](std::span<const Vec3> x) -> Vec3 {
+      return (1 - cap.place) * x[at(cap.base[0])] + cap.place * x[at(cap.base[1])];
+    };
+    const Vec3 base = on_base(direction), against = direction[at(cap.vertex)] - base;
+    const double height = (all[at(cap.vertex)] - on_base(all)).norm();
+    const double most = k_most_turned * std::max(height, cap.height);
+    if (against.norm() > most) direction[at(cap.vertex)] = base + most / against.norm() * against;
   }
 }
 

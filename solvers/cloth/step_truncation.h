@@ -16,10 +16,10 @@ class StepTruncation {
   /// Told where a displacement leads the cloth [m]; false: the list of pairs has been extended, look again.
   using PairsSuffice = std::function<bool(std::span<const Vec3> x)>;
 
-  explicit StepTruncation(const ClothModel& model) : model_(model) {}
-  /// Slows what the vertices of clumps do against each other, so that no step takes one past another. all: the cloth
-  /// comes first [m].
-  void calm_clumps(std::span<const Vec3> all, std::span<Vec3> direction) const;
+  explicit StepTruncation(const ClothModel& model);
+  /// Slows what vertices that lie very near each other, or near an edge of their triangle, do against each other, so
+  /// that no step takes one past another. all: the cloth comes first [m].
+  void calm(std::span<const Vec3> all, std::span<Vec3> direction) const;
   /// Shortens the direction to what stays in the balls, fills `cut` with what may be done of it and the front of
   /// `trial` with where that leads [m]. pairs_suffice may be empty.
   void truncate(ContactPotential& contact, std::span<const Vec3> all, const MotionBounds& balls,
@@ -27,7 +27,15 @@ class StepTruncation {
                 std::span<Vec3> trial);
 
  private:
+  /// A vertex of a triangle that at rest lies very near the middle part of the opposite edge.
+  struct Cap {
+    int vertex;
+    Edge base;
+    double place;   ///< of the nearest point of the base: (1 - place) base[0] + place base[1]
+    double height;  ///< at rest [m]
+  };
   const ClothModel& model_;
+  std::vector<Cap> caps_;
   CommonMotion common_motion_;
   std::vector<Vec3> common_;
   std::vector<double> share_, length_;

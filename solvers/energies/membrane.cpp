@@ -12,6 +12,9 @@ namespace {
 
 using Lane = double[k_lanes];
 
+/// Height of the thickest sliver, in its longest edges.
+constexpr double k_sliver = 0.02;
+
 /// Two edges and the deformation gradient F = (f1 f2) of a group.
 struct Deformation {
   alignas(32) Lane f1[3], f2[3];
@@ -169,6 +172,16 @@ std::array<double, 4> membrane_stiffness(const Fabric& f) {
           f.poisson * std::sqrt(f.stretch_weft * f.stretch_warp) * scale, f.shear};
 }
 
+double sliver_stiffness(double rest_area, const std::array<double, 4>& rest_inverse) {
+  // Rest edges in material axes: columns of the inverse of rest_inverse.
+  const auto& r = rest_inverse;
+  const double det = r[0] * r[3] - r[1] * r[2];
+  const Vec2 first = Vec2(r[3], -r[2]) / det, second = Vec2(-r[1], r[0]) / det;
+  const double longest = std::max({first.squaredNorm(), second.squaredNorm(), (second - first).squaredNorm()});
+  const double slenderness = 2 * rest_area / longest / k_sliver;
+  return slenderness < 1 ? slenderness * slenderness : 1;
+}
+
 Membrane::Membrane(const ClothTopology& topology) {
   std::vector<std::size_t> element;
   for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
@@ -185,7 +198,8 @@ Membrane::Membrane(const ClothTopology& topology) {
     const std::size_t t = element[at(schedule_.slot[slot])];
     const Fabric& fabric = topology.fabric_of_triangle(t);
     const auto c = membrane_stiffness(fabric);
-    const double factor = topology.factor(t, &VertexMaps::stretch);
+    const double factor =
+        topology.factor(t, &VertexMaps::stretch) * sliver_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
     Group& g = groups_[slot / k_lanes];
     const std::size_t l = slot % k_lanes;
     for (std::size_t k = 0; k < 3; ++k) g.vertex[k][l] = topology.triangles[t][k];

@@ -50,5 +50,33 @@ TEST(Membrane, Limits_of_warp_and_weft_do_not_feel_each_other) {
   EXPECT_GT(pull(fabric, 0.1), 3 * soft);
 }
 
+/// Stiffness across [N/m] of a strip of triangles `height` high and `length` long, next to nothing strained.
+double stiffness_across(double length, double height) {
+  const std::vector<Vec3> rest{{0, 0, 0}, {length, 0, 0}, {0, height, 0}, {length, height, 0}};
+  const std::vector<Triangle> triangles{{0, 1, 2}, {2, 1, 3}};
+  Fabric fabric;
+  fabric.stretch_warp = fabric.stretch_weft = 500, fabric.poisson = 0, fabric.damping = 0;
+  const ClothPiece piece{0, 4, fabric};
+  const ClothTopology topology = make_cloth_topology(rest, triangles, {&piece, 1});
+  std::vector<Vec3> x = rest, gradient(4, Vec3::Zero());
+  const double pulled = 1e-5 * height;
+  x[2].y() += pulled, x[3].y() += pulled;
+  Membrane(topology).add_gradient(x, gradient);
+  return (gradient[2].y() + gradient[3].y()) / pulled;
+}
+
+TEST(Membrane, Slivers_get_softer_the_thinner_they_are_and_other_triangles_do_not) {
+  constexpr double length = 0.02;
+  for (const double slenderness : {1.0, 0.1, 0.03, 0.021}) {
+    const double height = slenderness * length;
+    EXPECT_NEAR(stiffness_across(length, height) * height / (500 * length), 1, 1e-4) << slenderness;
+  }
+  const double thickest = stiffness_across(length, 0.02 * length);
+  for (const double slenderness : {0.01, 1e-3, 1e-4})
+    EXPECT_NEAR(stiffness_across(length, slenderness * length) / thickest, slenderness / 0.02,
+                2e-3 * slenderness / 0.02)
+        << slenderness;
+}
+
 }  // namespace
 }  // namespace ft

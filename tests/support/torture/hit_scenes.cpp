@@ -149,6 +149,28 @@ Mesh with_cut_diagonals(const Mesh& sheet, double share, std::size_t every) {
   return make_triangle_mesh("sheet", std::move(points), triangles);
 }
 
+/// Some of a sheet's triangles get a vertex that is nearly on the middle of their longest edge.
+Mesh with_caps(const Mesh& sheet, double height, std::size_t every) {
+  std::vector<Vec3> points = sheet.positions;
+  std::vector<Triangle> triangles;
+  const std::vector<Triangle> whole = triangulate(sheet);
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    if (k % every != 0) {
+      triangles.push_back(whole[k]);
+      continue;
+    }
+    Triangle t = whole[k];
+    const auto longest = [&] { return (points[at(t[1])] - points[at(t[0])]).norm(); };
+    for (int turn = 0; turn < 2 && longest() < (points[at(t[2])] - points[at(t[1])]).norm() + 1e-6; ++turn)
+      t = {t[1], t[2], t[0]};
+    const Vec3 middle = 0.5 * (points[at(t[0])] + points[at(t[1])]);
+    const int top = static_cast<int>(points.size());
+    points.push_back(middle + height * (points[at(t[2])] - middle).normalized());
+    triangles.insert(triangles.end(), {{t[0], t[1], top}, {t[1], t[2], top}, {t[2], t[0], top}});
+  }
+  return make_triangle_mesh("sheet", std::move(points), triangles);
+}
+
 }  // namespace
 
 ClothSetup ball_5() {
@@ -201,6 +223,10 @@ ClothSetup tiny_triangles() {  // 32 times shorter, so 1000 times smaller
 
 ClothSetup cut_edges() {
   return setup_of({on_a_ball(with_cut_diagonals(make_sheet(0.7, 32, 0.205), 1.0 / 200, 10))}, swinging_ball(0.2));
+}
+
+ClothSetup caps() {
+  return setup_of({on_a_ball(with_caps(make_sheet(0.7, 32, 0.205), 1e-4, 21))}, swinging_ball(0.2));
 }
 
 ClothSetup tiny_edges() {

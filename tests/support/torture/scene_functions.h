@@ -27,6 +27,7 @@ ClothSetup stack();
 ClothSetup needles();
 ClothSetup tiny_triangles();
 ClothSetup cut_edges();
+ClothSetup caps();
 ClothSetup tiny_edges();
 
 }  // namespace ft::torture
