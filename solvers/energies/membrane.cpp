@@ -12,8 +12,8 @@ namespace {
 
 using Lane = double[k_lanes];
 
-/// Height of the thickest sliver, in its longest edges.
-constexpr double k_sliver = 0.02;
+/// Height of the highest cap in its longest edges, and in its shortest.
+constexpr double k_cap_height = 0.02, k_cap_shortest = 1.0 / 3;
 
 /// Two edges and the deformation gradient F = (f1 f2) of a group.
 struct Deformation {
@@ -172,14 +172,15 @@ std::array<double, 4> membrane_stiffness(const Fabric& f) {
           f.poisson * std::sqrt(f.stretch_weft * f.stretch_warp) * scale, f.shear};
 }
 
-double sliver_stiffness(double rest_area, const std::array<double, 4>& rest_inverse) {
+double cap_stiffness(double rest_area, const std::array<double, 4>& rest_inverse) {
   // Rest edges in material axes: columns of the inverse of rest_inverse.
   const auto& r = rest_inverse;
   const double det = r[0] * r[3] - r[1] * r[2];
   const Vec2 first = Vec2(r[3], -r[2]) / det, second = Vec2(-r[1], r[0]) / det;
-  const double longest = std::max({first.squaredNorm(), second.squaredNorm(), (second - first).squaredNorm()});
-  const double slenderness = 2 * rest_area / longest / k_sliver;
-  return slenderness < 1 ? slenderness * slenderness : 1;
+  const auto [shortest, longest] = std::minmax({first.norm(), second.norm(), (second - first).norm()});
+  const double height = 2 * rest_area / longest;
+  const double share = height < k_cap_shortest * shortest ? height / (k_cap_height * longest) : 1;
+  return share < 1 ? share * share : 1;
 }
 
 Membrane::Membrane(const ClothTopology& topology) {
@@ -199,7 +200,7 @@ Membrane::Membrane(const ClothTopology& topology) {
     const Fabric& fabric = topology.fabric_of_triangle(t);
     const auto c = membrane_stiffness(fabric);
     const double factor =
-        topology.factor(t, &VertexMaps::stretch) * sliver_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
+        topology.factor(t, &VertexMaps::stretch) * cap_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
     Group& g = groups_[slot / k_lanes];
     const std::size_t l = slot % k_lanes;
     for (std::size_t k = 0; k < 3; ++k) g.vertex[k][l] = topology.triangles[t][k];
