@@ -4,6 +4,7 @@
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
+#include "collision/clump_retreat.h"
 
 namespace ft {
 namespace {
@@ -19,28 +20,6 @@ constexpr double k_left_in_common = 0.5;
 /// How far the displacements go beyond what they may use of the room [m].
 double excess(PairKind kind, const PairRoom& room, const std::array<Vec3, 4>& displacement, double floor) {
   return pair_approach(kind, pair_advance(kind, room, displacement)).sum() - may_use(room, floor);
-}
-
-/// Who makes the change that a pair's corner is given.
-enum class Sharers {
-  k_alone,    ///< it alone: it is in no clump, or in one that both features have vertices of
-  k_clump,    ///< its whole clump
-  k_another,  ///< nobody: the clump makes that of another corner, which is larger
-};
-
-Sharers sharers(const VertexClumps& clumps, PairKind kind, const Stencil& stencil, std::size_t corner,
-                const std::array<double, 4>& along) {
-  const int clump = clumps.of(stencil.v[corner]);
-  if (clump < 0) return Sharers::k_alone;
-  const auto split = static_cast<std::size_t>(first_feature_size(kind));
-  bool largest = true;
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (k == corner || clumps.of(stencil.v[k]) != clump) continue;
-    if ((k < split) != (corner < split)) return Sharers::k_alone;
-    const double own = std::abs(along[corner]), other = std::abs(along[k]);
-    largest = largest && (own > other || (own == other && corner < k));
-  }
-  return largest ? Sharers::k_clump : Sharers::k_another;
 }
 
 /// The clump that both features have vertices of, -1: none. A clump has its motion in common: what approaches in it is
@@ -128,19 +107,12 @@ void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   if (!(too_much > 0)) return;
   const double first = std::max(0.0, approach.first), second = std::max(0.0, approach.second);
   const std::array<double, 4> along = pair_retreat(pair.kind, advance, approach, first / (first + second), too_much);
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!problem.movable(v[i]) || along[i] == 0) continue;
-    const Vec3 change = along[i] * pair.room.normal;
-    switch (sharers(problem.clumps, pair.kind, pair.stencil, i, along)) {
-      case Sharers::k_alone:
-        problem.common[at(v[i])] += change;
-        for (const int j : problem.clumps.with(v[i])) changing_[at(j)] = 1;
-        break;
-      case Sharers::k_clump:
-        for (const int j : problem.clumps.with(v[i])) problem.common[at(j)] += change, changing_[at(j)] = 1;
-        break;
-      case Sharers::k_another: break;
-    }
+  for_each_retreat(problem.clumps, pair.kind, pair.stencil, along, [&](int i, double retreat) {
+    if (problem.movable(i)) problem.common[at(i)] += retreat * pair.room.normal;
+  });
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!problem.movable(v[k]) || along[k] == 0) continue;
+    for (const int i : problem.clumps.with(v[k])) changing_[at(i)] = 1;
   }
 }
 
@@ -150,11 +122,17 @@ void CommonMotion::stay_inside(const Problem& problem, const MotionBounds& bound
   for (int v = 0; problem.movable(v); ++v) {
     const std::span<const int> together = problem.clumps.with(v);
     if (!changing_[at(v)] || together.front() != v) continue;
-    double share = 1, farthest = 0;
-    for (const int i : together) farthest = std::max(farthest, problem.dx[at(i)].norm());
+    double share = 1;
+    if (together.size() > 1) {
+      double farthest = 0, longest = 0;
+      for (const int i : together) {
+        farthest = std::max(farthest, problem.dx[at(i)].norm());
+        longest = std::max(longest, problem.common[at(i)].norm());
+      }
+      if (longest > farthest) share = farthest / longest;
+    }
     for (const int i : together) {
       const Vec3& own = problem.common[at(i)];
-      if (together.size() > 1 && own.norm() > farthest) share = std::min(share, farthest / own.norm());
       if (!bounds.radius.empty())
         share = std::min(share, share_inside_ball(problem.x[at(i)] - bounds.centre[at(i)], own, bounds.radius[at(i)]));
     }

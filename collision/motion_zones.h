@@ -1,6 +1,7 @@
-// Zones of cloth that is carried as one. Where carried surfaces would meet, their vertices are given one common motion,
+// Zones of cloth that moves as one. Where surfaces would meet on their way, their vertices are given one common motion,
 // the body's where the body is in it: what moves alike cannot meet. Provot's impact zones (1997) reduced to
-// translations, and harmless here: the carry is only where the solve starts from, not where it ends.
+// translations, and harmless here: the carry is only where the solve starts from, and what the vertices of a step have
+// in common only the part of it that is made at once.
 #pragma once
 
 #include <span>

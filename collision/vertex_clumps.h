@@ -25,7 +25,7 @@ class VertexClumps {
   std::span<const int> members(int clump) const {
     return std::span<const int>(members_).subspan(at(start_[at(clump)]), at(start_[at(clump) + 1] - start_[at(clump)]));
   }
-  /// The vertices of its clump, or itself.
+  /// The vertices of its clump, or itself: the number has to live as long as what is returned.
   std::span<const int> with(const int& vertex) const {
     const int clump = of(vertex);
     return clump < 0 ? std::span<const int>(&vertex, 1) : members(clump);

@@ -12,10 +12,6 @@
 namespace ft {
 namespace {
 
-/// Size of a clump, in typical edges of its garment. Where truncation holds one end of an edge back it does so by
-/// fractions of a contact radius, which strains an edge of 1/40 of the others by so much that the cloth blew up.
-constexpr double k_clump_size = 1.0 / 16;
-
 Status check_maps(const ClothGarment& garment) {
   for (const NamedMap& map : k_vertex_maps) {
     const std::vector<double>& values = garment.maps.*map.values;
@@ -108,7 +104,7 @@ void weigh(ClothModel& model) {
   lengths_from_pattern(*model.topology, model.rest_edges);
   model.typical_edge = median_edges(model);
   std::vector<double> clump_size(n);
-  for (std::size_t i = 0; i < n; ++i) clump_size[i] = k_clump_size * model.typical_edge[at(model.contact.garment[i])];
+  for (std::size_t i = 0; i < n; ++i) clump_size[i] = k_very_near * model.typical_edge[at(model.contact.garment[i])];
   model.clumps = VertexClumps(model.rest_edges, clump_size);
 }
 

@@ -11,10 +11,6 @@ namespace {
 constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 /// Distance that truncation always keeps [m].
 constexpr double k_floor = 1e-5;
-/// Height of the highest cap, and distance of its vertex from the ends of the base, in heights; for the rest there are
-/// clumps.
-constexpr double k_cap_height = 1.0 / 16;  ///< in typical edges
-constexpr double k_cap_middle = 2;
 /// Of the way from a clump's mean to its farthest vertex, or of a cap's height, now or at rest, that one iteration may
 /// turn or stretch it by: they are stiff springs of next to no length, whose directions change with every step.
 constexpr double k_most_turned = 0.5;
@@ -36,8 +32,10 @@ StepTruncation::StepTruncation(const ClothModel& model) : model_(model) {
       const Vec3 along = rest[at(base[1])] - rest[at(base[0])], up = rest[at(t[k])] - rest[at(base[0])];
       const double length = along.norm(), way = length > 0 ? up.dot(along) / length : 0;
       const double height = (up - way / length * along).norm();
-      if (height <= k_cap_height * model.typical_edge[at(model.contact.garment[at(t[k])])] &&
-          way > k_cap_middle * height && way < length - k_cap_middle * height)
+      const int clump = model.clumps.of(t[k]);
+      const bool together = clump >= 0 && (clump == model.clumps.of(base[0]) || clump == model.clumps.of(base[1]));
+      if (height <= k_very_near * model.typical_edge[at(model.contact.garment[at(t[k])])] && way > 0 && way < length &&
+          !together)
         caps_.push_back({t[k], base, way / length, height});
     }
 }

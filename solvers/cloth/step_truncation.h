@@ -18,7 +18,7 @@ class StepTruncation {
 
   explicit StepTruncation(const ClothModel& model);
   /// Slows what vertices that lie very near each other, or near an edge of their triangle, do against each other, so
-  /// that no step takes one past another. all: the cloth comes first [m].
+  /// that no step takes one past another. all: places, the cloth's first; direction: the cloth's displacements [m].
   void calm(std::span<const Vec3> all, std::span<Vec3> direction) const;
   /// Shortens the direction to what stays in the balls, fills `cut` with what may be done of it and the front of
   /// `trial` with where that leads [m]. pairs_suffice may be empty.
@@ -27,7 +27,7 @@ class StepTruncation {
                 std::span<Vec3> trial);
 
  private:
-  /// A vertex of a triangle that at rest lies very near the middle part of the opposite edge.
+  /// A vertex of a triangle that at rest lies very near the opposite edge, in no clump with its ends.
   struct Cap {
     int vertex;
     Edge base;

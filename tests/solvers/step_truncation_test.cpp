@@ -1,0 +1,80 @@
+// What lies very near each other is not thrown past each other by an iteration.
+#include "solvers/cloth/step_truncation.h"
+
+#include "tests/solvers/strips.h"
+
+namespace ft {
+namespace {
+
+constexpr double k_near = 1e-4;  ///< m; the edges are 20 mm long
+
+/// A strip whose first triangle has a vertex very near a corner, and whose last one very near the middle of an edge.
+struct NearVertices {
+  std::unique_ptr<ClothModel> model;
+  int corner, twin, top;
+  Edge base;
+  std::vector<Vec3> all, direction;
+
+  NearVertices() {
+    ClothGarment garment = strip("strip", 0, 0);
+    std::vector<Vec3> points = garment.mesh.positions;
+    std::vector<Triangle> triangles = triangulate(garment.mesh);
+    const auto insert = [&](std::size_t triangle, const Vec3& from) {
+      const auto [a, b, c] = triangles[triangle];
+      const int added = static_cast<int>(points.size());
+      const Vec3 middle = (points[at(a)] + points[at(b)] + points[at(c)]) / 3;
+      points.push_back(from + k_near * (middle - from).normalized());
+      triangles[triangle] = {a, b, added};
+      triangles.insert(triangles.end(), {{b, c, added}, {c, a, added}});
+      return added;
+    };
+    const std::size_t last = triangles.size() - 1;
+    corner = triangles[0][0], base = {triangles[last][0], triangles[last][1]};
+    twin = insert(0, points[at(corner)]);
+    top = insert(last, 0.5 * (points[at(base[0])] + points[at(base[1])]));
+    garment.mesh = make_triangle_mesh("strip", points, triangles);
+    model = model_of(in_vacuum({garment}));
+    all = points;
+    for (const Vec3& p : points) direction.push_back(Vec3(2e-3, 1e-3, 0) + 0.1 * Vec3(p.y(), 0, p.x()));
+  }
+  /// The direction after calm(), with one vertex's made longer by 5 mm.
+  std::vector<Vec3> calmed(int vertex) const {
+    std::vector<Vec3> out = direction;
+    if (vertex >= 0) out[at(vertex)] += Vec3(3e-3, 0, 4e-3);
+    StepTruncation(*model).calm(all, out);
+    return out;
+  }
+  Vec3 of_base(const std::vector<Vec3>& d) const { return 0.5 * (d[at(base[0])] + d[at(base[1])]); }
+};
+
+TEST(StepTruncation, Leaves_alone_what_moves_together) {
+  const NearVertices scene;
+  const std::vector<Vec3> calmed = scene.calmed(-1);
+  for (std::size_t i = 0; i < calmed.size(); ++i) EXPECT_EQ(calmed[i], scene.direction[i]) << i;
+}
+
+TEST(StepTruncation, Slows_a_clump_about_its_mean) {
+  const NearVertices scene;
+  const std::vector<Vec3> calmed = scene.calmed(scene.twin);
+  const Vec3 &corner = calmed[at(scene.corner)], &twin = calmed[at(scene.twin)];
+  EXPECT_NEAR((twin - corner).norm(), 0.5 * k_near, 1e-9);
+  const Vec3 wanted = 0.5 * (scene.direction[at(scene.corner)] + scene.direction[at(scene.twin)] + Vec3(3e-3, 0, 4e-3));
+  EXPECT_LT((0.5 * (corner + twin) - wanted).norm(), 1e-12);
+}
+
+TEST(StepTruncation, Slows_the_vertex_of_a_cap_against_the_base_and_not_the_base) {
+  const NearVertices scene;
+  const std::vector<Vec3> calmed = scene.calmed(scene.top);
+  EXPECT_EQ(scene.of_base(calmed), scene.of_base(scene.direction));
+  EXPECT_GT((calmed[at(scene.top)] - scene.of_base(calmed)).norm(), 0.4 * k_near);
+  EXPECT_LT((calmed[at(scene.top)] - scene.of_base(calmed)).norm(), 0.6 * k_near);
+}
+
+TEST(StepTruncation, Does_not_touch_other_vertices) {
+  const NearVertices scene;
+  const int other = 2 * k_columns + 3;
+  EXPECT_EQ(scene.calmed(other)[at(other)], scene.direction[at(other)] + Vec3(3e-3, 0, 4e-3));
+}
+
+}  // namespace
+}  // namespace ft
