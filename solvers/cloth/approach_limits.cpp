@@ -1,7 +1,5 @@
 #include "solvers/cloth/approach_limits.h"
 
-#include "collision/clump_retreat.h"
-
 namespace ft {
 namespace {
 
@@ -48,9 +46,10 @@ void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> b
       const double part_of_first = at(v[3]) >= n ? 1 : at(v[0]) >= n ? 0 : 0.5;
       const std::array<double, 4> along = pair_retreat(limit.kind, advance, approach, part_of_first, too_much);
       changed = true;
-      for_each_retreat(clumps, limit.kind, limit.stencil, along, [&](int i, double retreat) {
-        if (at(i) < n) cloth_motion[at(i)] += retreat * limit.room.normal;
-      });
+      // A clump is carried as one, also where both features have vertices of it.
+      for (std::size_t k = 0; k < 4; ++k)
+        if (at(v[k]) < n && along[k] != 0)
+          for (const int i : clumps.with(v[k])) cloth_motion[at(i)] += along[k] * limit.room.normal;
     }
   }
 }
