@@ -7,20 +7,15 @@ namespace {
 
 constexpr std::uint64_t k_magic = 0x3130454b41425446;  // "FTBAKE01"
 
-/// Kept out of line: inlined, g++ 12 takes the growing of an empty vector for an overflow.
-[[gnu::noinline]] void write_head(ByteWriter& out, const Checkpoint& checkpoint) {
-  out.write(k_magic).write(checkpoint.fingerprint.low).write(checkpoint.fingerprint.high);
-  out.write(static_cast<std::int64_t>(checkpoint.frame)).write(static_cast<std::uint64_t>(checkpoint.states.size()));
-}
-
 }  // namespace
 
-Bytes save(const Checkpoint& checkpoint) {
-  ByteWriter out;
-  write_head(out, checkpoint);
+ByteParts parts_of(const Checkpoint& checkpoint) {
+  ByteParts out;
+  out.write(k_magic).write(checkpoint.fingerprint.low).write(checkpoint.fingerprint.high);
+  out.write(static_cast<std::int64_t>(checkpoint.frame)).write(static_cast<std::uint64_t>(checkpoint.states.size()));
   for (const State& state : checkpoint.states) {
-    const Bytes bytes = save(state);
-    out.write(static_cast<std::uint64_t>(bytes.size())).write_array(std::span<const std::byte>(bytes));
+    ByteParts parts = parts_of(state);
+    out.write(static_cast<std::uint64_t>(parts.size())).append(std::move(parts));
   }
   Json reports = Json::array();
   for (const FrameReport& report : checkpoint.reports) {
@@ -29,9 +24,13 @@ Bytes save(const Checkpoint& checkpoint) {
     reports.push_back(std::move(row));
   }
   out.write_string(reports.dump(-1, ' ', false, Json::error_handler_t::replace));
-  const Hash128 content = hash_bytes(out.bytes());
+  const Hash128 content = hash_bytes(out.parts());
   out.write(content.low).write(content.high);
-  return out.take();
+  return out;
+}
+
+Bytes save(const Checkpoint& checkpoint) {
+  return parts_of(checkpoint).joined();
 }
 
 Result<Checkpoint> load_checkpoint(std::span<const std::byte> data) {

@@ -21,6 +21,8 @@ struct Checkpoint {
   std::vector<FrameReport> reports;  ///< of all frames up to this one, profiles included
 };
 
+/// What is saved of a checkpoint, which must outlive it.
+ByteParts parts_of(const Checkpoint& checkpoint);
 Bytes save(const Checkpoint& checkpoint);
 /// Refuses anything cut, damaged or of another version.
 Result<Checkpoint> load_checkpoint(std::span<const std::byte> data);

@@ -88,6 +88,7 @@ class Walk {
   Status complete();
   FrameReport advance();
   Status emit(const Snapshot& snapshot, bool checkpoint);
+  Status save_checkpoint();  ///< of the states as they are
 
   const BakePlan& plan_;
   const Solvers& solvers_;
@@ -139,8 +140,13 @@ Status Walk::emit(const Snapshot& snapshot, bool checkpoint) {
     if (!taken) return taken;
   }
   if (!checkpoint) return {};
-  Checkpoint now{plan_.inputs.fingerprint, snapshot.frame, states_, manifest_.frames};
-  return writer_.submit([this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), save(now)); });
+  return save_checkpoint();
+}
+
+Status Walk::save_checkpoint() {
+  Checkpoint now{plan_.inputs.fingerprint, states_[0].frame, states_, manifest_.frames};
+  return writer_.submit(
+      [this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), parts_of(now).parts()); });
 }
 
 Status Walk::frames() {
@@ -165,11 +171,7 @@ Status Walk::frames() {
   while (states_[0].frame < shot.last_frame) {
     if (signal_received() != 0) {
       if (newest_checkpoint != states_[0].frame) {
-        Checkpoint now{plan_.inputs.fingerprint, states_[0].frame, states_, manifest_.frames};
-        if (const Status s = writer_.submit(
-                [this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), save(now)); });
-            !s)
-          return s;
+        if (const Status saved = save_checkpoint(); !saved) return saved;
       }
       return Error{ErrorKind::k_interrupted,
                    fmt::format("interrupted after frame {}", states_[0].frame),

@@ -73,11 +73,20 @@ Result<std::string> read_text(const std::filesystem::path& path, std::uint64_t m
 }
 
 Status write_file_durably(const std::filesystem::path& path, std::span<const std::byte> data) {
+  return write_file_durably(path, std::span(&data, 1));
+}
+
+Status write_file_durably(const std::filesystem::path& path, std::span<const std::span<const std::byte>> parts) {
   std::filesystem::path temporary = path;
   temporary += ".tmp";
   auto file = OutputFile::create(temporary);
   if (!file) return file.error();
-  Status status = file->write_at(0, data);
+  Status status;
+  std::uint64_t offset = 0;
+  for (const auto& part : parts) {
+    if (status) status = file->write_at(offset, part);
+    offset += part.size();
+  }
   if (status) status = file->sync();
   if (status) status = file->close();
   if (!status) {

@@ -22,6 +22,8 @@ Result<std::string> read_text(const std::filesystem::path& path, std::uint64_t m
 /// Writes path.tmp, syncs it, renames it over path, syncs the folder: after a crash there is the old file or the new
 /// one.
 Status write_file_durably(const std::filesystem::path& path, std::span<const std::byte> data);
+/// All parts, one behind the other.
+Status write_file_durably(const std::filesystem::path& path, std::span<const std::span<const std::byte>> parts);
 Status write_text_durably(const std::filesystem::path& path, std::string_view text);
 
 Status make_folders(const std::filesystem::path& folder);

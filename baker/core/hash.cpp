@@ -43,6 +43,12 @@ Hash128 hash_bytes(std::span<const std::byte> data) {
   return {h.low64, h.high64};
 }
 
+Hash128 hash_bytes(std::span<const std::span<const std::byte>> parts) {
+  Hasher hasher;
+  for (const auto& part : parts) hasher.bytes(part.data(), part.size());
+  return hasher.digest();
+}
+
 Hash128 hash_text(std::string_view text) {
   return hash_bytes(std::as_bytes(std::span(text.data(), text.size())));
 }

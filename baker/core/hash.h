@@ -37,6 +37,8 @@ class Hasher {
 };
 
 Hash128 hash_bytes(std::span<const std::byte> data);
+/// Of all parts, one behind the other.
+Hash128 hash_bytes(std::span<const std::span<const std::byte>> parts);
 Hash128 hash_text(std::string_view text);
 
 }  // namespace ft

@@ -5,17 +5,17 @@ namespace {
 
 constexpr char k_magic[8] = {'F', 'T', 'S', 'T', 'A', 'T', 'E', '1'};
 
-Bytes save_content(const State& state) {
-  ByteWriter out;
-  out.write_raw(k_magic, sizeof k_magic);
+ByteParts content_of(const State& state) {
+  ByteParts out;
+  out.write(k_magic);
   out.write(static_cast<std::int64_t>(state.frame)).write(state.time);
   out.write(static_cast<std::uint64_t>(state.blocks.size()));
   for (const StateBlock& block : state.blocks) {
     out.write_string(block.name);
     out.write(static_cast<std::uint64_t>(block.values.size()));
-    out.write_array(std::span<const double>(block.values));
+    out.view_array(std::span<const double>(block.values));
   }
-  return out.take();
+  return out;
 }
 
 }  // namespace
@@ -34,16 +34,18 @@ const std::vector<double>* State::find(std::string_view name) const {
 }
 
 Hash128 hash(const State& state) {
-  return hash_bytes(save_content(state));
+  return hash_bytes(content_of(state).parts());
+}
+
+ByteParts parts_of(const State& state) {
+  ByteParts out = content_of(state);
+  const Hash128 content = hash_bytes(out.parts());
+  out.write(content.low).write(content.high);
+  return out;
 }
 
 Bytes save(const State& state) {
-  Bytes content = save_content(state);
-  const Hash128 h = hash_bytes(content);
-  ByteWriter tail;
-  tail.write(h.low).write(h.high);
-  content.insert(content.end(), tail.bytes().begin(), tail.bytes().end());
-  return content;
+  return parts_of(state).joined();
 }
 
 Result<State> load_state(std::span<const std::byte> data) {

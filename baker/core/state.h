@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "baker/core/bytes.h"
+#include "baker/core/byte_parts.h"
 #include "baker/core/hash.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
@@ -31,6 +31,8 @@ struct State {
 };
 
 Hash128 hash(const State& state);
+/// What is saved of a state, which must outlive it.
+ByteParts parts_of(const State& state);
 Bytes save(const State& state);
 /// Refuses anything cut, longer than said, of another version or whose content hash does not match.
 Result<State> load_state(std::span<const std::byte> data);

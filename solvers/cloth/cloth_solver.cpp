@@ -223,21 +223,26 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   frame.t1 = (frame.number - setup.first_frame) / setup.fps;
   const auto body_clock = std::chrono::steady_clock::now();
   body_.begin(frame.t0, frame.t1, expected_substeps_);
-  ClothMotion start = load_motion(state, at(model_->vertex_count()));
-  if (const Teleport* teleport = teleport_into(setup.teleports, frame.number)) {
-    carry(*teleport, start);
-    body_.cut(*teleport);
-  }
-  const int substeps = expected_substeps_ =
-      substep_count(*model_, start, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible);
+  const Teleport* teleport = teleport_into(setup.teleports, frame.number);
+  if (teleport) body_.cut(*teleport);
+  const auto start = [&] {
+    ClothMotion m = load_motion(state, at(model_->vertex_count()));
+    if (teleport) carry(*teleport, m);
+    return m;
+  };
   FrameReport report, best_report;
-  ClothMotion motion, best;
+  ClothMotion motion = start(), best;
+  const int substeps = expected_substeps_ =
+      substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible);
+  bool moved = false;
   int fewest = -1;
   FrameProfile spent;
   spent.body = elapsed(body_clock);
   for (int attempt = 0; attempt <= k_rewinds; ++attempt) {
     const auto walk_anew = [&](int count) {
-      motion = start;
+      if (moved) motion = {};  // so that there are never two of them
+      if (moved) motion = start();
+      moved = true;
       report = {};
       report.frame = frame.number;
       report.rewinds = attempt;
@@ -248,7 +253,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
       return lost;
     };
     if (walk_anew(substeps << attempt) > k_most_lost) walk_anew(k_times_lost * (substeps << attempt));
-    if (!report.finite) motion = start;  // the last finite state; the attempt counts as failed
+    if (!report.finite) motion = start();  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
     const int avoidable = certificate_.certify(body_.end().feasible, motion, report);
     report.profile.certificate += elapsed(certificate);
@@ -258,7 +263,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     if (better) {
       fewest = score;
       best_report = report;
-      best = motion;
+      best = std::move(motion);
     }
     if (score == 0 || !better) break;
   }

@@ -41,11 +41,11 @@ void Level::build() {
   matrix.reset(*pattern);
   inverse.resize(n);
   for (auto* v : {&x, &r, &b}) v->assign(n, Vec4f::Zero());
-  for (std::size_t i = 0; i < n; ++i) {
-    probe.push_back(Vec4f::Zero());
+  if (pattern != &own_pattern) return;
+  probe.assign(n, Vec4f::Zero());
+  for (std::size_t i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c)
       probe[i][c] = static_cast<float>(2 * random_uniform({.element = i}, static_cast<std::uint64_t>(c)) - 1);
-  }
 }
 
 bool link_levels(Level& fine, Level& coarse) {
@@ -88,6 +88,10 @@ bool link_levels(Level& fine, Level& coarse) {
   coarse.own_pattern = make_pattern(static_cast<int>(nc), stencils);
   coarse.pattern = &coarse.own_pattern;
   coarse.build();
+  std::size_t count = 0;
+  for (const auto& row : upper)
+    for (const auto& [j, both] : row) count += both.straight.size() + both.transposed.size();
+  fine.gather.reserve(count);
   fine.gather_start.assign(1, 0);
   for (std::size_t i = 0; i < nc; ++i)
     for (auto& [j, both] : upper[i])

@@ -35,7 +35,7 @@ struct Level {
   float damping = 0.45f;             ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
   std::vector<Vec3> rest;
   std::vector<Vec4f> x, r, b;
-  std::vector<Vec4f> probe;  ///< where estimate_damping() starts
+  std::vector<Vec4f> probe;  ///< where estimate_damping() starts; not of the finest, whose damping is given
 
   // Towards the next level (absent on the coarsest).
   Interpolation interpolation;
