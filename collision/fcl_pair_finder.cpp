@@ -23,7 +23,6 @@ using FclBox = fcl::AABB<float>;
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
 constexpr std::size_t k_limb = 1024;    ///< most nodes of a sub-tree that is refitted as one
-constexpr std::size_t k_most_kept = 3;  ///< memory kept from search to search, in what the last one has found [1]
 constexpr double k_sure_margin = 0.98;  ///< of a margin: rounding of the boxes, 1e-7 of a place, is less than the rest
 
 /// The tree of one surface; leaves are its elements.
@@ -64,6 +63,8 @@ class Tree {
     CHECK(model.endModel() == fcl::BVH_OK);
     elements_.clear();
     nodes_.clear();
+    elements_.reserve(elements.size());
+    nodes_.reserve(at(model.getNumBVs()));
     std::vector<int> element_of_leaf;
     for (int k = 0; k < model.getNumBVs(); ++k) {
       const auto& node = model.getBV(k);
@@ -179,7 +180,6 @@ struct PairFinder::Impl {
 
   void refit(std::span<const char> changed);
   void split_tasks(bool self);
-  void give_back();
   template <bool k_some>
   void run_task(const Task& task, const char* changed, FoundPairs& out) const;
 };
@@ -228,17 +228,6 @@ void PairFinder::Impl::split_tasks(bool self) {
     }
     tasks.swap(next_tasks);
   }
-}
-
-/// Tasks are others in every search, and each keeps the memory of the most that it has ever found: in time that is far
-/// more than all find together.
-void PairFinder::Impl::give_back() {
-  std::size_t used = 0, kept = 0;
-  for (const FoundPairs& f : found) {
-    used += f.vertex_face.size() + f.edge_edge.size();
-    kept += f.vertex_face.capacity() + f.edge_edge.capacity();
-  }
-  if (kept > k_most_kept * used) found.clear();
 }
 
 template <bool k_some>
@@ -311,6 +300,7 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.features.set_boxes(boxes, changed);
   if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes, m.patches_of);
   if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes, {});
+  m.features.cloth = m.features.collider = {};  // the trees have them
   m.refit(changed);
 
   m.split_tasks(self);
@@ -345,7 +335,11 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
     else
       write(m.sort_edge_edge, features.edges.size(), &FoundPairs::edge_edge, edge_edge, out.edge_edge);
   });
-  if (edges && changed.empty()) m.give_back();  // the others find far less
+  if (edges && changed.empty()) {  // the others find far less
+    m.found.clear();
+    m.sort_vertex_face.give_back();
+    m.sort_edge_edge.give_back();
+  }
 }
 
 }  // namespace ft

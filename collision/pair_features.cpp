@@ -49,9 +49,12 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   std::erase_if(faces, is_cord);
+  faces.shrink_to_fit();
   edges = unique_edges(all);
   std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
 
+  cloth.reserve(cloth_triangles.size());
+  collider.reserve(collider_triangles.size());
   std::vector<char> face_owned(faces.size()), edge_owned(edges.size()), vertex_owned(at(vertex_count));
   const auto take = [](std::vector<char>& owned, std::size_t i) {
     const bool free = !owned[i];
@@ -70,12 +73,13 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
     for (std::size_t i = 0; i < 3; ++i) {
       CHECK(e.v[i] >= 0 && e.v[i] < vertex_count);
       CHECK(of_cloth == (e.v[i] < cloth_vertex_count));
-      if (take(vertex_owned, at(e.v[i]))) e.owned_vertex[at(e.owned_vertex_count++)] = e.v[i];
       const auto [lo, hi] = std::minmax(e.v[i], e.v[(i + 1) % 3]);
       if (lo == hi) continue;
       const std::size_t edge = rank(edges, Edge{lo, hi});
       if (take(edge_owned, edge)) e.owned_edge[at(e.owned_edge_count++)] = static_cast<int>(edge);
     }
+    for (std::size_t i = 0; i < 3; ++i)
+      if (take(vertex_owned, at(e.v[i]))) std::swap(e.v[i], e.v[at(e.owned_vertex_count++)]);
     (of_cloth ? cloth : collider).push_back(e);
   }
 }

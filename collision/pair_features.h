@@ -72,17 +72,17 @@ struct BoxLanes {
 
 /// A triangle as the search sees it.
 struct PairElement {
-  Triangle v;
-  int face = 0;                                     ///< rank of the face; -1 for a cord, or an earlier triangle again
-  std::array<int, 3> owned_vertex{}, owned_edge{};  ///< the first so many are meant; edges by rank
-  int owned_vertex_count = 0, owned_edge_count = 0;
+  Triangle v;                       ///< its own vertices come first
+  int face = 0;                     ///< rank of the face; -1 for a cord, or an earlier triangle again
+  std::array<int, 3> owned_edge{};  ///< by rank; the first owned_edge_count are meant
+  std::int8_t owned_vertex_count = 0, owned_edge_count = 0;
 };
 
 struct PairFeatures {
   int vertex_count = 0;
   std::vector<Triangle> faces;               ///< by rank
   std::vector<Edge> edges;                   ///< by rank
-  std::vector<PairElement> cloth, collider;  ///< in the order of the triangles
+  std::vector<PairElement> cloth, collider;  ///< in the order of the triangles, until there are trees over them
 
   /// Of one search. What has an inverted box is nowhere: (infinity, -infinity), and what has a vertex that is nowhere
   /// is so too.

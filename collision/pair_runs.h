@@ -36,13 +36,16 @@ class PairRuns {
     if (place_[blocks] == list.size()) return;
     for (std::size_t& first : begins_)
       first = place_[first / k_block] + kept(first / k_block * k_block, std::min(first, list.size()));
-    left_.resize(place_[blocks]);
+    // Each block closes its gaps, then the blocks close up.
     parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      std::size_t to = place_[begin / k_block];
+      std::size_t to = begin;
       for (std::size_t i = begin; i < end; ++i)
-        if (!drop(list[i])) left_[to++] = list[i];
+        if (!drop(list[i])) list[to++] = list[i];
     });
-    list.swap(left_);
+    for (std::size_t b = 0; b < blocks; ++b)
+      std::copy_n(list.begin() + static_cast<std::ptrdiff_t>(b * k_block), place_[b + 1] - place_[b],
+                  list.begin() + static_cast<std::ptrdiff_t>(place_[b]));
+    list.resize(place_[blocks]);
   }
 
  private:
@@ -51,7 +54,6 @@ class PairRuns {
   std::vector<std::size_t> begins_{0};  ///< of the runs, ascending
   // Scratch.
   std::vector<std::size_t> place_;
-  std::vector<Stencil> left_;
   std::vector<char> known_;
 };
 

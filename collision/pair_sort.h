@@ -35,7 +35,9 @@ class PairSorter {
     count_ += keys.size();
     parts_.push_back(keys);
   }
-  /// All keys in ascending order; valid until the next begin().
+  /// Frees what sort() gave.
+  void give_back() { sorted_ = {}; }
+  /// All keys in ascending order; valid until the next begin() or give_back().
   std::span<const std::uint64_t> sort() {
     if (count_ < first_count_ / k_few) {
       sorted_.clear();

@@ -113,7 +113,7 @@ struct PairWalk {
                              float own_margin) const {
     if (f.face < 0) return;
     for (int i = 0; i < p.owned_vertex_count; ++i) {
-      const int v = p.owned_vertex[at(i)];
+      const int v = p.v[at(i)];
       if (!features.box(v).shrunk(own_margin).overlaps(face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
       if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) continue;
       if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) continue;

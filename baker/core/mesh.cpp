@@ -48,15 +48,18 @@ std::vector<Edge> unique_edges(std::span<const Triangle> triangles) {
     }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  edges.shrink_to_fit();
   return edges;
 }
 
 Adjacency vertex_neighbours(std::size_t vertex_count, std::span<const Edge> edges) {
   std::vector<std::array<int, 2>> both;
+  both.reserve(2 * edges.size());
   for (const Edge& e : edges) both.insert(both.end(), {{e[0], e[1]}, {e[1], e[0]}});
   std::sort(both.begin(), both.end());
   Adjacency out;
   out.start.assign(vertex_count + 1, 0);
+  out.items.reserve(both.size());
   for (const auto& b : both) ++out.start[at(b[0]) + 1], out.items.push_back(b[1]);
   std::partial_sum(out.start.begin(), out.start.end(), out.start.begin());
   return out;

@@ -205,15 +205,13 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
     }
   });
   if (any_self_) begin_flat(cloth, piece);
-  finder_.find(boxes_, any_self_, found_, patches_.flat());
+  finder_.find(boxes_, any_self_, pairs_, patches_.flat());
   runs_vertex_face_.begin();
   runs_edge_edge_.begin();
   piece.all = piece.carry;
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
-  const double t =
-      filter(PairKind::k_vertex_face, found_.vertex_face, cloth, piece, pairs_.vertex_face, &blocked_.vertex_face);
-  return std::min(t,
-                  filter(PairKind::k_edge_edge, found_.edge_edge, cloth, piece, pairs_.edge_edge, &blocked_.edge_edge));
+  const double t = filter(PairKind::k_vertex_face, cloth, piece, pairs_.vertex_face, &blocked_.vertex_face);
+  return std::min(t, filter(PairKind::k_edge_edge, cloth, piece, pairs_.edge_edge, &blocked_.edge_edge));
 }
 
 /// The pairs of changed_ vertices anew, behind all others, which are as they were.
@@ -223,16 +221,16 @@ double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
   const auto is_changed = [&](const Stencil& s) {
     return (changed_[at(s.v[0])] | changed_[at(s.v[1])] | changed_[at(s.v[2])] | changed_[at(s.v[3])]) != 0;
   };
-  const auto renew_kind = [&](PairKind kind, const std::vector<Stencil>& found, PairRuns& runs,
-                              std::vector<Stencil>& pairs, std::vector<Stencil>& blocked) {
+  const auto renew_kind = [&](PairKind kind, std::vector<Stencil>& found, PairRuns& runs, std::vector<Stencil>& pairs,
+                              std::vector<Stencil>& blocked) {
     std::vector<Stencil> fresh_blocked, joined;
-    t = std::min(t, filter(kind, found, cloth, piece, fresh_, &fresh_blocked));
+    t = std::min(t, filter(kind, cloth, piece, found, &fresh_blocked));
     std::erase_if(blocked, is_changed);
     for (const Stencil& s : blocked) t = std::min(t, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
     std::merge(blocked.begin(), blocked.end(), fresh_blocked.begin(), fresh_blocked.end(), std::back_inserter(joined));
     blocked.swap(joined);
     runs.erase_if(pairs, is_changed);
-    runs.add(fresh_, {}, pairs);
+    runs.add(found, {}, pairs);
   };
   renew_kind(PairKind::k_vertex_face, found_.vertex_face, runs_vertex_face_, pairs_.vertex_face, blocked_.vertex_face);
   renew_kind(PairKind::k_edge_edge, found_.edge_edge, runs_edge_edge_, pairs_.edge_edge, blocked_.edge_edge);
@@ -278,53 +276,50 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
 
 /// Keeps what can come nearer than the contact radius. With `blocked` it finds what touches on its way there, and the
 /// first time of contact.
-double Candidates::filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth,
-                          const PieceMotion& piece, std::vector<Stencil>& kept, std::vector<Stencil>* blocked) {
-  const std::size_t blocks = block_count(found.size(), k_block);
+double Candidates::filter(PairKind kind, const ClothMotion& cloth, const PieceMotion& piece,
+                          std::vector<Stencil>& pairs, std::vector<Stencil>* blocked) {
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
-  if (kept_.size() < blocks) kept_.resize(blocks);
-  earliest_.assign(blocks, 1.0);
-  parallel_for(found.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    auto& mine = kept_[begin / k_block];
-    mine.pairs.clear();
-    mine.blocked.clear();
+  fates_.assign(pairs.size(), Fate::k_dropped);
+  earliest_.assign(block_count(pairs.size(), k_block), 1.0);
+  parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
     double first = 1;
     for (std::size_t p = begin; p < end; ++p) {
-      const std::array<Vec3, 4> x = gather(piece.start, found[p]), d = gather(piece.all, found[p]);
+      const std::array<Vec3, 4> x = gather(piece.start, pairs[p]), d = gather(piece.all, pairs[p]);
       const double relative = largest_relative_motion(kind, d);
       double slack_a = 0, slack_b = 0;
       for (std::size_t k = 0; k < 4; ++k) {
-        const int v = found[p].v[k];
+        const int v = pairs[p].v[k];
         double& side = k < split ? slack_a : slack_b;
         if (v < model_.vertex_count()) side = std::max(side, piece.slack[at(v)]);
       }
-      const bool self = found[p].v[split] < model_.vertex_count() && found[p].v[0] < model_.vertex_count();
+      const bool self = pairs[p].v[split] < model_.vertex_count() && pairs[p].v[0] < model_.vertex_count();
       const double radius = self ? self_radius_ : radius_;
       const double reach =
-          std::max(relative, largest_relative_motion(kind, gather(piece.centre, found[p])) + slack_a + slack_b) +
+          std::max(relative, largest_relative_motion(kind, gather(piece.centre, pairs[p])) + slack_a + slack_b) +
           radius;
       if (apart_between_centres(kind, x, reach) || box_gap_squared(kind, x) >= reach * reach) continue;
-      if (!counts(cloth, kind, found[p])) continue;
+      if (!counts(cloth, kind, pairs[p])) continue;
       const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
                                                              : edge_edge_geometry(x[0], x[1], x[2], x[3]);
       if (g.distance >= reach) continue;
-      mine.pairs.push_back(found[p]);
+      fates_[p] = Fate::k_kept;
       if (blocked == nullptr) continue;
       if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
       const double touch = ccd_time(kind, x, d);
-      if (touch < 1) mine.blocked.push_back(found[p]);
+      if (touch < 1) fates_[p] = Fate::k_kept_and_blocked;
       first = std::min(first, touch);
     }
     earliest_[begin / k_block] = first;
   });
-  kept.clear();
   if (blocked != nullptr) blocked->clear();
-  double t = 1;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    kept.insert(kept.end(), kept_[b].pairs.begin(), kept_[b].pairs.end());
-    if (blocked != nullptr) blocked->insert(blocked->end(), kept_[b].blocked.begin(), kept_[b].blocked.end());
-    t = std::min(t, earliest_[b]);
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (fates_[p] == Fate::k_kept_and_blocked) blocked->push_back(pairs[p]);
+    if (fates_[p] != Fate::k_dropped) pairs[kept++] = pairs[p];
   }
+  pairs.resize(kept);
+  double t = 1;
+  for (const double first : earliest_) t = std::min(t, first);
   return t;
 }
 

@@ -76,8 +76,8 @@ class Candidates {
   void drop_blocked();
   void join_zones(const PieceMotion& piece);
   std::vector<int> pinched_through() const;
-  double filter(PairKind kind, const std::vector<Stencil>& found, const ClothMotion& cloth, const PieceMotion& piece,
-                std::vector<Stencil>& kept, std::vector<Stencil>* blocked);
+  double filter(PairKind kind, const ClothMotion& cloth, const PieceMotion& piece, std::vector<Stencil>& pairs,
+                std::vector<Stencil>* blocked);
 
   const ClothModel& model_;
   PairFinder finder_;
@@ -99,16 +99,13 @@ class Candidates {
   std::vector<Vec3> inertia_;
   std::vector<char> counted_;
   std::vector<double> earliest_;
-  struct Kept {
-    std::vector<Stencil> pairs, blocked;
-  };
-  std::vector<Kept> kept_;
+  enum class Fate : char { k_dropped, k_kept, k_kept_and_blocked };
+  std::vector<Fate> fates_;  ///< per pair that filter() looks at
   ContactPairs blocked_;
   ApproachLimits limits_;
   MotionZones zones_;
   std::vector<Vec3> carried_;
   std::vector<int> lost_;  ///< patches that are flat no longer
-  std::vector<Stencil> fresh_;
 };
 
 }  // namespace ft

@@ -6,6 +6,7 @@
 // nothing.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "baker/core/mesh.h"
@@ -32,21 +33,26 @@ class AirDrag final : public Energy {
 
  private:
   /// A panel's damping matrix [kg/s] per corner and the force that its linearised law has at zero velocity [N] per
-  /// corner.
+  /// corner. In float: the law itself is known to a few per cent.
   struct Panel {
-    Mat3 damping = Mat3::Zero();
-    Vec3 force = Vec3::Zero();
+    std::array<float, 6> damping{};  ///< xx, yy, zz, xy, yz, zx
+    std::array<float, 3> force{};
+    Panel& operator+=(const Panel& other);
+    Mat3 damping_matrix() const;
+    Vec3 force_vector() const;
   };
   Panel panel(std::size_t triangle, const StepContext& context) const;
 
   AirSettings air_;
   std::vector<Triangle> triangles_;
-  std::vector<double> normal_factor_, tangential_factor_;  ///< rho/2 C A / 3 of each triangle [kg/m]
-  Adjacency around_;                                       ///< vertex -> triangles
-  bool still_ = true;                                      ///< vacuum
+  std::vector<float> normal_factor_, tangential_factor_;  ///< rho/2 C A / 3 of each triangle [kg/m]
+  Adjacency around_;                                      ///< vertex -> triangles
+  bool still_ = true;                                     ///< vacuum
   // Of the step, per vertex: U = rate_time/2 v.D v - rate_time f.v with v = (x - reference) / rate_time.
+  Vec3 velocity(std::span<const Vec3> x, std::size_t vertex) const;
   std::vector<Panel> panels_, vertices_;
-  std::vector<Vec3> reference_;
+  std::span<const Vec3> x_t0_, x_tm1_;
+  double a_ = 1, b_ = 0;  ///< reference = a x_t0 - b x_tm1; b = 0: x_t0
   double rate_time_ = 1;
 };
 

@@ -1,7 +1,9 @@
 #include "solvers/energies/bending.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 
 #include "baker/core/check.h"
@@ -14,9 +16,9 @@ namespace {
 /// A triangle pressed below this share of its rest area counts as degenerate.
 constexpr double k_collapsed = 1e-3;
 
-double degenerate_below(double rest_area) {
+float degenerate_below(double rest_area) {
   const double least = 2 * k_collapsed * rest_area;
-  return least > 0 ? least * least : 1;
+  return least > 0 ? std::max(static_cast<float>(least * least), std::numeric_limits<float>::min()) : 1;
 }
 
 struct HingeEdges {
@@ -38,11 +40,16 @@ double angle_difference(double a, double b) {
   return d > std::numbers::pi ? d - full : d < -std::numbers::pi ? d + full : d;
 }
 
-void add_coupling(Bending::HingeGroup& g, std::size_t lane, int slot, double value) {
-  for (int k = 0; k < Bending::k_couplings; ++k) {
-    if (k > 0 && g.neighbour[k][lane] < 0) g.neighbour[k][lane] = slot;
-    if (g.neighbour[k][lane] != slot) continue;
-    g.coupling[k][lane] += value;
+void add_coupling(Bending::HingeGroup& g, std::size_t lane, int slot, int other, double value) {
+  const float v = static_cast<float>(value);
+  if (other == slot) {
+    g.coupling[0][lane] += v;
+    return;
+  }
+  for (int k = 0; k + 1 < Bending::k_couplings; ++k) {
+    if (g.neighbour[k][lane] < 0) g.neighbour[k][lane] = other;
+    if (g.neighbour[k][lane] != other) continue;
+    g.coupling[k + 1][lane] += v;
     return;
   }
   CHECK(false);  // two triangles of three edges each: never more than five
@@ -51,15 +58,16 @@ void add_coupling(Bending::HingeGroup& g, std::size_t lane, int slot, double val
 }  // namespace
 
 Bending::Bending(const ClothTopology& topology) {
+  std::vector<std::array<int, 4>> hinges;
   std::vector<int> index(topology.hinges.size(), -1);  // hinges that some triangle uses
   for (const BendElement& bend : topology.bends)
     for (const int h : bend.hinge)
       if (h >= 0 && index[at(h)] < 0) {
-        index[at(h)] = static_cast<int>(hinges_.size());
-        hinges_.push_back(topology.hinges[at(h)].vertex);
+        index[at(h)] = static_cast<int>(hinges.size());
+        hinges.push_back(topology.hinges[at(h)].vertex);
       }
-  hinge_schedule_ = make_element_schedule(hinges_, topology.rest);
-  std::vector<int> slot_of(hinges_.size());
+  hinge_schedule_ = make_element_schedule(hinges, topology.rest);
+  std::vector<int> slot_of(hinges.size());
   for (std::size_t s = 0; s < hinge_schedule_.slot.size(); ++s)
     if (hinge_schedule_.slot[s] >= 0) slot_of[at(hinge_schedule_.slot[s])] = static_cast<int>(s);
   hinge_groups_.assign(hinge_schedule_.group_count(), HingeGroup{});
@@ -70,7 +78,6 @@ Bending::Bending(const ClothTopology& topology) {
     const std::size_t l = s % k_lanes;
     g.floor2[l] = g.floor3[l] = 1;
     for (auto& row : g.neighbour) row[l] = -1;
-    g.neighbour[0][l] = static_cast<int>(s);
   }
   for (std::size_t h = 0; h < index.size(); ++h) {
     if (index[h] < 0) continue;
@@ -79,7 +86,7 @@ Bending::Bending(const ClothTopology& topology) {
     HingeGroup& g = hinge_groups_[s / k_lanes];
     for (std::size_t k = 0; k < 4; ++k) g.vertex[k][l] = hinge.vertex[k];
     g.rest_angle[l] = hinge.rest_angle;
-    g.damping_time[l] = topology.pieces[at(hinge.piece)].fabric.damping;
+    g.damping_time[l] = static_cast<float>(topology.pieces[at(hinge.piece)].fabric.damping);
     g.floor2[l] = degenerate_below(topology.rest_area[at(hinge.triangle[0])]);
     g.floor3[l] = degenerate_below(topology.rest_area[at(hinge.triangle[1])]);
   }
@@ -89,7 +96,7 @@ Bending::Bending(const ClothTopology& topology) {
       const int row = slot_of[at(index[at(bend.hinge[i])])];
       for (std::size_t j = 0; j < 3; ++j)
         if (bend.hinge[j] >= 0)
-          add_coupling(hinge_groups_[at(row) / k_lanes], at(row) % k_lanes, slot_of[at(index[at(bend.hinge[j])])],
+          add_coupling(hinge_groups_[at(row) / k_lanes], at(row) % k_lanes, row, slot_of[at(index[at(bend.hinge[j])])],
                        bend.sign[i] * bend.sign[j] * bend.stiffness(static_cast<int>(i), static_cast<int>(j)));
     }
   }
@@ -98,13 +105,26 @@ Bending::Bending(const ClothTopology& topology) {
       if (row[s % k_lanes] < 0) row[s % k_lanes] = static_cast<int>(s);
 }
 
-bool Bending::Angles::are_of(std::span<const Vec3> x) const {
-  return at.size() == x.size() && std::memcmp(at.data(), x.data(), x.size_bytes()) == 0;
+std::vector<std::array<int, 4>> Bending::stencils() const {
+  std::vector<std::array<int, 4>> out;
+  for (std::size_t slot = 0; slot < hinge_schedule_.slot.size(); ++slot) {
+    const auto& v = hinge_groups_[slot / k_lanes].vertex;
+    const std::size_t l = slot % k_lanes;
+    if (hinge_schedule_.slot[slot] >= 0) out.push_back({v[0][l], v[1][l], v[2][l], v[3][l]});
+  }
+  return out;
+}
+
+void Bending::find_places(const BlockPattern& pattern) const {
+  positions_.bind(pattern, hinge_schedule_.slot, [&](std::size_t slot, std::size_t corner) {
+    return hinge_groups_[slot / k_lanes].vertex[corner][slot % k_lanes];
+  });
 }
 
 void Bending::work_out(std::span<const Vec3> x, Angles& angles) const {
-  if (angles.are_of(x)) return;
-  angles.at.assign(x.begin(), x.end());
+  const Hash128 of = hash_bytes(std::as_bytes(x));
+  if (angles.of == of && !angles.angle.empty()) return;
+  angles.of = of;
   angles.angle.resize(phi_.size());
   parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     HingeEdges h;
@@ -123,24 +143,18 @@ void Bending::begin_step(const StepContext& context) {
   inverse_rate_time_ = context.x_t0.empty() ? 0 : 1 / context.rate_time();
   if (inverse_rate_time_ == 0) return;
   const bool history = context.has_history() && context.b != 0;
+  history_ = history ? context.b : 0;
   std::swap(start_, before_);  // the start of the last step is mostly where this one came from
   if (history) work_out(context.x_tm1, before_);
-  if (last_.are_of(context.x_t0))
+  if (last_.of == hash_bytes(std::as_bytes(context.x_t0)) && !last_.angle.empty())
     start_ = last_;
   else
     work_out(context.x_t0, start_);
-  parallel_for(phi_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const double now = start_.angle[s];
-      hinge_groups_[s / k_lanes].reference[s % k_lanes] =
-          now + (history ? context.b * angle_difference(now, before_.angle[s]) : 0.0);
-    }
-  });
 }
 
 /// Fills phi_, rho_, moment_ and energy_.
 void Bending::measure(std::span<const Vec3> x) const {
-  if (measured_ && last_.are_of(x)) return;
+  if (measured_ && last_.of == hash_bytes(std::as_bytes(x))) return;
   measured_ = true;
   work_out(x, last_);
   parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
@@ -151,7 +165,14 @@ void Bending::measure(std::span<const Vec3> x) const {
       double* rho = rho_.data() + i * k_lanes;
       for (int l = 0; l < k_lanes; ++l) {
         phi[l] = angle[l] - g.rest_angle[l];
-        rho[l] = std::sqrt(g.damping_time[l] * inverse_rate_time_) * angle_difference(angle[l], g.reference[l]);
+        rho[l] = 0;
+      }
+      if (inverse_rate_time_ == 0) continue;
+      const double* start = start_.angle.data() + i * k_lanes;
+      for (int l = 0; l < k_lanes; ++l) {
+        const double before = history_ != 0 ? before_.angle[i * k_lanes + at(l)] : start[l];
+        const double reference = start[l] + history_ * angle_difference(start[l], before);
+        rho[l] = std::sqrt(g.damping_time[l] * inverse_rate_time_) * angle_difference(angle[l], reference);
       }
     }
   });
@@ -160,12 +181,12 @@ void Bending::measure(std::span<const Vec3> x) const {
     for (std::size_t i = begin; i < end; ++i) {
       const HingeGroup& g = hinge_groups_[i];
       for (std::size_t l = 0; l < k_lanes; ++l) {
-        double elastic = 0, viscous = 0;
-        for (int k = 0; k < k_couplings; ++k) {
-          const std::size_t n = at(g.neighbour[k][l]);
-          elastic += g.coupling[k][l] * phi_[n], viscous += g.coupling[k][l] * rho_[n];
-        }
         const std::size_t slot = i * k_lanes + l;
+        double elastic = g.coupling[0][l] * phi_[slot], viscous = g.coupling[0][l] * rho_[slot];
+        for (int k = 0; k + 1 < k_couplings; ++k) {
+          const std::size_t n = at(g.neighbour[k][l]);
+          elastic += g.coupling[k + 1][l] * phi_[n], viscous += g.coupling[k + 1][l] * rho_[n];
+        }
         moment_[slot] = elastic + std::sqrt(g.damping_time[l] * inverse_rate_time_) * viscous;
         total += 0.5 * (elastic * phi_[slot] + viscous * rho_[slot]);
       }
@@ -201,7 +222,7 @@ void Bending::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) co
 }
 
 void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
-  positions_.bind(*hessian.pattern, hinges_, hinge_schedule_.slot);
+  find_places(*hessian.pattern);
   for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
     HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {
@@ -213,7 +234,7 @@ void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
 
 void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
   measure(x);
-  positions_.bind(*hessian.pattern, hinges_, hinge_schedule_.slot);
+  find_places(*hessian.pattern);
   for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
     HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {

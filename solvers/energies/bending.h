@@ -11,6 +11,7 @@
 
 #include <vector>
 
+#include "baker/core/hash.h"
 #include "solvers/energies/block_positions.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/element_schedule.h"
@@ -22,7 +23,7 @@ class Bending final : public Energy {
  public:
   explicit Bending(const ClothTopology& topology);
   std::string_view name() const override { return "bending"; }
-  std::vector<std::array<int, 4>> stencils() const override { return hinges_; }
+  std::vector<std::array<int, 4>> stencils() const override;
   void begin_step(const StepContext& context) override;
   double value(std::span<const Vec3> x) const override;
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
@@ -34,33 +35,33 @@ class Bending final : public Energy {
   /// k_lanes hinges; no coupling in padding.
   struct HingeGroup {
     int vertex[4][k_lanes];
-    int neighbour[k_couplings][k_lanes];      ///< slots of the hinges of a row of K; itself first
-    double coupling[k_couplings][k_lanes];    ///< N m
+    int neighbour[k_couplings - 1][k_lanes];  ///< slots of the other hinges of a row of K
+    float coupling[k_couplings][k_lanes];     ///< with itself, and with those [N m]
     double rest_angle[k_lanes];               ///< rad
-    double damping_time[k_lanes];             ///< s
-    double floor2[k_lanes], floor3[k_lanes];  ///< see hinge_gradient_lanes() [m4]
-    double reference[k_lanes];                ///< theta_ref of the step [rad]
+    float damping_time[k_lanes];              ///< s
+    float floor2[k_lanes], floor3[k_lanes];   ///< see hinge_gradient_lanes() [m4]
   };
 
  private:
   struct HingeShape;
-  /// Of all hinges, where the cloth is `at`; the same bits whenever they are worked out.
+  /// Of all hinges; the same bits whenever they are worked out.
   struct Angles {
-    std::vector<Vec3> at;
+    Hash128 of;                 ///< of the positions
     std::vector<double> angle;  ///< per hinge slot [rad]
-    bool are_of(std::span<const Vec3> x) const;
   };
   void work_out(std::span<const Vec3> x, Angles& angles) const;
   void measure(std::span<const Vec3> x) const;
   void add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const;
   void add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const;
+  void find_places(const BlockPattern& pattern) const;
 
-  std::vector<std::array<int, 4>> hinges_;
   ElementSchedule hinge_schedule_;
   std::vector<HingeGroup> hinge_groups_;
+  // Of the step: theta_ref = start + history (start - before).
   double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
+  double history_ = 0;
   mutable BlockPositions<4> positions_;
-  Angles start_, before_;  ///< of the step, and scratch
+  Angles start_, before_;
   // Of the last x that was measured: the next question is mostly about the same one, and the next step starts there.
   mutable Angles last_;
   mutable bool measured_ = false;          ///< in this step, what follows

@@ -22,19 +22,19 @@ class BlockPositions {
   using Positions = std::array<int, Corners*(Corners + 1) / 2>;
   static constexpr std::size_t index_of(std::size_t a, std::size_t b) { return a * (2 * Corners - 1 - a) / 2 + b; }
 
-  /// Slots hold indices of stencils; corners of -1 are left at -1, too.
-  template <class Stencils>
-  void bind(const BlockPattern& pattern, const Stencils& stencils, std::span<const int> slots) {
+  /// Slots hold elements; vertex(slot, corner) is asked for those of one. Corners of -1 are left at -1, too.
+  template <class Vertex>
+  void bind(const BlockPattern& pattern, std::span<const int> slots, Vertex&& vertex) {
     if (pattern_ == &pattern && columns_ == pattern.column.size()) return;
     positions_.resize(slots.size());
     for (std::size_t s = 0; s < slots.size(); ++s) {
       positions_[s].fill(-1);
       if (slots[s] < 0) continue;
-      const auto& v = stencils[static_cast<std::size_t>(slots[s])];
       for (std::size_t a = 0; a < Corners; ++a)
         for (std::size_t b = a; b < Corners; ++b) {
-          if (v[a] < 0 || v[b] < 0) continue;
-          const int p = pattern.find(std::min(v[a], v[b]), std::max(v[a], v[b]));
+          const auto [row, column] = std::minmax({vertex(s, a), vertex(s, b)});
+          if (row < 0) continue;
+          const int p = pattern.find(row, column);
           CHECK(p >= 0);
           positions_[s][index_of(a, b)] = p;
         }

@@ -47,7 +47,8 @@ void Cords::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) cons
 }
 
 void Cords::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
-  positions_.bind(*hessian.pattern, stencils_, slots_);
+  positions_.bind(*hessian.pattern, slots_,
+                  [&](std::size_t slot, std::size_t corner) { return stencils_[at(slots_[slot])][corner]; });
   for (std::size_t i = 0; i < cords_.size(); ++i) {
     const Cord& c = cords_[i];
     const Vec3 d = gap(c, x);

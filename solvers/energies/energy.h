@@ -14,7 +14,8 @@
 
 namespace ft {
 
-/// What a step knows besides positions. Lagged quantities (damping, wind) use the start of the substep.
+/// What a step knows besides positions. Lagged quantities (damping, wind) use the start of the substep. The positions
+/// and velocities must live as long as the step.
 struct StepContext {
   double h = 1.0 / 240;        ///< substep [s]
   double beta_h = 1.0 / 240;   ///< of the rate below: h for implicit Euler, 2/3 h for BDF2 at constant h [s]

@@ -52,8 +52,8 @@ struct HingeGradients {
 
 /// floor2, floor3: squared area normals below which the two triangles count as degenerate; their gradients are then
 /// held down instead of growing without bound [m4].
-inline void hinge_gradient_lanes(const HingeLane* e, const HingeLane* a, const HingeLane* b, const HingeLane& floor2,
-                                 const HingeLane& floor3, HingeGradients& out) {
+inline void hinge_gradient_lanes(const HingeLane* e, const HingeLane* a, const HingeLane* b,
+                                 const float (&floor2)[k_lanes], const float (&floor3)[k_lanes], HingeGradients& out) {
   for (int l = 0; l < k_lanes; ++l) {
     const double e0 = e[0][l], e1 = e[1][l], e2 = e[2][l];
     const double a0 = a[0][l], a1 = a[1][l], a2 = a[2][l], b0 = b[0][l], b1 = b[1][l], b2 = b[2][l];

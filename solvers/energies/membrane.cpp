@@ -59,19 +59,33 @@ inline Taut taut(double past) {
   return {in * in * in / (6 * w) + out * (0.5 * w + 0.5 * out), in * in / (2 * w) + out, in / w};
 }
 
-/// Area times second Piola-Kirchhoff stress with damping: S11, S22, S12.
-void stress(const Membrane::Group& g, const Membrane::Reference& ref, double inverse_rate_time, const Lane* e,
-            Lane* s) {
+/// Materials of a group, times area where they are stiffnesses [N m].
+struct Constants {
+  alignas(32) Lane stiffness[4], damping_time, limit[2], limit_stiffness;
+};
+
+void constants(const Membrane::Group& g, std::span<const Membrane::Material> materials, Constants& out) {
   for (int l = 0; l < k_lanes; ++l) {
-    const double d = g.damping_time[l] * inverse_rate_time;
+    const Membrane::Material& m = materials[at(g.material[l])];
+    for (int k = 0; k < 4; ++k) out.stiffness[k][l] = g.area[l] * m.stiffness[k];
+    out.damping_time[l] = m.damping_time;
+    for (int k = 0; k < 2; ++k) out.limit[k][l] = m.limit[k];
+    out.limit_stiffness[l] = g.area[l] * m.limit_stiffness;
+  }
+}
+
+/// Area times second Piola-Kirchhoff stress with damping: S11, S22, S12.
+void stress(const Constants& c, const Membrane::Reference& ref, double inverse_rate_time, const Lane* e, Lane* s) {
+  for (int l = 0; l < k_lanes; ++l) {
+    const double d = c.damping_time[l] * inverse_rate_time;
     const double e0 = e[0][l] + d * (e[0][l] - ref.strain[0][l]);
     const double e1 = e[1][l] + d * (e[1][l] - ref.strain[1][l]);
     const double e2 = e[2][l] + d * (e[2][l] - ref.strain[2][l]);
     s[0][l] =
-        g.stiffness[0][l] * e0 + g.stiffness[2][l] * e1 + g.limit_stiffness[l] * taut(e[0][l] - g.limit[0][l]).slope;
+        c.stiffness[0][l] * e0 + c.stiffness[2][l] * e1 + c.limit_stiffness[l] * taut(e[0][l] - c.limit[0][l]).slope;
     s[1][l] =
-        g.stiffness[2][l] * e0 + g.stiffness[1][l] * e1 + g.limit_stiffness[l] * taut(e[1][l] - g.limit[1][l]).slope;
-    s[2][l] = g.stiffness[3][l] * e2;
+        c.stiffness[2][l] * e0 + c.stiffness[1][l] * e1 + c.limit_stiffness[l] * taut(e[1][l] - c.limit[1][l]).slope;
+    s[2][l] = c.stiffness[3][l] * e2;
   }
 }
 
@@ -106,8 +120,8 @@ void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, cons
   }
 }
 
-void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* strain, const Lane* s,
-                    double inverse_rate_time, ElementBlocks& out) {
+void element_blocks(const Membrane::Group& g, const Constants& c, const Deformation& d, const Lane* strain,
+                    const Lane* s, double inverse_rate_time, ElementBlocks& out) {
   // Positive part of the 2x2 stress: alpha S + beta I, from the eigenvalues mean +- radius.
   alignas(32) Lane p[3], more, straight[2];
   for (int l = 0; l < k_lanes; ++l) {
@@ -118,15 +132,15 @@ void element_blocks(const Membrane::Group& g, const Deformation& d, const Lane* 
     const double twice = 2 * radius > 1e-100 ? 2 * radius : 1e-100;
     const double alpha = (q1 - q2) / twice, beta = q1 - alpha * l1;
     p[0][l] = alpha * s[0][l] + beta, p[1][l] = alpha * s[1][l] + beta, p[2][l] = alpha * s[2][l];
-    more[l] = 1 + g.damping_time[l] * inverse_rate_time;
-    for (int k = 0; k < 2; ++k) straight[k][l] = g.limit_stiffness[l] * taut(strain[k][l] - g.limit[k][l]).curvature;
+    more[l] = 1 + c.damping_time[l] * inverse_rate_time;
+    for (int k = 0; k < 2; ++k) straight[k][l] = c.limit_stiffness[l] * taut(strain[k][l] - c.limit[k][l]).curvature;
   }
   ElementParts e;
   for (int k = 0; k < 3; ++k) e.u[k] = as_lanes(d.f1[k]), e.w[k] = as_lanes(d.f2[k]);
   const Lanes factor = as_lanes(more);
-  e.c11 = factor * as_lanes(g.stiffness[0]) + as_lanes(straight[0]);
-  e.c22 = factor * as_lanes(g.stiffness[1]) + as_lanes(straight[1]);
-  e.c12 = factor * as_lanes(g.stiffness[2]), e.c33 = factor * as_lanes(g.stiffness[3]);
+  e.c11 = factor * as_lanes(c.stiffness[0]) + as_lanes(straight[0]);
+  e.c22 = factor * as_lanes(c.stiffness[1]) + as_lanes(straight[1]);
+  e.c12 = factor * as_lanes(c.stiffness[2]), e.c33 = factor * as_lanes(c.stiffness[3]);
   e.p11 = as_lanes(p[0]), e.p22 = as_lanes(p[1]), e.p12 = as_lanes(p[2]);
   const Lanes ax = as_lanes(g.rest_inverse[0]), ay = as_lanes(g.rest_inverse[1]);
   const Lanes bx = as_lanes(g.rest_inverse[2]), by = as_lanes(g.rest_inverse[3]);
@@ -184,35 +198,51 @@ double cap_stiffness(double rest_area, const std::array<double, 4>& rest_inverse
 }
 
 Membrane::Membrane(const ClothTopology& topology) {
+  for (const ClothPiece& piece : topology.pieces) {
+    const Fabric& fabric = piece.fabric;
+    const auto c = membrane_stiffness(fabric);
+    materials_.push_back({{c[0], c[1], c[2], c[3]},
+                          fabric.damping,
+                          {green_limit(fabric.limit_weft), green_limit(fabric.limit_warp)},
+                          fabric.limit_stretch});
+  }
+  std::vector<Triangle> triangles;
   std::vector<std::size_t> element;
   for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
     if (topology.rest_area[t] == 0) continue;
-    const Triangle& v = topology.triangles[t];
-    stencils_.push_back({v[0], v[1], v[2], -1});
+    triangles.push_back(topology.triangles[t]);
     element.push_back(t);
   }
-  schedule_ = make_element_schedule(stencils_, topology.rest);
+  schedule_ = make_element_schedule(triangles, topology.rest);
   groups_.assign(schedule_.group_count(), Group{});
   reference_.assign(groups_.size(), Reference{});
   for (std::size_t slot = 0; slot < schedule_.slot.size(); ++slot) {
     if (schedule_.slot[slot] < 0) continue;
     const std::size_t t = element[at(schedule_.slot[slot])];
-    const Fabric& fabric = topology.fabric_of_triangle(t);
-    const auto c = membrane_stiffness(fabric);
-    const double factor =
-        topology.factor(t, &VertexMaps::stretch) * cap_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
     Group& g = groups_[slot / k_lanes];
     const std::size_t l = slot % k_lanes;
     for (std::size_t k = 0; k < 3; ++k) g.vertex[k][l] = topology.triangles[t][k];
-    for (std::size_t k = 0; k < 4; ++k) {
-      g.rest_inverse[k][l] = topology.rest_inverse[t][k];
-      g.stiffness[k][l] = topology.rest_area[t] * (factor * c[k]);
-    }
-    g.damping_time[l] = fabric.damping;
-    g.limit[0][l] = green_limit(fabric.limit_weft);
-    g.limit[1][l] = green_limit(fabric.limit_warp);
-    g.limit_stiffness[l] = topology.rest_area[t] * (factor * fabric.limit_stretch);
+    for (std::size_t k = 0; k < 4; ++k) g.rest_inverse[k][l] = topology.rest_inverse[t][k];
+    g.material[l] = topology.triangle_piece[t];
+    g.area[l] = topology.rest_area[t] * topology.factor(t, &VertexMaps::stretch) *
+                cap_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
   }
+}
+
+std::vector<std::array<int, 4>> Membrane::stencils() const {
+  std::vector<std::array<int, 4>> out;
+  for (std::size_t slot = 0; slot < schedule_.slot.size(); ++slot) {
+    const auto& v = groups_[slot / k_lanes].vertex;
+    const std::size_t l = slot % k_lanes;
+    if (schedule_.slot[slot] >= 0) out.push_back({v[0][l], v[1][l], v[2][l], -1});
+  }
+  return out;
+}
+
+void Membrane::find_places(const BlockPattern& pattern) const {
+  positions_.bind(pattern, schedule_.slot, [&](std::size_t slot, std::size_t corner) {
+    return groups_[slot / k_lanes].vertex[corner][slot % k_lanes];
+  });
 }
 
 void Membrane::begin_step(const StepContext& context) {
@@ -239,21 +269,23 @@ void Membrane::begin_step(const StepContext& context) {
 double Membrane::value(std::span<const Vec3> x) const {
   return sum_over_chunks(schedule_, [&](std::size_t begin, std::size_t end) {
     Deformation d;
+    Constants c;
     alignas(32) Lane e[3], sum = {};
     for (std::size_t i = begin; i < end; ++i) {
       const Group& g = groups_[i];
       const Reference& ref = reference_[i];
+      constants(g, materials_, c);
       deformation(g, x, d);
       strain(d, e);
       for (int l = 0; l < k_lanes; ++l) {
-        const double damping = g.damping_time[l] * inverse_rate_time_;
+        const double damping = c.damping_time[l] * inverse_rate_time_;
         const double r0 = e[0][l] - ref.strain[0][l], r1 = e[1][l] - ref.strain[1][l], r2 = e[2][l] - ref.strain[2][l];
-        const double elastic = g.stiffness[0][l] * e[0][l] * e[0][l] + g.stiffness[1][l] * e[1][l] * e[1][l] +
-                               2 * g.stiffness[2][l] * e[0][l] * e[1][l] + g.stiffness[3][l] * e[2][l] * e[2][l];
-        const double viscous = g.stiffness[0][l] * r0 * r0 + g.stiffness[1][l] * r1 * r1 +
-                               2 * g.stiffness[2][l] * r0 * r1 + g.stiffness[3][l] * r2 * r2;
+        const double elastic = c.stiffness[0][l] * e[0][l] * e[0][l] + c.stiffness[1][l] * e[1][l] * e[1][l] +
+                               2 * c.stiffness[2][l] * e[0][l] * e[1][l] + c.stiffness[3][l] * e[2][l] * e[2][l];
+        const double viscous = c.stiffness[0][l] * r0 * r0 + c.stiffness[1][l] * r1 * r1 +
+                               2 * c.stiffness[2][l] * r0 * r1 + c.stiffness[3][l] * r2 * r2;
         sum[l] += 0.5 * (elastic + damping * viscous) +
-                  g.limit_stiffness[l] * (taut(e[0][l] - g.limit[0][l]).value + taut(e[1][l] - g.limit[1][l]).value);
+                  c.limit_stiffness[l] * (taut(e[0][l] - c.limit[0][l]).value + taut(e[1][l] - c.limit[1][l]).value);
       }
     }
     double total = 0;
@@ -263,14 +295,16 @@ double Membrane::value(std::span<const Vec3> x) const {
 }
 
 struct Membrane::Stressed {
+  Constants constants;
   Deformation d;
   alignas(32) Lane e[3], s[3];  ///< see strain() and stress()
 };
 
 void Membrane::measure(std::size_t group, std::span<const Vec3> x, Stressed& out) const {
+  constants(groups_[group], materials_, out.constants);
   deformation(groups_[group], x, out.d);
   strain(out.d, out.e);
-  stress(groups_[group], reference_[group], inverse_rate_time_, out.e, out.s);
+  stress(out.constants, reference_[group], inverse_rate_time_, out.e, out.s);
 }
 
 void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
@@ -284,7 +318,7 @@ void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) c
 }
 
 void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
-  positions_.bind(*hessian.pattern, stencils_, schedule_.slot);
+  find_places(*hessian.pattern);
   for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
     Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
@@ -295,7 +329,7 @@ void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const 
 }
 
 void Membrane::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
-  positions_.bind(*hessian.pattern, stencils_, schedule_.slot);
+  find_places(*hessian.pattern);
   for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
     Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
@@ -308,7 +342,8 @@ void Membrane::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient
 
 void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, std::span<Vec3> gradient) const {
   const Group& g = groups_[group];
-  const auto& [d, e, s] = stressed;
+  const Deformation& d = stressed.d;
+  const Lane* s = stressed.s;
   const auto& r = g.rest_inverse;
   alignas(32) Lane g1[3], g2[3];
   for (int k = 0; k < 3; ++k)
@@ -330,7 +365,7 @@ void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, s
 
 void Membrane::add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const {
   ElementBlocks blocks;
-  element_blocks(groups_[group], stressed.d, stressed.e, stressed.s, inverse_rate_time_, blocks);
+  element_blocks(groups_[group], stressed.constants, stressed.d, stressed.e, stressed.s, inverse_rate_time_, blocks);
   scatter(blocks, groups_[group], positions_, group * k_lanes, schedule_.used(group), hessian.blocks.data());
 }
 

@@ -32,21 +32,26 @@ class Membrane final : public Energy {
  public:
   explicit Membrane(const ClothTopology& topology);
   std::string_view name() const override { return "membrane"; }
-  std::vector<std::array<int, 4>> stencils() const override { return stencils_; }
+  std::vector<std::array<int, 4>> stencils() const override;
   void begin_step(const StepContext& context) override;
   double value(std::span<const Vec3> x) const override;
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
   void add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const override;
 
+  /// Per area, as a fabric has it.
+  struct Material {
+    double stiffness[4] = {};    ///< C11, C22, C12, C33 [N/m]
+    double damping_time = 0;     ///< s
+    double limit[2] = {};        ///< Green strain of weft and warp beyond which yarns are straight
+    double limit_stiffness = 0;  ///< of straight yarns [N/m]
+  };
   /// k_lanes triangles; all zero in padding.
   struct Group {
     int vertex[3][k_lanes];
+    int material[k_lanes];
+    double area[k_lanes];             ///< at rest, times the factor of what varies over the garment [m2]
     double rest_inverse[4][k_lanes];  ///< 1/m
-    double stiffness[4][k_lanes];     ///< area times C11, C22, C12, C33 [N m]
-    double damping_time[k_lanes];     ///< s
-    double limit[2][k_lanes];         ///< Green strain of weft and warp beyond which yarns are straight
-    double limit_stiffness[k_lanes];  ///< area times their stiffness [N m]
   };
   struct Reference {
     double strain[3][k_lanes];  ///< E_ref
@@ -57,10 +62,11 @@ class Membrane final : public Energy {
   void measure(std::size_t group, std::span<const Vec3> x, Stressed& out) const;
   void add_group_gradient(std::size_t group, const Stressed& stressed, std::span<Vec3> gradient) const;
   void add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const;
+  void find_places(const BlockPattern& pattern) const;
 
-  std::vector<std::array<int, 4>> stencils_;
   ElementSchedule schedule_;
   std::vector<Group> groups_;
+  std::vector<Material> materials_;  ///< of the pieces
   // Of the step.
   std::vector<Reference> reference_;
   double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
