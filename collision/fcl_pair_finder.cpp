@@ -312,14 +312,27 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   }
   const std::span<const FoundPairs> found(m.found.data(), m.tasks.size());
 
-  const auto write = [&](PairSorter& sorter, std::size_t first_count, auto keys_of, auto stencil_of, auto& pairs) {
+  const auto sort = [&](PairSorter& sorter, std::size_t first_count, auto keys_of) {
     sorter.begin(static_cast<int>(first_count));
     for (const FoundPairs& f : found) sorter.add(f.*keys_of);
-    const std::span<const std::uint64_t> keys = sorter.sort();
+    sorter.sort();
+  };
+  parallel_tasks(2, [&](std::size_t task) {
+    if (task == 0)
+      sort(m.sort_vertex_face, at(features.vertex_count), &FoundPairs::vertex_face);
+    else
+      sort(m.sort_edge_edge, features.edges.size(), &FoundPairs::edge_edge);
+  });
+  if (edges && changed.empty()) m.found.clear();  // the others find far less
+
+  const auto write = [&](PairSorter& sorter, auto stencil_of, std::vector<Stencil>& pairs) {
+    const std::span<const std::uint64_t> keys = sorter.sorted();
+    if (pairs.capacity() < keys.size()) pairs = {};  // so that there are never two of them
     pairs.resize(keys.size());
     parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) pairs[i] = stencil_of(key_first(keys[i]), key_second(keys[i]));
     });
+    if (edges && changed.empty()) sorter.give_back();
   };
   const auto vertex_face = [&](int v, int face) {
     const Triangle& f = features.faces[at(face)];
@@ -329,17 +342,8 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
     const Edge &a = features.edges[at(first)], &b = features.edges[at(second)];
     return Stencil{{a[0], a[1], b[0], b[1]}};
   };
-  parallel_tasks(2, [&](std::size_t task) {
-    if (task == 0)
-      write(m.sort_vertex_face, at(features.vertex_count), &FoundPairs::vertex_face, vertex_face, out.vertex_face);
-    else
-      write(m.sort_edge_edge, features.edges.size(), &FoundPairs::edge_edge, edge_edge, out.edge_edge);
-  });
-  if (edges && changed.empty()) {  // the others find far less
-    m.found.clear();
-    m.sort_vertex_face.give_back();
-    m.sort_edge_edge.give_back();
-  }
+  write(m.sort_vertex_face, vertex_face, out.vertex_face);
+  write(m.sort_edge_edge, edge_edge, out.edge_edge);
 }
 
 }  // namespace ft

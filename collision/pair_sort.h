@@ -30,20 +30,21 @@ class PairSorter {
     count_ = 0;
     parts_.clear();
   }
-  /// The keys must stay where they are until sort().
+  /// The keys must stay where they are until they are sorted.
   void add(std::span<const std::uint64_t> keys) {
     count_ += keys.size();
     parts_.push_back(keys);
   }
-  /// Frees what sort() gave.
+  /// All keys in ascending order, once they are sorted; valid until the next begin() or give_back().
+  std::span<const std::uint64_t> sorted() const { return sorted_; }
+  /// Frees them.
   void give_back() { sorted_ = {}; }
-  /// All keys in ascending order; valid until the next begin() or give_back().
-  std::span<const std::uint64_t> sort() {
+  void sort() {
     if (count_ < first_count_ / k_few) {
       sorted_.clear();
       for (const auto& keys : parts_) sorted_.insert(sorted_.end(), keys.begin(), keys.end());
       std::sort(sorted_.begin(), sorted_.end());
-      return sorted_;
+      return;
     }
     start_.assign(first_count_ + 1, 0);
     for (const auto& keys : parts_)
@@ -60,7 +61,6 @@ class PairSorter {
         std::sort(first, last);
       }
     });
-    return sorted_;
   }
 
  private:

@@ -91,6 +91,8 @@ class ObjParser {
       mesh_.face_uvs.clear();
     }
     finish_groups();
+    const auto trim = [](auto&... lists) { (lists.shrink_to_fit(), ...); };
+    trim(mesh_.positions, mesh_.face_sizes, mesh_.face_vertices, mesh_.uvs, mesh_.face_uvs);
     return std::move(mesh_);
   }
 

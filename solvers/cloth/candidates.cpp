@@ -205,6 +205,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
     }
   });
   if (any_self_) begin_flat(cloth, piece);
+  pairs_ = {};  // their memory is needed for the search
   finder_.find(boxes_, any_self_, pairs_, patches_.flat());
   runs_vertex_face_.begin();
   runs_edge_edge_.begin();

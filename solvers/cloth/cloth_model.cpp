@@ -50,6 +50,15 @@ void concatenate(ClothModel& model) {
   std::vector<std::array<Vec2, 3>> uvs;
   bool all_have_uvs = true;
   ContactModel& contact = model.contact;
+  std::size_t vertices = 0, triangle_count = 0;
+  for (const ClothGarment& garment : model.setup.garments) {
+    vertices += garment.mesh.positions.size();
+    triangle_count += garment.mesh.face_vertices.size() - 2 * garment.mesh.face_sizes.size();
+  }
+  const auto reserve = [](std::size_t count, auto&... lists) { (lists.reserve(count), ...); };
+  reserve(vertices, contact.rest, contact.radius, contact.self_radius, contact.friction, contact.self_friction,
+          contact.garment, model.self_collides);
+  reserve(triangle_count, model.triangles, uvs);
   for (std::size_t g = 0; g < model.setup.garments.size(); ++g) {
     const ClothGarment& garment = model.setup.garments[g];
     const int first = static_cast<int>(contact.rest.size());
