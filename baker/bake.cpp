@@ -13,6 +13,7 @@
 #include "baker/hybrid_files.h"
 #include "baker/interaction.h"
 #include "baker/lock_file.h"
+#include "baker/output_names.h"
 #include "baker/plan_text.h"
 #include "baker/signals.h"
 #include "baker/standing.h"
@@ -190,6 +191,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   auto inputs = read_inputs(options.shot_file, options.overrides, options.frames, faults);
   if (!inputs) return failed(inputs.error(), faults);
   const BakeFolder folder = options.folder.empty() ? BakeFolder::beside(options.shot_file) : BakeFolder{options.folder};
+  if (const Status apart = check_inputs_stay(*inputs, folder); !apart) return failed(apart.error());
   const Manifest now = manifest_of(*inputs);
   Standing standing = find_standing(folder, now);
   if (options.explain) return {0, {describe(standing, folder)}, {}};

@@ -1,5 +1,7 @@
 #include "baker/inputs.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "baker/core/file.h"
@@ -89,7 +91,10 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
   Shot& s = inputs.shot;
   if (frames) {
     const double later = (frames->first - s.first_frame) / s.fps;
-    for (PrimarySpec& primary : s.primaries) primary.clip_start += later * primary.speed;
+    for (PrimarySpec& primary : s.primaries) {
+      if (later != 0) primary.clip_bind = primary.clip_start;
+      primary.clip_start += later * primary.speed;
+    }
     s.first_frame = frames->first;
     s.last_frame = frames->last;
   }
@@ -121,6 +126,9 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
       return added.error();
   for (auto& [key, value] : settings(s))
     if (shapes_the_bake(key)) inputs.settings.emplace_back(key, value);
+  for (const PrimarySpec& primary : s.primaries)
+    if (primary.clip_bind)
+      inputs.settings.emplace_back("primary." + primary.name + ".clip_bind", fmt::format("{}", *primary.clip_bind));
   inputs.fingerprint = fingerprint(inputs);
   return inputs;
 }

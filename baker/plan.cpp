@@ -33,6 +33,7 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.topology = spec.topology;
   request.clip = spec.clip;
   request.clip_start = spec.clip_start;
+  request.clip_bind = spec.clip_bind;
   request.speed = spec.speed;
   request.unit_scale = spec.unit_scale.value_or(0);
   request.up = spec.up;

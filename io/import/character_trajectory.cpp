@@ -63,8 +63,7 @@ void CharacterTrajectory::globals_at(double time, std::vector<Mat4>& globals, st
     globals_from_locals(nodes, locals, globals);
     return;
   }
-  const double s = std::clamp((time + playback_.preroll) / (k_blend_share * playback_.preroll), 0.0, 1.0);
-  const double weight = s * s * (3 - 2 * s);
+  const double weight = blend_weight(time, playback_.preroll);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Mat4 m = blend(blends_[i].from, blends_[i].to, weight).matrix();
     globals[i] = blends_[i].in_parent ? Mat4(globals[static_cast<std::size_t>(nodes[i].parent)] * m) : m;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "baker/core/trajectory.h"
 #include "io/import/bind.h"
@@ -15,6 +16,8 @@ struct Playback {
   double start = 0;  ///< time in the file at the shot's first frame [s]
   double speed = 1;
   double preroll = 1;  ///< s
+  /// Of a geometry cache: time in the file of the pose that garments are modelled on [s]; none: that at `start`.
+  std::optional<double> bind;
 };
 
 class CharacterTrajectory : public Trajectory {

@@ -117,8 +117,9 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
   out.info.clips.push_back({"samples", 0, cache->times.back(), static_cast<int>(cache->times.size())});
   out.info.mesh_names.push_back(cache->mesh.name);
   out.info.notes = cache->notes;
-  out.trajectory = std::make_unique<SampledTrajectory>(std::move(*cache), placement.axes, placement.unit_scale,
-                                                       Playback{request.clip_start, request.speed, request.preroll});
+  out.trajectory = std::make_unique<SampledTrajectory>(
+      std::move(*cache), placement.axes, placement.unit_scale,
+      Playback{request.clip_start, request.speed, request.preroll, request.clip_bind});
   out.info.triangle_count = static_cast<int>(out.trajectory->surface().triangles.size());
   return out;
 }
@@ -212,7 +213,7 @@ Result<PlacedCharacter> place_character(const ImportRequest& request) {
   out.pelvis = find_pelvis(character, *meshes);
   out.placement = placement->matrix();
   out.bind = std::move(bind);
-  out.playback = {(clip != nullptr ? clip->start : 0) + request.clip_start, request.speed, request.preroll};
+  out.playback = {(clip != nullptr ? clip->start : 0) + request.clip_start, request.speed, request.preroll, {}};
   return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,9 +40,10 @@ struct ImportRequest {
   std::filesystem::path file, animation, topology;
   std::string clip;
   double clip_start = 0, speed = 1;
-  double unit_scale = 0;  ///< 0: as the file says
-  std::string up;         ///< "": as the file says
-  double source_fps = 0;  ///< geometry caches; 0: shot_fps
+  std::optional<double> clip_bind;  ///< geometry caches: where garments are modelled; none: at clip_start
+  double unit_scale = 0;            ///< 0: as the file says
+  std::string up;                   ///< "": as the file says
+  double source_fps = 0;            ///< geometry caches; 0: shot_fps
   double shot_fps = 24;
   std::string body = "blended";
   double height = 0;  ///< 0: as it is

@@ -12,6 +12,14 @@ namespace ft {
 /// Share of the pre-roll that is spent blending from the bind pose; the rest is the run-up, where garments settle in
 /// the first pose.
 constexpr double k_blend_share = 0.6;
+
+/// How much of the first frame's pose there is at a time of the pre-roll, the rest being the bind pose: 0 at its start;
+/// time < 0, preroll > 0, in s.
+inline double blend_weight(double time, double preroll) {
+  const double s = std::clamp((time + preroll) / (k_blend_share * preroll), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
 /// Over which the speed at the first frame is measured [s].
 constexpr double k_speed_interval = 1.0 / 60;
 /// A body that is faster than this between two frames [m/s] has jumped, and no run-up is made of it.

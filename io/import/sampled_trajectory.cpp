@@ -6,16 +6,11 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/rigid.h"
+#include "io/import/jump_limits.h"
 #include "io/import/run_up.h"
 
 namespace ft {
 namespace {
-
-Vec3 tangent(const GeometryCache& cache, std::size_t i, std::size_t vertex) {
-  const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < cache.times.size() ? i + 1 : i;
-  return (cache.sample(after)[vertex] - cache.sample(before)[vertex]).cast<double>() /
-         (cache.times[after] - cache.times[before]);
-}
 
 /// Per piece: whether it keeps its shape over the clip, as limbs of a doll do and a skin does not.
 std::vector<char> rigid_pieces(const GeometryCache& cache, std::span<const int> piece_of_vertex, int count) {
@@ -81,12 +76,19 @@ std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> tr
 
 SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback)
     : cache_(std::move(cache)), linear_(unit_scale * axes), playback_(playback) {
+  find_jumps();
   std::vector<Vec3> positions(static_cast<std::size_t>(cache_.vertex_count));
   at(playback_.start, positions);
   std::vector<Vec3> later(positions.size());
   at(playback_.start + k_speed_interval * playback_.speed, later);
   for (std::size_t v = 0; v < later.size(); ++v) start_velocity_ += (later[v] - positions[v]) / k_speed_interval;
   if (!later.empty()) start_velocity_ /= static_cast<double>(later.size());
+  if (playback_.bind) {
+    placed_bind_.resize(positions.size());
+    at(*playback_.bind, placed_bind_);
+    bind_to_start_ = rigid_fit(placed_bind_, positions);
+    for (Vec3& p : placed_bind_) p = bind_to_start_ * p;
+  }
   for (const Triangle& t : triangulate(cache_.mesh))
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) surface_.triangles.push_back(t);
   int pieces = 0;
@@ -113,14 +115,54 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
   }
 }
 
+/// Per interval and vertex: whether it is elsewhere afterwards, and moves neither before nor after as if it were going
+/// there.
+bool SampledTrajectory::jumps(std::size_t interval, std::size_t vertex) const {
+  const auto move = [&](std::size_t i) -> Vec3 {
+    return linear_ * (cache_.sample(i + 1)[vertex] - cache_.sample(i)[vertex]).cast<double>();
+  };
+  const Vec3 own = move(interval);
+  const double least =
+      k_limb_jump * least_jump(size_, cache_.times[interval + 1] - cache_.times[interval]);  // of the nearer of both
+  if (interval > 0 && (own - move(interval - 1)).norm() <= least) return false;
+  if (interval + 2 < cache_.times.size() && (own - move(interval + 1)).norm() <= least) return false;
+  return own.norm() > least;
+}
+
+void SampledTrajectory::find_jumps() {
+  Box box;
+  for (const Vec3f& p : cache_.sample(0)) box.include((linear_ * p.cast<double>()).eval());
+  size_ = box.size().maxCoeff();
+  if (cache_.times.size() < 3) return;
+  any_jumps_.assign(cache_.times.size() - 1, 0);
+  parallel_tasks(any_jumps_.size(), [&](std::size_t i) {
+    for (std::size_t v = 0; v < ft::at(cache_.vertex_count) && any_jumps_[i] == 0; ++v) any_jumps_[i] = jumps(i, v);
+  });
+}
+
+/// At a sample [file units/s].
+Vec3 SampledTrajectory::tangent(std::size_t i, std::size_t vertex) const {
+  std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < cache_.times.size() ? i + 1 : i;
+  if (!any_jumps_.empty()) {
+    if (before < i && any_jumps_[before] != 0 && jumps(before, vertex)) before = i;
+    if (after > i && any_jumps_[i] != 0 && jumps(i, vertex)) after = i;
+    if (before == after) return Vec3::Zero();
+  }
+  return (cache_.sample(after)[vertex] - cache_.sample(before)[vertex]).cast<double>() /
+         (cache_.times[after] - cache_.times[before]);
+}
+
 Eigen::Isometry3d SampledTrajectory::bind_to_start() const {
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  out.translation() = run_up_offset(start_velocity_, -playback_.preroll, playback_.preroll);
-  return out;
+  return Eigen::Translation3d(run_up_offset(start_velocity_, -playback_.preroll, playback_.preroll)) * bind_to_start_;
 }
 
 void SampledTrajectory::sample(double time, std::span<Vec3> positions) const {
   at(playback_.start + std::max(time, 0.0) * playback_.speed, positions);
+  if (time < 0 && playback_.preroll > 0 && !placed_bind_.empty()) {
+    const double weight = blend_weight(time, playback_.preroll);
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      positions[v] = (1 - weight) * placed_bind_[v] + weight * positions[v];
+  }
   const Vec3 offset = run_up_offset(start_velocity_, time, playback_.preroll);
   if (offset != Vec3::Zero())
     for (Vec3& p : positions) p += offset;
@@ -140,8 +182,8 @@ void SampledTrajectory::at(double time, std::span<Vec3> positions) const {
   const auto a = cache_.sample(last), b = cache_.sample(next);
   parallel_for(positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      positions[v] = linear_ * (h00 * a[v].cast<double>() + h10 * tangent(cache_, last, v) + h01 * b[v].cast<double>() +
-                                h11 * tangent(cache_, next, v));
+      positions[v] = linear_ * (h00 * a[v].cast<double>() + h10 * tangent(last, v) + h01 * b[v].cast<double>() +
+                                h11 * tangent(next, v));
   });
 }
 

@@ -14,23 +14,17 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/rigid.h"
+#include "io/import/jump_limits.h"
 
 namespace ft {
 namespace {
 
-/// Leaving the expected way by D within a time t and being back to the expected velocity takes an acceleration of 4 D /
-/// t2. Above 80 g nobody is alive [m/s2].
-constexpr double k_acceleration = 800;
-/// The same about an axis [rad/s2].
+/// The same as least_jump() about an axis [rad/s2].
 constexpr double k_angular_acceleration = 1500;
-/// And what is shorter than this share of the body's size is no teleport at any frame rate: cloth survives it.
-constexpr double k_share_of_size = 0.25;
 constexpr double k_least_turn = std::numbers::pi / 3;  ///< rad
 /// A body that turns on the spot moves most of its points by more than this share of its size; a kick only seems to
 /// turn it.
 constexpr double k_turning_share = 0.03;
-/// Limbs accelerate more than bodies do.
-constexpr double k_limb = 1.6;
 /// The body's velocity before and after differs by this when the cut leads into another motion [m/s]; less is its
 /// acceleration.
 constexpr double k_other_motion = 2;
@@ -176,7 +170,7 @@ class Scan {
     if (begin > 0) compare(begin - 1);
     if (begin + length < moves_.size()) compare(begin + length);
     if (!std::isfinite(moved)) return false;  // nothing to compare with
-    return moved > std::max(k_share_of_size * size_, 0.25 * k_acceleration * time * time) ||
+    return moved > least_jump(size_, time) ||
            (turned > std::max(k_least_turn, 0.25 * k_angular_acceleration * time * time) &&
             moved > k_turning_share * size_);
   }
@@ -189,7 +183,7 @@ class Scan {
 
   void find_part_jumps(TeleportScan& out) const {
     const auto& parts = trajectory_.surface().parts;
-    const double least = k_limb * std::max(k_share_of_size * size_, 0.25 * k_acceleration * dt_ * dt_);
+    const double least = k_limb_jump * least_jump(size_, dt_);
     for (std::size_t i = 0; i + 1 < count_; ++i) {
       if (jumps_[i] || (i > 0 && jumps_[i - 1]) || (i + 2 < count_ && jumps_[i + 1])) continue;
       PartJump jump;

@@ -32,7 +32,8 @@ struct PrimarySpec {
       topology;           ///< geometry caches without faces (PC2): the OBJ with the same vertices; may be empty
   std::string clip;       ///< name of the clip; empty: the only one, or the first with a note
   double clip_start = 0;  ///< s into the clip at the shot's first frame
-  double speed = 1;       ///< playback speed [1], 0.01..100
+  std::optional<double> clip_bind;   ///< no key: what clip_start is of the whole shot, where only a part of it is baked
+  double speed = 1;                  ///< playback speed [1], 0.01..100
   std::optional<double> unit_scale;  ///< m per file unit, overrides what the file says
   std::string up;                    ///< "y", "z", "" = as the file says
   std::optional<double> source_fps;  ///< geometry caches: frames per second of the samples; default the shot's fps

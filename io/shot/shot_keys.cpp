@@ -31,7 +31,7 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
       {"clip", &PrimarySpec::clip, 0, 0, "", "", false, "take action",
        "Name of the clip; without it the only one, or the first"},
       {"clip_start", &PrimarySpec::clip_start, 0, 100'000, "s", "", false, "offset start",
-       "Time within the clip at the shot's first frame"},
+       "Time within the clip at the shot's first frame; garments for a geometry cache are modelled on its pose there"},
       {"speed", &PrimarySpec::speed, 0.01, 100, "1", "", false, "time_scale", "Playback speed; 2 is twice as fast"},
       {"unit_scale", &PrimarySpec::unit_scale, 1e-6, 1000, "m per file unit", "", false, "scale units unit",
        "Overrides the unit that the file states; 0.01 for centimetres"},

@@ -168,5 +168,19 @@ TEST(Faults, Character_of_the_wrong_size_is_refused_with_a_way_out) {
   EXPECT_EQ(bake(said, services, silent).exit_code, 0);
 }
 
+TEST(Faults, A_folder_where_the_caches_would_overwrite_inputs_is_refused_before_anything_is_written) {
+  FakeScene scene;
+  BakeOptions options = scene.options();
+  options.folder = scene.file("");
+  for (const bool dry : {true, false}) {
+    options.dry_run = dry;
+    const BakeResult result = scene.run(options);
+    EXPECT_EQ(result.exit_code, 2) << dry;
+    EXPECT_NE(text(result).find("sheet.obj, which it reads (cloth.sheet.mesh)"), std::string::npos) << text(result);
+  }
+  EXPECT_FALSE(std::filesystem::exists(scene.file("manifest.json")));
+  EXPECT_FALSE(std::filesystem::exists(scene.file(".state")));
+}
+
 }  // namespace
 }  // namespace ft::test

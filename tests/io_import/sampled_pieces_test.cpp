@@ -1,4 +1,5 @@
-// The parts of a geometry cache: limbs with joints between them, or eyes and nails that ride on one skin.
+// A geometry cache as a trajectory. Its parts: limbs with joints between them, or eyes and nails that ride on one skin.
+// Its way between samples where it jumps, and the pose that garments are modelled on.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -69,6 +70,48 @@ TEST(Pieces, That_ride_on_a_skin_do_not_fold) {
   EXPECT_FALSE(small_part([](int piece, double t, const Vec3& p) {
                  return piece == 0 ? p : (p + Vec3(0, 3 * t * (p.x() - 0.95), 0)).eval();
                }).folds);
+}
+
+/// Vertex by vertex, where the bars are at a time of the shot.
+std::vector<Vec3> at_time(const SampledTrajectory& trajectory, double time) {
+  std::vector<Vec3> out(at(trajectory.surface().vertex_count()));
+  trajectory.sample(time, out);
+  return out;
+}
+
+TEST(Samples, A_jump_does_not_swing_the_body_out_before_and_after_it) {
+  // 0.1 m in every interval, and 5 m to the side between samples 4 and 5.
+  const auto place = [](double t) { return Vec3(t, 0, t > 0.45 ? 5 : 0); };
+  const SampledTrajectory trajectory(two_bars([&](int, double t, const Vec3& p) { return (p + place(t)).eval(); }),
+                                     Mat3::Identity(), 1, {});
+  const std::vector<Vec3> start = at_time(trajectory, 0);
+  for (const double t : {0.33, 0.37, 0.4, 0.5, 0.53, 0.58}) {
+    const std::vector<Vec3> now = at_time(trajectory, t);
+    for (std::size_t v = 0; v < now.size(); ++v)
+      EXPECT_LT((now[v] - start[v] - place(t)).norm(), 1e-6) << t << " vertex " << v;
+  }
+}
+
+TEST(Samples, A_part_of_the_shot_begins_in_the_pose_of_the_whole) {
+  // The bar turns about its end and moves away; the part that is baked begins at 0.6 s.
+  const Move move = [](int, double t, const Vec3& p) { return (turned(2 * t, p) + Vec3(0, 0, t)).eval(); };
+  Playback playback;
+  playback.start = 0.6;
+  playback.bind = 0;
+  const SampledTrajectory whole(two_bars(move), Mat3::Identity(), 1, {});
+  const SampledTrajectory part(two_bars(move), Mat3::Identity(), 1, playback);
+  std::vector<Vec3> bind(at(part.surface().vertex_count())), expected = bind;
+  part.bind_pose(bind);
+  whole.bind_pose(expected);
+  EXPECT_EQ(bind, expected);
+  // The motion is rigid: where the garment is put, the body is, all through the pre-roll until it runs up.
+  const Eigen::Isometry3d placed = part.bind_to_start();
+  for (const double t : {-1.0, -0.9, -0.7, -0.45}) {
+    const std::vector<Vec3> now = at_time(part, t);
+    for (std::size_t v = 0; v < now.size(); ++v) EXPECT_LT((now[v] - placed * bind[v]).norm(), 1e-6) << t;
+  }
+  const std::vector<Vec3> first = at_time(part, 0), same = at_time(whole, 0.6);
+  for (std::size_t v = 0; v < first.size(); ++v) EXPECT_LT((first[v] - same[v]).norm(), 1e-9);
 }
 
 }  // namespace
