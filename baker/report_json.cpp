@@ -7,9 +7,10 @@
 namespace ft {
 namespace {
 
-constexpr std::array k_incident_kinds = {
-    Incident::Kind::k_crossing,     Incident::Kind::k_penetration, Incident::Kind::k_released, Incident::Kind::k_strain,
-    Incident::Kind::k_start_inside, Incident::Kind::k_rewind,      Incident::Kind::k_unsettled};
+constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing,     Incident::Kind::k_penetration,
+                                         Incident::Kind::k_released,     Incident::Kind::k_strain,
+                                         Incident::Kind::k_start_inside, Incident::Kind::k_rewind,
+                                         Incident::Kind::k_unsettled,    Incident::Kind::k_open_seam};
 
 /// The one list of a report's fields: visit(name, member).
 template <class Report, class Visit>
@@ -24,6 +25,9 @@ void for_each_field(Report& r, Visit&& visit) {
   visit("crossings_drawn", r.crossings_drawn);
   visit("smallest_gap", r.smallest_gap);
   visit("deepest_drawn", r.deepest_drawn);
+  visit("inside_body", r.inside_body);
+  visit("open_stitches", r.open_stitches);
+  visit("widest_seam", r.widest_seam);
   visit("strain_p99", r.strain_p99);
   visit("strain_max", r.strain_max);
   visit("strain_mean", r.strain_mean);
@@ -233,6 +237,9 @@ FrameReport merge(const FrameReport& a, const FrameReport& b) {
   out.crossings_drawn += b.crossings_drawn;
   out.smallest_gap = std::min(a.smallest_gap, b.smallest_gap);
   out.deepest_drawn = std::max(a.deepest_drawn, b.deepest_drawn);
+  out.inside_body += b.inside_body;
+  out.open_stitches += b.open_stitches;
+  out.widest_seam = std::max(a.widest_seam, b.widest_seam);
   out.strain_p99 = std::max(a.strain_p99, b.strain_p99);
   out.strain_max = std::max(a.strain_max, b.strain_max);
   out.strain_mean = std::max(a.strain_mean, b.strain_mean);

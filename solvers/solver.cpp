@@ -31,6 +31,7 @@ const char* name(Incident::Kind kind) {
     case Incident::Kind::k_start_inside: return "start inside";
     case Incident::Kind::k_rewind: return "rewind";
     case Incident::Kind::k_unsettled: return "unsettled";
+    case Incident::Kind::k_open_seam: return "open seam";
   }
   return "unknown";
 }

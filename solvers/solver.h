@@ -15,7 +15,16 @@ namespace ft {
 
 /// Something that a user should look at: where, when, how bad.
 struct Incident {
-  enum class Kind { k_crossing, k_penetration, k_released, k_strain, k_start_inside, k_rewind, k_unsettled };
+  enum class Kind {
+    k_crossing,
+    k_penetration,
+    k_released,
+    k_strain,
+    k_start_inside,
+    k_rewind,
+    k_unsettled,
+    k_open_seam
+  };
   Kind kind = Kind::k_crossing;
   int frame = 0;
   std::string system;         ///< name of the garment
@@ -63,6 +72,9 @@ struct FrameReport {
   int crossings_drawn = 0;   ///< edge-triangle crossings with the drawn body
   double smallest_gap = 0;   ///< m, to the feasible collider and among cloths; the contact radius if nothing is nearer
   double deepest_drawn = 0;  ///< m, deepest cloth vertex inside the drawn body
+  int inside_body = 0;       ///< vertices on the wrong side of the feasible collider's surface, not let through it
+  int open_stitches = 0;     ///< stitches that are open after their seams should have closed
+  double widest_seam = 0;    ///< m, of those
   double strain_p99 = 0, strain_max = 0, strain_mean = 0;  ///< edge strain, 1
   double kinetic_energy = 0;                               ///< J
   int released_vertices = 0;  ///< vertices that were let through a part this frame because there was no room

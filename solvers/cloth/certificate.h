@@ -21,9 +21,9 @@ class Certificate {
   /// tangled cloth explains.
   int certify(std::span<const Vec3> body, ClothMotion& motion, FrameReport& report);
 
-  /// Strain, energy, and what is inside the drawn body [m]; then sorts the incidents, worst first, and keeps at
-  /// most 16.
-  void describe(std::span<const Vec3> drawn, const ClothMotion& motion, FrameReport& report);
+  /// Strain, energy, seams that are open at that time [s] and should not be, and what is inside the drawn body [m], or
+  /// inside that of the last certify(); then sorts the incidents, worst first, and keeps at most 16.
+  void describe(double time, std::span<const Vec3> drawn, const ClothMotion& motion, FrameReport& report);
 
  private:
   const ClothModel& model_;

@@ -231,6 +231,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   for (const auto& energy : model->energies) stencils.push_back(energy->stencils());
   model->pattern = make_pattern(model->vertex_count(), stencils);
   model->attachments = std::move(model->topology->attachments);
+  model->seams = std::move(model->topology->seams);
   model->topology.reset();
   if (s.primary) {
     CHECK(s.poses == nullptr || &s.poses->body() == s.primary.get());

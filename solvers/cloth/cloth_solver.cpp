@@ -275,7 +275,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
-  certificate_.describe(body_.end().drawn, motion, report);
+  certificate_.describe(frame.t1, body_.end().drawn, motion, report);
   report.profile.certificate += elapsed(certificate);
   store(state, motion);
   state.frame = frame.number;
