@@ -166,6 +166,32 @@ TEST(Sewing, Two_panels_become_one_that_falls_whole) {
   EXPECT_LT(height, 0.4);  // then it falls
 }
 
+TEST(Sewing, Seams_that_do_not_close_are_named_once_they_should_have) {
+  ClothSetup setup = two_panels();
+  ClothPin nailed;
+  nailed.to_world = true;
+  nailed.stiffness = 1e7;
+  nailed.max_pull = 1e7;
+  for (int v = 0; v < setup.garments[0].mesh.vertex_count(); ++v) nailed.vertices.push_back(v);
+  setup.garments[0].pins.push_back(nailed);
+  auto made = make_cloth_solver(std::move(setup));
+  ASSERT_TRUE(made);
+  State state = (*made)->initial_state();
+  for (int f = 0; f < 30; ++f) {
+    const FrameReport r = (*made)->advance_frame(state);
+    if (f < 12) {
+      EXPECT_EQ(r.open_stitches, 0) << f;
+    }
+    if (f < 26) continue;
+    EXPECT_EQ(r.open_stitches, 13) << f;
+    EXPECT_GT(r.widest_seam, 0.05) << f;
+    ASSERT_FALSE(r.incidents.empty()) << f;
+    EXPECT_EQ(r.incidents[0].kind, Incident::Kind::k_open_seam);
+    EXPECT_EQ(r.incidents[0].depth, r.widest_seam);
+    EXPECT_EQ(r.incidents[0].system, "bib");
+  }
+}
+
 TEST(Sewing, Is_the_same_when_it_is_resumed_midway_and_for_any_number_of_threads) {
   Hash128 first{};
   for (const int threads : {1, 2, 3}) {
