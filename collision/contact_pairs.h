@@ -10,6 +10,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
+#include "collision/vertex_box.h"
 
 namespace ft {
 
@@ -30,16 +31,6 @@ struct ContactPairs {
   std::vector<Stencil> edge_edge;
 };
 
-/// Single-precision box, outward-rounded, of where one vertex may be during the interval that the pairs must cover.
-struct VertexBox {
-  std::array<float, 3> lo, hi;
-  /// Box of the segment a..b grown by r on every side, rounded outwards.
-  static VertexBox swept(const Vec3& a, const Vec3& b, double r);
-  void include(const VertexBox& other) {
-    for (std::size_t k = 0; k < 3; ++k) lo[k] = std::min(lo[k], other.lo[k]), hi[k] = std::max(hi[k], other.hi[k]);
-  }
-};
-
 class PairFinder {
  public:
   /// Triangles index the common numbering; collider_triangles' indices are all >= cloth_vertex_count. A triangle with
@@ -49,18 +40,22 @@ class PairFinder {
   ~PairFinder();
   PairFinder(PairFinder&&) noexcept;
 
+  /// Arranges the trees for places like these (per vertex [m]), once: calls after the first do nothing. Without it they
+  /// are arranged for the boxes of the first search, which hardly differ where they are endless. No result hangs on it.
+  void arrange(std::span<const Vec3> x);
+
   /// Of all searches from now on: cloth and cloth are a pair only where their boxes overlap by as much, what the boxes
-  /// have for the collider's sake [m], >= 0; 0 at first.
-  void set_self_margin(double self_margin);
+  /// have for the collider's sake; nothing at first.
+  void set_self_margin(const BoxMargin& self_margin);
 
   /// Patches: sets of cloth triangles, for `skipped`. Before the first search.
   void set_patches(const Adjacency& members);
 
+  /// boxes: of one frame; they must stay where they are until the search is over.
   /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,
   /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
-  /// the list. Pairs that share a vertex are left out. Collider vertices with an inverted box (lo > hi) take part in
-  /// nothing. skipped (per patch; empty: none): where it is not 0, pairs of features of two triangles in the patch are
-  /// left out.
+  /// the list. Pairs that share a vertex are left out. Vertices that are VertexBox::nowhere() take part in nothing.
+  /// skipped (per patch; empty: none): where it is not 0, pairs of features of two triangles in the patch are left out.
   void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped = {});
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
@@ -71,6 +66,8 @@ class PairFinder {
                     std::span<const char> skipped = {});
 
  private:
+  template <class Place>
+  void build_trees(Place&& place_of);
   void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
               std::span<const char> skipped, ContactPairs& out);
 

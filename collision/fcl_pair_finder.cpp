@@ -2,9 +2,9 @@
 // recursion: FCL's virtual traversal takes 2.4 times as long. A pair of triangles whose boxes overlap is reduced to
 // features at once: every vertex and every edge is owned by one triangle, so each pair of features comes up once.
 //
-// Caution: the trees are built from the first boxes seen, since only then is there a place for every vertex. They
-// decide how long a search takes and nothing else: the result is complete for any tree and sorted, so it depends on
-// boxes alone.
+// Caution: the trees are built from the first places or boxes seen, since only then is there a place for every vertex.
+// They decide how long a search takes and nothing else: the result is complete for any tree and sorted, so it depends
+// on boxes alone.
 #include <fcl/geometry/bvh/BVH_model.h>
 
 #include <algorithm>
@@ -22,8 +22,7 @@ using FclBox = fcl::AABB<float>;
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
-constexpr std::size_t k_limb = 1024;    ///< most nodes of a sub-tree that is refitted as one
-constexpr double k_sure_margin = 0.98;  ///< of a margin: rounding of the boxes, 1e-7 of a place, is less than the rest
+constexpr std::size_t k_limb = 1024;  ///< most nodes of a sub-tree that is refitted as one
 
 /// The tree of one surface; leaves are its elements.
 class Tree {
@@ -36,9 +35,9 @@ class Tree {
   /// Per node: the patches that everything below it is in.
   const NodePatches& patches() const { return patches_; }
 
-  /// patches_of: per element, ascending; no rows: none.
-  void build(std::span<const PairElement> elements, std::span<const VertexBox> vertex_boxes,
-             const Adjacency& patches_of) {
+  /// place_of(vertex): in any unit. patches_of: per element, ascending; no rows: none.
+  template <class Place>
+  void build(std::span<const PairElement> elements, Place&& place_of, const Adjacency& patches_of) {
     std::vector<fcl::Vector3<float>> points;
     std::vector<fcl::Triangle> faces;
     points.reserve(3 * elements.size());
@@ -48,12 +47,8 @@ class Tree {
       for (const int v : e.v) {
         first_vertex_ = std::min(first_vertex_, v);
         end_vertex_ = std::max(end_vertex_, v + 1);
-        const VertexBox& b = vertex_boxes[at(v)];
-        fcl::Vector3<float>& p = points.emplace_back();
-        for (int i = 0; i < 3; ++i) {
-          const float middle = 0.5f * (b.lo[at(i)] + b.hi[at(i)]);
-          p[i] = std::isfinite(middle) ? middle : 0.0f;  // who is nowhere has no middle
-        }
+        const fcl::Vector3<float> p = place_of(v);
+        points.push_back(p.allFinite() ? p : fcl::Vector3<float>::Zero());
       }
       faces.emplace_back(first, first + 1, first + 2);
     }
@@ -68,16 +63,16 @@ class Tree {
     std::vector<int> element_of_leaf;
     for (int k = 0; k < model.getNumBVs(); ++k) {
       const auto& node = model.getBV(k);
-      nodes_.push_back({{}, node.first_child});
-      if (node.first_child >= 0) continue;
-      nodes_.back().first_child = -1 - static_cast<int>(elements_.size());
+      const bool leaf = node.first_child < 0;
+      nodes_.emplace_back(leaf ? -1 - static_cast<int>(elements_.size()) : node.first_child);
+      if (!leaf) continue;
       element_of_leaf.push_back(-(node.first_child + 1));
       elements_.push_back(elements[at(element_of_leaf.back())]);
     }
     share_out();
     if (!patches_of.items.empty())
       patches_.build(
-          nodes_.size(), [&](std::size_t k) { return nodes_[k].first_child; },
+          nodes_.size(), [&](std::size_t k) { return nodes_[k].first_child(); },
           [&](int leaf) { return patches_of.row(element_of_leaf[at(leaf)]); });
   }
 
@@ -111,15 +106,14 @@ class Tree {
     for (std::size_t i = end; i-- > begin;) {
       const std::size_t k = at(in_order_[i]);
       PairNode& node = nodes_[k];
-      const bool leaf = is_leaf(node);
-      const std::size_t below = leaf ? leaf_element(node) : at(node.first_child);
+      const bool leaf = node.is_leaf();
+      const std::size_t below = leaf ? node.element() : at(node.first_child());
       if (some) {
         marks_[k] = leaf ? static_cast<char>(is_changed(elements_[below], changed))
                          : static_cast<char>(marks_[below] | marks_[below + 1]);
         if (marks_[k] == 0) continue;
       }
-      const BoxLanes box = leaf ? features.box(elements_[below]) : lanes(nodes_[below]).join(lanes(nodes_[below + 1]));
-      box.store(node.box);
+      node.set_box(leaf ? features.box(elements_[below]) : nodes_[below].box().join(nodes_[below + 1].box()));
     }
   }
 
@@ -127,13 +121,13 @@ class Tree {
   void share_out() {
     std::vector<std::size_t> below(nodes_.size(), 1);
     for (std::size_t k = nodes_.size(); k-- > 0;)
-      if (!is_leaf(nodes_[k])) below[k] += below[at(nodes_[k].first_child)] + below[at(nodes_[k].first_child) + 1];
+      if (!nodes_[k].is_leaf()) below[k] += below[at(nodes_[k].first_child())] + below[at(nodes_[k].first_child()) + 1];
     std::vector<int> limb(nodes_.size(), 0);  // 0: trunk
     int count = 1;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      if (limb[k] == 0 && (below[k] <= k_limb || is_leaf(nodes_[k]))) limb[k] = count++;
-      if (is_leaf(nodes_[k]) || limb[k] == 0) continue;
-      limb[at(nodes_[k].first_child)] = limb[at(nodes_[k].first_child) + 1] = limb[k];
+      if (limb[k] == 0 && (below[k] <= k_limb || nodes_[k].is_leaf())) limb[k] = count++;
+      if (nodes_[k].is_leaf() || limb[k] == 0) continue;
+      limb[at(nodes_[k].first_child())] = limb[at(nodes_[k].first_child()) + 1] = limb[k];
     }
     limbs_.assign(at(count) + 1, 0);
     for (const int l : limb) ++limbs_[at(l) + 1];
@@ -170,7 +164,7 @@ struct PairFinder::Impl {
   Adjacency patches_of;  ///< per cloth triangle
   bool want_edges = true;
   std::span<const char> skipped;  ///< of the search at hand
-  float self_margin = 0;
+  BoxMargin self_margin{};
   Tree cloth, collider;
 
   // Scratch, kept from search to search.
@@ -200,13 +194,14 @@ void PairFinder::Impl::split_tasks(bool self) {
   tasks.clear();
   if (!cloth.built()) return;
   const PairNode* ta = cloth.nodes();
+  const auto overlap = [](const PairNode& a, const PairNode& b) { return a.box().overlaps(b.box()); };
   if (collider.built() && overlap(ta[0], collider.nodes()[0])) tasks.push_back({0, 0, false});
   if (self) tasks.push_back({0, -1, true});
   for (bool more = true; more && tasks.size() < k_task_goal;) {
     more = false;
     next_tasks.clear();
     for (const Task& task : tasks) {
-      const int i = ta[task.a].first_child;
+      const int i = ta[task.a].first_child();
       if (task.b < 0) {
         if (i < 0) continue;
         next_tasks.push_back({i, -1, true});
@@ -216,7 +211,7 @@ void PairFinder::Impl::split_tasks(bool self) {
         continue;
       }
       const PairNode* tb = task.self ? ta : collider.nodes();
-      const int j = tb[task.b].first_child;
+      const int j = tb[task.b].first_child();
       if (i < 0 || j < 0) {
         next_tasks.push_back(task);
         continue;
@@ -236,20 +231,16 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, FoundPair
   out.edge_edge.clear();
   const Tree& other = task.self ? cloth : collider;
   const NodePatches* patches = task.self && !skipped.empty() && cloth.patches().built() ? &cloth.patches() : nullptr;
-  const PairWalk<k_some> walk{features,
-                              cloth.nodes(),
-                              other.nodes(),
-                              cloth.marks(),
-                              other.marks(),
-                              changed,
-                              cloth.elements(),
-                              other.elements(),
-                              want_edges,
-                              task.self ? self_margin : 0,
-                              patches,
-                              skipped,
-                              out};
-  task.b < 0 ? walk.within(task.a) : walk.between(task.a, task.b);
+  const auto run = [&]<bool k_self>() {
+    const PairWalk<k_some, k_self> walk{
+        features,         cloth.nodes(), other.nodes(), cloth.marks(), other.marks(), changed, cloth.elements(),
+        other.elements(), want_edges,    self_margin,   patches,       skipped,       out};
+    if constexpr (k_self) {
+      if (task.b < 0) return walk.within(task.a);
+    }
+    walk.between(task.a, task.b);
+  };
+  task.self ? run.template operator()<true>() : run.template operator()<false>();
 }
 
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
@@ -258,9 +249,8 @@ PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_t
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 
-void PairFinder::set_self_margin(double self_margin) {
-  CHECK(self_margin >= 0);
-  impl_->self_margin = static_cast<float>(k_sure_margin * self_margin);
+void PairFinder::set_self_margin(const BoxMargin& self_margin) {
+  impl_->self_margin = self_margin;
 }
 
 void PairFinder::set_patches(const Adjacency& members) {
@@ -274,6 +264,19 @@ void PairFinder::set_patches(const Adjacency& members) {
   std::vector<int> next(start.begin(), start.end() - 1);
   for (int p = 0; p < members.row_count(); ++p)
     for (const int t : members.row(p)) m.patches_of.items[at(next[at(t)]++)] = p;
+}
+
+template <class Place>
+void PairFinder::build_trees(Place&& place_of) {
+  Impl& m = *impl_;
+  if (!m.features.cloth.empty()) m.cloth.build(m.features.cloth, place_of, m.patches_of);
+  if (!m.features.collider.empty()) m.collider.build(m.features.collider, place_of, {});
+  m.features.cloth = m.features.collider = {};  // the trees have them
+}
+
+void PairFinder::arrange(std::span<const Vec3> x) {
+  CHECK(x.size() == at(impl_->features.vertex_count));
+  build_trees([&](int v) -> fcl::Vector3<float> { return x[at(v)].cast<float>(); });
 }
 
 void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped) {
@@ -297,10 +300,14 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.want_edges = edges;
   m.skipped = skipped;
   const PairFeatures& features = m.features;
-  m.features.set_boxes(boxes, changed);
-  if (!m.cloth.built() && !features.cloth.empty()) m.cloth.build(features.cloth, features.vertex_boxes, m.patches_of);
-  if (!m.collider.built() && !features.collider.empty()) m.collider.build(features.collider, features.vertex_boxes, {});
-  m.features.cloth = m.features.collider = {};  // the trees have them
+  m.features.set_boxes(boxes);
+  build_trees([&](int v) -> fcl::Vector3<float> {
+    const VertexBox& box = boxes[at(v)];
+    fcl::Vector3<float> middle;
+    for (int k = 0; k < 3; ++k)
+      middle[k] = 0.5f * (static_cast<float>(box.lo[at(k)]) - static_cast<float>(box.minus_hi[at(k)]));
+    return middle;
+  });
   m.refit(changed);
 
   m.split_tasks(self);

@@ -11,12 +11,6 @@ namespace ft {
 namespace {
 
 constexpr std::size_t k_block = 4096;
-constexpr float k_infinity = std::numeric_limits<float>::infinity();
-constexpr VertexBox k_nowhere{{k_infinity, k_infinity, k_infinity}, {-k_infinity, -k_infinity, -k_infinity}};
-
-inline bool valid(const VertexBox& b) {
-  return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
-}
 
 bool is_cord(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -28,17 +22,6 @@ std::size_t rank(const std::vector<T>& sorted, const T& value) {
 }
 
 }  // namespace
-
-VertexBox VertexBox::swept(const Vec3& a, const Vec3& b, double r) {
-  VertexBox out;
-  for (int i = 0; i < 3; ++i) {
-    // 1.2e-7 of a float is more than its last bit, which covers the rounding of the line before as well.
-    const auto lo = static_cast<float>(std::min(a[i], b[i]) - r), hi = static_cast<float>(std::max(a[i], b[i]) + r);
-    out.lo[at(i)] = lo - std::abs(lo) * 1.2e-7f - 1e-37f;
-    out.hi[at(i)] = hi + std::abs(hi) * 1.2e-7f + 1e-37f;
-  }
-  return out;
-}
 
 PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                            std::span<const Triangle> collider_triangles)
@@ -84,26 +67,14 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
   }
 }
 
-void PairFeatures::set_boxes(std::span<const VertexBox> boxes, std::span<const char> changed) {
+void PairFeatures::set_boxes(std::span<const VertexBox> boxes) {
   CHECK(boxes.size() == at(vertex_count));
-  CHECK(changed.empty() || (changed.size() == boxes.size() && vertex_boxes.size() == boxes.size()));
-  vertex_boxes.resize(boxes.size());
-  const auto set = [&](std::size_t i) {
-    const bool is_there = valid(boxes[i]);
-    vertex_boxes[i] = is_there ? boxes[i] : k_nowhere;
-    return is_there;
-  };
-  all_present = parallel_sum(boxes.size(), k_block, 0,
-                             [&](std::size_t begin, std::size_t end) {
-                               int nowhere = 0;
-                               if (changed.empty())
-                                 for (std::size_t i = begin; i < end; ++i) nowhere += !set(i);
-                               else
-                                 for (std::size_t i = begin; i < end; ++i)
-                                   if (changed[i] != 0) nowhere += !set(i);
-                               return nowhere;
-                             }) == 0 &&
-                (changed.empty() || all_present);
+  vertex_boxes = boxes;
+  all_present = parallel_sum(boxes.size(), k_block, 0, [&](std::size_t begin, std::size_t end) {
+                  int nowhere = 0;
+                  for (std::size_t i = begin; i < end; ++i) nowhere += boxes[i].is_nowhere();
+                  return nowhere;
+                }) == 0;
 }
 
 }  // namespace ft

@@ -49,20 +49,9 @@ inline double box_gap_squared(PairKind kind, const std::array<Vec3, 4>& x) {
   return (lo_a - hi_b).cwiseMax(lo_b - hi_a).cwiseMax(0.0).squaredNorm();
 }
 
-/// True only where the features are at least `reach` [m] apart, seen along the line between their centres: finds most
-/// of what box_gap_squared() does not, for slanted features.
-inline bool apart_between_centres(PairKind kind, const std::array<Vec3, 4>& x, double reach) {
-  if (kind == PairKind::k_vertex_face) {
-    const Vec3 centre = (1.0 / 3) * (x[1] + x[2] + x[3]), line = x[0] - centre;
-    const double length2 = line.squaredNorm();
-    const double to_face = std::max({line.dot(x[1] - centre), line.dot(x[2] - centre), line.dot(x[3] - centre)});
-    const double gap = length2 - to_face;
-    return gap > 0 && gap * gap >= reach * reach * length2;
-  }
-  const Vec3 line = (x[0] + x[1]) - (x[2] + x[3]);  // twice as long, and so are the edges here
-  const double length2 = line.squaredNorm();
-  const double gap = length2 - std::abs(line.dot(x[1] - x[0])) - std::abs(line.dot(x[3] - x[2]));
-  return gap > 0 && gap * gap >= 4 * reach * reach * length2;
+/// The normal of a face, or across both edges; not of unit length, zero where there is none.
+inline Vec3 flat_normal(PairKind kind, const std::array<Vec3, 4>& x) {
+  return kind == PairKind::k_vertex_face ? (x[2] - x[1]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[3] - x[2]);
 }
 
 /// Largest motion of a vertex of one feature relative to a vertex of the other, for displacements d [m].

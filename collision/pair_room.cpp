@@ -31,7 +31,7 @@ PairRoom pair_room(PairKind kind, const std::array<Vec3, 4>& x) {
 }
 
 PairRoom flat_room(PairKind kind, const std::array<Vec3, 4>& x) {
-  Vec3 flat = kind == PairKind::k_vertex_face ? (x[2] - x[1]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[3] - x[2]);
+  Vec3 flat = flat_normal(kind, x);
   const double length = flat.norm();
   if (!(length > 1e-30)) return {Vec3::Zero(), {}, 0};
   flat /= flat.dot(x[0] - x[3]) < 0 ? -length : length;

@@ -11,23 +11,26 @@
 
 namespace ft {
 
-/// A node of a tree over the triangles of one surface. Children lie next to each other, behind their parents.
-struct alignas(32) PairNode {
-  VertexBox box;
-  int first_child;  ///< negative: a leaf, of element -1 - first_child
+/// A node of a tree over the triangles of one surface: a box, whose eighth lanes are the number of its first child.
+/// Children lie next to each other, behind their parents; a negative one is a leaf, of element -1 - first_child().
+class PairNode {
+ public:
+  explicit PairNode(int first_child) : box_(VertexBox::nowhere()) {
+    box_.lo[7] = static_cast<std::int16_t>(first_child & 0xffff);
+    box_.minus_hi[7] = static_cast<std::int16_t>(first_child >> 16);
+  }
+  int first_child() const {
+    return static_cast<int>(static_cast<std::uint16_t>(box_.lo[7])) | static_cast<int>(box_.minus_hi[7]) << 16;
+  }
+  bool is_leaf() const { return box_.minus_hi[7] < 0; }
+  std::size_t element() const { return static_cast<std::size_t>(-1 - first_child()); }
+  BoxLanes box() const { return BoxLanes::load(box_); }
+  void set_box(const BoxLanes& box) { box.store_axes(box_); }
+
+ private:
+  VertexBox box_;
 };
-inline bool is_leaf(const PairNode& node) {
-  return node.first_child < 0;
-}
-inline std::size_t leaf_element(const PairNode& node) {
-  return static_cast<std::size_t>(-1 - node.first_child);
-}
-inline BoxLanes lanes(const PairNode& node) {
-  return BoxLanes::load(node.box);
-}
-inline bool overlap(const PairNode& a, const PairNode& b) {
-  return lanes(a).overlaps(lanes(b));
-}
+static_assert(sizeof(PairNode) == 32);
 
 /// Keys of feature pairs (pair_sort.h), by rank.
 struct FoundPairs {
@@ -35,8 +38,8 @@ struct FoundPairs {
 };
 
 /// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap. k_some: only those
-/// with a changed vertex.
-template <bool k_some>
+/// with a changed vertex. k_self: both trees are one, and there may be a margin and patches.
+template <bool k_some, bool k_self>
 struct PairWalk {
   const PairFeatures& features;
   const PairNode *ta, *tb;
@@ -44,21 +47,22 @@ struct PairWalk {
   const char* changed;  ///< per vertex
   const PairElement *ea, *eb;
   bool want_edges;
-  float margin;                ///< boxes of ta are taken for smaller by so much
+  BoxMargin margin;            ///< boxes of ta are taken for smaller by so much
   const NodePatches* patches;  ///< of ta and tb; null: none
   std::span<const char> skipped;
   FoundPairs& out;
 
-  BoxLanes of_a(const PairNode& node) const { return lanes(node).shrunk(margin); }
+  BoxLanes smaller(const BoxLanes& box) const { return k_self ? box.shrunk(margin) : box; }
 
-  bool meets(int a, int b) const {
+  [[gnu::always_inline]] bool meets(int a, int b) const {
     if (k_some && !(ma[a] | mb[b])) return false;
-    return of_a(ta[a]).overlaps(lanes(tb[b])) && !(patches && patches->any_common(a, b, skipped));
+    if (!smaller(ta[a].box()).overlaps(tb[b].box())) return false;
+    return !k_self || !patches || !patches->any_common(a, b, skipped);
   }
 
   /// All pairs below node n of ta, which is tb.
   void within(int n) const {
-    const int i = ta[n].first_child;
+    const int i = ta[n].first_child();
     if (i < 0 || (k_some && !ma[n]) || (patches && patches->any(n, skipped))) return;
     within(i);
     within(i + 1);
@@ -69,9 +73,9 @@ struct PairWalk {
   void between(int a, int b) const {
     const PairNode& na = ta[a];
     const PairNode& nb = tb[b];
-    const int i = na.first_child, j = nb.first_child;
+    const int i = na.first_child(), j = nb.first_child();
     if (i < 0 && j < 0) {
-      meet(ea[leaf_element(na)], of_a(na), eb[leaf_element(nb)], lanes(nb));
+      meet(ea[na.element()], eb[nb.element()]);
     } else if (j < 0) {
       if (meets(i, b)) between(i, b);
       if (meets(i + 1, b)) between(i + 1, b);
@@ -87,19 +91,21 @@ struct PairWalk {
   }
 
   /// The feature pairs that a pair of triangles is responsible for.
-  void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b, const BoxLanes& box_b) const {
-    vertices_against_face(a, b, box_b, margin);
-    vertices_against_face(b, a, box_a, 0);
+  void meet(const PairElement& a, const PairElement& b) const {
+    const BoxLanes box_a = smaller(features.box(a)), box_b = features.box(b);
+    for (int i = 0; i < a.owned_vertex_count; ++i)
+      vertex_against_face(a.v[at(i)], smaller(features.box(a.v[at(i)])), b, box_b);
+    for (int i = 0; i < b.owned_vertex_count; ++i) vertex_against_face(b.v[at(i)], features.box(b.v[at(i)]), a, box_a);
     if (!want_edges || a.owned_edge_count == 0) return;
     for (int j = 0; j < b.owned_edge_count; ++j) {
       const int rb = b.owned_edge[at(j)];
       const Edge& vb = features.edges[at(rb)];
-      const BoxLanes box = features.box(vb[0]).join(features.box(vb[1]));
+      const BoxLanes box = features.box(vb);
       if (!box.overlaps(box_a) || !features.present(vb[0]) || !features.present(vb[1])) continue;
       for (int i = 0; i < a.owned_edge_count; ++i) {
         const int ra = a.owned_edge[at(i)];
         const Edge& va = features.edges[at(ra)];
-        if (!box.overlaps(features.box(va[0]).join(features.box(va[1])).shrunk(margin))) continue;
+        if (!smaller(features.box(va)).overlaps(box)) continue;
         if (va[0] == vb[0] || va[0] == vb[1] || va[1] == vb[0] || va[1] == vb[1]) continue;
         if (!features.present(va[0]) || !features.present(va[1])) continue;
         if (k_some && !(changed[va[0]] | changed[va[1]] | changed[vb[0]] | changed[vb[1]])) continue;
@@ -108,17 +114,11 @@ struct PairWalk {
     }
   }
 
-  /// Of the two, one has the margin taken off: p's vertices, or the face's box already.
-  void vertices_against_face(const PairElement& p, const PairElement& f, const BoxLanes& face_box,
-                             float own_margin) const {
-    if (f.face < 0) return;
-    for (int i = 0; i < p.owned_vertex_count; ++i) {
-      const int v = p.v[at(i)];
-      if (!features.box(v).shrunk(own_margin).overlaps(face_box) || v == f.v[0] || v == f.v[1] || v == f.v[2]) continue;
-      if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) continue;
-      if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) continue;
-      out.vertex_face.push_back(pair_key(v, f.face));
-    }
+  void vertex_against_face(int v, const BoxLanes& box, const PairElement& f, const BoxLanes& of_face) const {
+    if (!box.overlaps(of_face) || f.face < 0 || v == f.v[0] || v == f.v[1] || v == f.v[2]) return;
+    if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) return;
+    if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) return;
+    out.vertex_face.push_back(pair_key(v, f.face));
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "baker/core/parallel.h"
 #include "collision/ccd_li2021.h"
+#include "collision/pair_way.h"
 #include "solvers/cloth/carry_field.h"
 
 namespace ft {
@@ -26,6 +27,8 @@ constexpr double k_slack_least = 3e-4;  ///< m
 /// All but the share of the way is at most so many typical edges of the garment: pairs of fine cloth in folds grow with
 /// the cube of it, and whoever needs more asks for it.
 constexpr double k_slack_edges = 0.1;
+/// Pairs that keep this distance on their carried way need no CCD [m].
+constexpr double k_clear = 1e-4;
 /// How far pairs are looked for, typically, in contact radii: patches of flat cloth are cut for that.
 constexpr double k_patch_reach = 1;
 
@@ -63,7 +66,6 @@ Candidates::Candidates(const ClothModel& model)
   for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
   self_radius_ = largest(model.contact.self_radius);
   finder_.set_patches(patches_.members());
-  finder_.set_self_margin(std::max(0.0, radius_ - self_radius_));
   for (const double edge : model.typical_edge) most_spare_.push_back(k_slack_edges * edge);
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }
@@ -96,6 +98,7 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
 void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   near_body_.vertex_face.clear();
+  finder_.arrange(piece.start);
   fastest_ = 0;
   if (nb == 0) return;
   const Vec3 mean = h * mean_of(cloth.v);
@@ -115,11 +118,12 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
   });
   range_ = 2 * radius_ + std::min(fastest_, k_farthest_range);
   boxes_.resize(nc + nb);
+  box_frame_ = frame_around(cloth.x, {}, range_);
   // A surface matters from as far away as it comes itself; what stands still with the cloth only where it is near.
   parallel_for(nc + nb, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double way = i < nc ? 0 : std::min(way_of(i - nc), k_farthest_range);
-      boxes_[i] = VertexBox::swept(piece.start[i], piece.start[i], radius_ + way);
+      boxes_[i] = box_frame_.swept(piece.start[i], piece.start[i], radius_ + way);
     }
   });
   finder_.find_vertex_face(boxes_, false, found_);
@@ -170,8 +174,8 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
 
 void Candidates::set_box(std::size_t i, const ClothMotion& cloth, const PieceMotion& piece) {
   const Vec3 centre = cloth.x[i] + piece.centre[i] - frame_;
-  boxes_[i] = VertexBox::swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame_, 0.5 * radius_);
-  boxes_[i].include(VertexBox::swept(centre, centre, piece.slack[i] + 0.5 * radius_));
+  boxes_[i] = box_frame_.swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame_, 0.5 * radius_);
+  boxes_[i].include(box_frame_.swept(centre, centre, piece.slack[i] + 0.5 * radius_));
 }
 
 /// Which patches of cloth are flat in the whole of what this piece may do, as far as is known.
@@ -194,6 +198,8 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   piece.slack.resize(nc);
   piece.centre.resize(nc + nb);
   boxes_.resize(nc + nb);
+  box_frame_ = frame_around(cloth.x, inertia_, radius_);
+  finder_.set_self_margin(box_frame_.margin(std::max(0.0, radius_ - self_radius_)));
   parallel_for(nc, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) place(i, cloth, piece);
   });
@@ -201,7 +207,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   parallel_for(nb, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& start = piece.start[nc + i];
-      boxes_[nc + i] = VertexBox::swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
+      boxes_[nc + i] = box_frame_.swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
     }
   });
   if (any_self_) begin_flat(cloth, piece);
@@ -279,33 +285,29 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
 /// first time of contact.
 double Candidates::filter(PairKind kind, const ClothMotion& cloth, const PieceMotion& piece,
                           std::vector<Stencil>& pairs, std::vector<Stencil>* blocked) {
-  const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
+  const VertexWays ways{piece.start, piece.all, piece.centre, piece.slack};
   fates_.assign(pairs.size(), Fate::k_dropped);
   earliest_.assign(block_count(pairs.size(), k_block), 1.0);
   parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
     double first = 1;
     for (std::size_t p = begin; p < end; ++p) {
-      const std::array<Vec3, 4> x = gather(piece.start, pairs[p]), d = gather(piece.all, pairs[p]);
-      const double relative = largest_relative_motion(kind, d);
-      double slack_a = 0, slack_b = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const int v = pairs[p].v[k];
-        double& side = k < split ? slack_a : slack_b;
-        if (v < model_.vertex_count()) side = std::max(side, piece.slack[at(v)]);
-      }
-      const bool self = pairs[p].v[split] < model_.vertex_count() && pairs[p].v[0] < model_.vertex_count();
-      const double radius = self ? self_radius_ : radius_;
-      const double reach =
-          std::max(relative, largest_relative_motion(kind, gather(piece.centre, pairs[p])) + slack_a + slack_b) +
-          radius;
-      if (apart_between_centres(kind, x, reach) || box_gap_squared(kind, x) >= reach * reach) continue;
-      if (!counts(cloth, kind, pairs[p])) continue;
-      const PairGeometry g = kind == PairKind::k_vertex_face ? vertex_face_geometry(x[0], x[1], x[2], x[3])
-                                                             : edge_edge_geometry(x[0], x[1], x[2], x[3]);
-      if (g.distance >= reach) continue;
+      const Stencil& pair = pairs[p];
+      const bool self = pair.v[0] < model_.vertex_count() && pair.v[3] < model_.vertex_count();
+      const PairWay way(kind, pair, ways, self ? self_radius_ : radius_, k_clear);
+      auto verdict = PairWay::Verdict::k_open;
+      const auto is_apart = [&](const Vec3& normal) {
+        verdict = std::max(verdict, way.judge(normal));
+        return verdict == PairWay::Verdict::k_apart;
+      };
+      if (is_apart(way.between_centres()) || is_apart(way.flat()) || is_apart(way.between_last_centres()) ||
+          !counts(cloth, kind, pair))
+        continue;
+      const std::array<Vec3, 4> x = gather(piece.start, pair), d = gather(piece.all, pair);
+      std::array<Vec3, 4> carried;
+      for (std::size_t k = 0; k < 4; ++k) carried[k] = x[k] + d[k];
+      if (is_apart(pair_geometry(kind, carried).normal)) continue;
       fates_[p] = Fate::k_kept;
-      if (blocked == nullptr) continue;
-      if (g.distance * 0.9 > relative && g.distance > 1e-4) continue;  // cannot meet: no CCD needed
+      if (blocked == nullptr || verdict == PairWay::Verdict::k_clear) continue;
       const double touch = ccd_time(kind, x, d);
       if (touch < 1) fates_[p] = Fate::k_kept_and_blocked;
       first = std::min(first, touch);

@@ -93,6 +93,7 @@ class Candidates {
   double h_ = 0;               ///< s
   Vec3 frame_ = Vec3::Zero();  ///< mean carry: boxes move with it [m]
   std::vector<char> changed_;  ///< per vertex: what renew() has to look at
+  BoxFrame box_frame_;
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;
   PairRuns runs_vertex_face_, runs_edge_edge_;  ///< of pairs_

@@ -90,9 +90,12 @@ void LockstepContact::push_pairs(const std::vector<Stencil>& from, PairKind kind
 void LockstepContact::find(std::span<const Vec3> x, std::span<const Vec3> dx) {
   model_.spread(x, from_);
   model_.spread(dx, way_);
+  const std::size_t points = at(model_.point_count());
+  const BoxFrame frame = frame_around(std::span(from_).first(points), std::span(way_).first(points), widest_reach_);
   boxes_.clear();
   for (std::size_t i = 0; i < from_.size(); ++i)
-    boxes_.push_back(VertexBox::swept(from_[i], from_[i] + way_[i], 0.5 * widest_reach_));
+    boxes_.push_back(frame.swept(from_[i], from_[i] + way_[i], 0.5 * widest_reach_));
+  finder_.arrange(from_);
   finder_.find(boxes_, self_, found_);
   pairs_.clear();
   push_pairs(found_.vertex_face, PairKind::k_vertex_face);

@@ -11,6 +11,8 @@
 namespace ft {
 namespace {
 
+const BoxFrame k_frame(Vec3::Constant(-1.5), Vec3::Constant(1.5));
+
 /// n x n vertices with boxes that reach over their neighbours.
 test::PairScene wavy_sheet(int n, double reach, test::Dice& dice) {
   test::PairScene scene;
@@ -19,7 +21,7 @@ test::PairScene wavy_sheet(int n, double reach, test::Dice& dice) {
     for (int j = 0; j < n; ++j) {
       const double u = i / (n - 1.0), v = j / (n - 1.0);
       const Vec3 p(u, 0.05 * std::sin(7 * u + 3 * v), v);
-      scene.boxes.push_back(VertexBox::swept(p, p + dice.cube(0.3 * reach), reach));
+      scene.boxes.push_back(k_frame.swept(p, p + dice.cube(0.3 * reach), reach));
     }
   test::add_grid_triangles(n, 0, scene.cloth);
   return scene;

@@ -17,11 +17,11 @@
 namespace ft {
 namespace {
 
+const BoxFrame k_frame(Vec3::Constant(-1.5), Vec3::Constant(1.5));
+
 using test::brute_force;
 using test::Dice;
 using Scene = test::PairScene;
-
-constexpr float k_inf = std::numeric_limits<float>::infinity();
 
 /// A wavy n x n grid of quads, two triangles each, numbered from first.
 void add_grid(int n, int first, double height, double wave, Dice& dice, std::vector<Vec3>& x,
@@ -42,7 +42,7 @@ Scene two_sheets(int n, double reach, std::uint64_t seed) {
   scene.cloth_vertices = n * n;
   add_grid(n + 3, n * n, 0.02, -0.03, dice, x, scene.collider);
   scene.collider_vertices = (n + 3) * (n + 3);
-  for (const Vec3& p : x) scene.boxes.push_back(VertexBox::swept(p, p + dice.cube(0.3 * reach), reach));
+  for (const Vec3& p : x) scene.boxes.push_back(k_frame.swept(p, p + dice.cube(0.3 * reach), reach));
   return scene;
 }
 
@@ -66,10 +66,9 @@ Scene soup(std::uint64_t seed) {
   fill(scene.cloth_vertices, scene.collider_vertices, scene.collider);
   for (int i = 0; i < scene.cloth_vertices + scene.collider_vertices; ++i) {
     const Vec3 p = dice.cube(1);
-    VertexBox b = VertexBox::swept(p, p + dice.cube(0.2), std::pow(10, dice.uniform(-3, -0.7)));
+    VertexBox b = k_frame.swept(p, p + dice.cube(0.2), std::pow(10, dice.uniform(-3, -0.7)));
     const int odd = dice.below(12);
-    if (odd == 0) std::swap(b.lo[1], b.hi[1]);
-    if (odd == 1) b = {{k_inf, k_inf, k_inf}, {-k_inf, -k_inf, -k_inf}};
+    if (odd <= 1) b = VertexBox::nowhere();
     scene.boxes.push_back(b);
   }
   return scene;
@@ -102,12 +101,14 @@ TEST(PairFinder, Finds_what_brute_force_finds_between_two_wavy_sheets) {
   }
 }
 
-/// All boxes of the cloth smaller by `by` on every side.
-Scene with_smaller_cloth(Scene scene, double by) {
+/// All boxes of the cloth smaller by `by` on every side, and by some steps.
+Scene with_smaller_cloth(Scene scene, double by, int steps) {
+  BoxMargin margin = k_frame.margin(by);
+  for (std::int16_t& m : margin) m = static_cast<std::int16_t>(m + steps);
   for (int v = 0; v < scene.cloth_vertices; ++v)
-    for (std::size_t k = 0; k < 3; ++k) {
-      scene.boxes[at(v)].lo[k] += static_cast<float>(by);
-      scene.boxes[at(v)].hi[k] -= static_cast<float>(by);
+    for (std::size_t k = 0; k < k_box_axes; ++k) {
+      scene.boxes[at(v)].lo[k] = static_cast<std::int16_t>(scene.boxes[at(v)].lo[k] + margin[k]);
+      scene.boxes[at(v)].minus_hi[k] = static_cast<std::int16_t>(scene.boxes[at(v)].minus_hi[k] + margin[k]);
     }
   return scene;
 }
@@ -116,12 +117,12 @@ TEST(PairFinder, A_margin_leaves_out_cloth_that_hardly_overlaps_cloth_and_nothin
   constexpr double k_margin = 0.02;
   const Scene scene = two_sheets(14, 0.04, 3);
   PairFinder finder = finder_of(scene);
-  finder.set_self_margin(k_margin);
+  finder.set_self_margin(k_frame.margin(k_margin));
   ContactPairs found, all;
   finder.find(scene.boxes, true, found);
   // The margin is taken off once a pair: half of it off each of two boxes is as much.
-  const ContactPairs needed = brute_force(with_smaller_cloth(scene, 0.5 * k_margin), true),
-                     allowed = brute_force(with_smaller_cloth(scene, 0.48 * k_margin), true);
+  const ContactPairs needed = brute_force(with_smaller_cloth(scene, 0.5 * k_margin, 1), true),
+                     allowed = brute_force(with_smaller_cloth(scene, 0.48 * k_margin, 0), true);
   const auto of_cloth = [&](const Stencil& s) {
     return std::all_of(s.v.begin(), s.v.end(), [&](int v) { return v < scene.cloth_vertices; });
   };
@@ -155,10 +156,16 @@ TEST(PairFinder, Finds_what_brute_force_finds_in_random_soups_of_triangles) {
       scene.boxes =
           soup(seed * 7 + static_cast<std::uint64_t>(again) + 1000).boxes;  // moved elsewhere: refit, not rebuilt
       scene.boxes.resize(static_cast<std::size_t>(scene.cloth_vertices + scene.collider_vertices),
-                         VertexBox::swept({0, 0, 0}, {0.5, 0, 0}, 0.1));
+                         k_frame.swept({0, 0, 0}, {0.5, 0, 0}, 0.1));
     }
   }
   EXPECT_GT(pairs, 10000);
+}
+
+bool holds(const VertexBox& box, const Vec3& p) {
+  for (std::size_t k = 0; k < k_box_axes; ++k)
+    if (along_box_axis(k, p) < k_frame.lo(box, k) || along_box_axis(k, p) > k_frame.hi(box, k)) return false;
+  return true;
 }
 
 TEST(PairFinder, Every_pair_that_can_meet_inside_its_boxes_is_listed) {
@@ -170,19 +177,23 @@ TEST(PairFinder, Every_pair_that_can_meet_inside_its_boxes_is_listed) {
   const auto inside = [&](int v) {
     const VertexBox& b = scene.boxes[static_cast<std::size_t>(v)];
     Vec3 p;
-    for (int i = 0; i < 3; ++i)
-      p[i] = dice.uniform(b.lo[static_cast<std::size_t>(i)], b.hi[static_cast<std::size_t>(i)]);
+    do {
+      for (int i = 0; i < 3; ++i) p[i] = dice.uniform(k_frame.lo(b, at(i)), k_frame.hi(b, at(i)));
+    } while (!holds(b, p));
     return p;
   };
   for (int trial = 0; trial < 20; ++trial) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = inside(static_cast<int>(i));
     for (int v = 0; v < scene.cloth_vertices; ++v) {
       for (const Triangle& t : scene.collider) {
-        Vec3 lo = x[static_cast<std::size_t>(t[0])], hi = lo;
-        for (const int w : t)
-          lo = lo.cwiseMin(x[static_cast<std::size_t>(w)]), hi = hi.cwiseMax(x[static_cast<std::size_t>(w)]);
-        const Vec3& p = x[static_cast<std::size_t>(v)];
-        if ((p.array() < lo.array()).any() || (p.array() > hi.array()).any()) continue;
+        const auto separates = [&](std::size_t k) {
+          const auto along = [&](int w) { return along_box_axis(k, x[at(w)]); };
+          const auto [lo, hi] = std::minmax({along(t[0]), along(t[1]), along(t[2])});
+          return along(v) < lo || along(v) > hi;
+        };
+        bool apart = false;
+        for (std::size_t k = 0; k < k_box_axes; ++k) apart = apart || separates(k);
+        if (apart) continue;
         const Stencil wanted{{v, t[0], t[1], t[2]}};
         EXPECT_TRUE(std::binary_search(found.vertex_face.begin(), found.vertex_face.end(), wanted));
       }
@@ -216,7 +227,7 @@ TEST(PairFinder, A_search_does_not_depend_on_the_searches_before_it) {
   Dice dice(6);
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
     const Vec3 p = dice.cube(3);
-    elsewhere.push_back(VertexBox::swept(p, p, 0.1));
+    elsewhere.push_back(k_frame.swept(p, p, 0.1));
   }
   PairFinder seasoned = finder_of(scene), fresh = finder_of(scene);
   ContactPairs a, b;
@@ -252,7 +263,7 @@ TEST(PairFinder, A_search_for_changed_vertices_finds_their_pairs_and_no_others) 
       if (i == 0 && every > 1000) continue;
       changed[i] = 1;
       const Vec3 p = 0.05 * dice.cube(1);
-      scene.boxes[i].include(VertexBox::swept(p, p, 0.01));
+      scene.boxes[i].include(k_frame.swept(p, p, 0.01));
     }
     for (const bool self : {true, false}) {
       finder.find_changed(scene.boxes, self, changed, some);
@@ -271,8 +282,8 @@ TEST(PairFinder, A_search_for_changed_vertices_finds_their_pairs_and_no_others) 
 TEST(PairFinder, Edges_of_a_face_with_a_vertex_that_is_nowhere_still_count) {
   // Two collider triangles share the edge 3-4; vertex 5 of the first is nowhere.
   Scene scene{3, 4, {{0, 1, 2}}, {{3, 4, 5}, {4, 3, 6}}, {}};
-  for (int i = 0; i < 7; ++i) scene.boxes.push_back(VertexBox::swept({0, 0, 0}, {1, 1, 1}, 0));
-  scene.boxes[5] = {{1, 1, 1}, {0, 0, 0}};
+  for (int i = 0; i < 7; ++i) scene.boxes.push_back(k_frame.swept({0, 0, 0}, {1, 1, 1}, 0));
+  scene.boxes[5] = VertexBox::nowhere();
   ContactPairs found;
   finder_of(scene).find(scene.boxes, false, found);
   expect_same(found, brute_force(scene, false));
@@ -320,7 +331,7 @@ TEST(PairFinder, Finds_what_brute_force_finds_between_a_skirt_and_a_mannequin_sl
     p = Vec3(folded * p.x(), 0.2 * p.y() + 0.95 - r, folded * p.z());
   }
   Dice dice(17);
-  for (const Vec3& p : x) scene.boxes.push_back(VertexBox::swept(p, p + dice.cube(0.004), 0.003));
+  for (const Vec3& p : x) scene.boxes.push_back(k_frame.swept(p, p + dice.cube(0.004), 0.003));
   ContactPairs found;
   finder_of(scene).find(scene.boxes, true, found);
   const ContactPairs expected = brute_force(scene, true);
@@ -336,7 +347,7 @@ TEST(PairFinder, Finds_what_brute_force_finds_between_a_skirt_and_a_mannequin_sl
 TEST(PairFinder, Nothing_meets_nothing) {
   ContactPairs found;
   found.vertex_face.resize(3);
-  const std::vector<VertexBox> three(3, VertexBox::swept({0, 0, 0}, {1, 1, 1}, 0));
+  const std::vector<VertexBox> three(3, k_frame.swept({0, 0, 0}, {1, 1, 1}, 0));
   PairFinder(0, {}, 0, {}).find({}, true, found);
   EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
   const std::vector<Triangle> one{{0, 1, 2}};
@@ -349,27 +360,9 @@ TEST(PairFinder, Nothing_meets_nothing) {
 TEST(PairFinder, A_cord_meets_faces_with_its_ends_and_edges_with_its_length) {
   const std::vector<Triangle> cord{{0, 1, 1}}, face{{2, 3, 4}};
   ContactPairs found;
-  PairFinder(2, cord, 3, face).find(std::vector<VertexBox>(5, VertexBox::swept({0, 0, 0}, {1, 1, 1}, 0)), true, found);
+  PairFinder(2, cord, 3, face).find(std::vector<VertexBox>(5, k_frame.swept({0, 0, 0}, {1, 1, 1}, 0)), true, found);
   EXPECT_EQ(found.vertex_face, (std::vector<Stencil>{{{0, 2, 3, 4}}, {{1, 2, 3, 4}}}));
   EXPECT_EQ(found.edge_edge, (std::vector<Stencil>{{{0, 1, 2, 3}}, {{0, 1, 2, 4}}, {{0, 1, 3, 4}}}));
-}
-
-TEST(VertexBox, Holds_the_swept_ball_however_the_numbers_round) {
-  Dice dice(3);
-  for (int trial = 0; trial < 100000; ++trial) {
-    const double scale = std::pow(10, dice.uniform(-9, 3)),
-                 r = trial % 3 == 0 ? 0.0 : std::pow(10, dice.uniform(-9, 0));
-    const Vec3 a = dice.cube(scale), b = trial % 5 == 0 ? a : dice.cube(scale);
-    const VertexBox box = VertexBox::swept(a, b, r);
-    for (int i = 0; i < 3; ++i) {
-      const long double lo = std::min<long double>(a[i], b[i]) - r, hi = std::max<long double>(a[i], b[i]) + r;
-      const auto k = static_cast<std::size_t>(i);
-      ASSERT_LE(box.lo[k], lo);
-      ASSERT_GE(box.hi[k], hi);
-      ASSERT_GE(box.lo[k], lo - 3e-7L * (std::abs(lo) + 1e-30L));  // not much larger than needed
-      ASSERT_LE(box.hi[k], hi + 3e-7L * (std::abs(hi) + 1e-30L));
-    }
-  }
 }
 
 }  // namespace

@@ -173,22 +173,15 @@ TEST(PairGeometry, Separation_never_exceeds_the_true_distance_whatever_the_norma
   }
 }
 
-TEST(PairGeometry, Cheap_bounds_never_exceed_the_true_distance_and_tell_most_features_that_are_far_apart) {
+TEST(PairGeometry, The_gap_of_boxes_never_exceeds_the_true_distance) {
   Dice dice(9);
-  int far = 0, found = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     std::array<Vec3, 4> x = random_stencil(dice, 1);
     for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge}) {
       for (int k = 0; k < first_feature_size(kind); ++k) x[at(k)] += 3 * dice.direction();
-      const auto distance = static_cast<double>(slow_distance(kind, x));
-      EXPECT_LE(std::sqrt(box_gap_squared(kind, x)), distance + 1e-14);
-      EXPECT_FALSE(apart_between_centres(kind, x, distance + 1e-12));
-      far += distance > 1;
-      found += distance > 1 && apart_between_centres(kind, x, 0.7 * distance);
+      EXPECT_LE(std::sqrt(box_gap_squared(kind, x)), static_cast<double>(slow_distance(kind, x)) + 1e-14);
     }
   }
-  EXPECT_GT(far, 5000);
-  EXPECT_GT(2 * found, far);
 }
 
 }  // namespace

@@ -1,17 +1,12 @@
 #include "tests/support/pair_brute_force.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace ft::test {
 namespace {
 
-constexpr float k_inf = std::numeric_limits<float>::infinity();
-
 bool nowhere(const VertexBox& b) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(b.lo[i] <= b.hi[i])) return true;
-  return false;
+  return b.is_nowhere();
 }
 
 /// Unions of the boxes of the vertices of each feature; a vertex that is nowhere takes its feature with it.
@@ -19,21 +14,18 @@ template <class Features>
 std::vector<VertexBox> feature_boxes(std::span<const VertexBox> boxes, const Features& features) {
   std::vector<VertexBox> out;
   for (const auto& feature : features) {
-    VertexBox u{{k_inf, k_inf, k_inf}, {-k_inf, -k_inf, -k_inf}};
-    for (const int v : feature) {
-      const VertexBox& w = boxes[static_cast<std::size_t>(v)];
-      for (std::size_t i = 0; i < 3; ++i) u.lo[i] = std::min(u.lo[i], w.lo[i]), u.hi[i] = std::max(u.hi[i], w.hi[i]);
-    }
+    VertexBox u = VertexBox::nowhere();
+    for (const int v : feature) u.include(boxes[static_cast<std::size_t>(v)]);
     const bool gone =
         std::any_of(feature.begin(), feature.end(), [&](int v) { return nowhere(boxes[static_cast<std::size_t>(v)]); });
-    out.push_back(gone ? VertexBox{{k_inf, k_inf, k_inf}, {-k_inf, -k_inf, -k_inf}} : u);
+    out.push_back(gone ? VertexBox::nowhere() : u);
   }
   return out;
 }
 
 bool meets(const VertexBox& a, const VertexBox& b) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(a.lo[i] <= b.hi[i] && b.lo[i] <= a.hi[i])) return false;
+  for (std::size_t i = 0; i < k_box_axes; ++i)
+    if (a.lo[i] > -b.minus_hi[i] || b.lo[i] > -a.minus_hi[i]) return false;
   return true;
 }
 
