@@ -70,6 +70,8 @@ class Candidates {
   void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
   double renew_carried(const ClothMotion& cloth, PieceMotion& piece);
+  std::vector<Stencil> touching_on_way(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs,
+                                       double& t);
   void begin_flat(const ClothMotion& cloth, const PieceMotion& piece);
   void mark_lost();
   void add_missing(const ClothMotion& cloth, const PieceMotion& piece);
@@ -92,7 +94,8 @@ class Candidates {
   double fastest_ = 0;         ///< largest body motion near the cloth, relative to the cloth's mean [m]
   double h_ = 0;               ///< s
   Vec3 frame_ = Vec3::Zero();  ///< mean carry: boxes move with it [m]
-  std::vector<char> changed_;  ///< per vertex: what renew() has to look at
+  std::vector<char> changed_;  ///< per vertex: whose pairs have to be looked for anew
+  std::vector<char> moved_;    ///< per vertex: whose carried way has changed
   BoxFrame box_frame_;
   std::vector<VertexBox> boxes_;
   ContactPairs found_, near_body_, pairs_;
