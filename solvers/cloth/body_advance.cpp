@@ -19,11 +19,11 @@ constexpr double k_regrowth = 1.5;
 /// What Newton may still strain the edges by at the end of a shortened piece [1]: a gap that an unconverged solve
 /// leaves closed blocks the next advance.
 constexpr double k_shortened_settled = 1e-3;
-/// Cloth that wants to leave its slack by more than k_negligible gets more, with some to spare: what is held back loses
-/// momentum [m].
+/// Cloth that wants to leave its slack by more than k_negligible gets other room, with some to spare: what is held back
+/// loses momentum [m].
 constexpr double k_negligible = 2e-5;
 constexpr double k_spare = 5e-4;
-constexpr double k_asked = 1.5;  ///< of what is missing
+constexpr double k_ahead = 0.5;  ///< of what was missing, farther on: the next iteration mostly goes the same way
 /// Rounds in which what would touch is kept apart, and then in which it is joined to zones, before the piece is
 /// shortened.
 constexpr int k_parting_rounds = 8;
@@ -44,7 +44,7 @@ struct BodyAdvance::Scratch {
   ImplicitStep step;
   PieceMotion piece;
   std::vector<Vec3> end, centre, x, v, pins;
-  std::vector<double> more;
+  std::vector<RoomRequest> requests;
 };
 
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
@@ -94,11 +94,17 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   s.x.resize(cloth.x.size());
   s.v.resize(cloth.x.size());
   step.enough_room = k_negligible;
-  step.more_room = [&](std::span<const double> missing) {
+  step.more_room = [&](std::span<const double> missing, std::span<const Vec3> x, std::span<const Vec3> move) {
     const auto clock = std::chrono::steady_clock::now();
-    s.more.resize(missing.size());
-    for (std::size_t i = 0; i < missing.size(); ++i) s.more[i] = missing[i] > 0 ? k_asked * missing[i] + k_spare : 0.0;
-    s.candidates.grow(cloth, s.more, s.piece);
+    s.requests.clear();
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      if (!(missing[i] > 0)) continue;
+      const double length = move[i].norm();
+      s.requests.push_back({static_cast<int>(i), x[i], x[i] + (1 + k_ahead * missing[i] / length) * move[i], k_spare});
+    }
+    s.candidates.give_room(cloth, s.requests, s.piece);
+    for (const RoomRequest& r : s.requests)
+      s.centre[at(r.vertex)] = cloth.x[at(r.vertex)] + s.piece.centre[at(r.vertex)];
     report.seconds_candidates += seconds_since(clock);
   };
   step.pairs_suffice = [&](std::span<const Vec3> x) {

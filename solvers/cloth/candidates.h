@@ -27,6 +27,13 @@ struct PieceMotion {
   std::vector<double> slack;  ///< per cloth vertex: how far the solve may put it from there [m]
 };
 
+/// A cloth vertex that wants to leave its ball: where it is, where it wants to be, and what to add around [m].
+struct RoomRequest {
+  int vertex;
+  Vec3 from, to;
+  double spare;
+};
+
 class Candidates {
  public:
   explicit Candidates(const ClothModel& model);
@@ -46,9 +53,10 @@ class Candidates {
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
   /// Whether cloth is about to touch cloth, by the last collect() or join_blocked().
   bool cloth_blocks_cloth() const;
-  /// Adds `more` (per cloth vertex [m], not negative) to the slack and what it needs to pairs(), behind those that are
-  /// there, for a piece that is carried already. What release_blocked() has dropped stays out.
-  void grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece);
+  /// Gives vertices other balls, which hold the straight way that they ask for and not all of their last ones, and adds
+  /// what these need to pairs(), behind those that are there, for a piece that is carried already. The vertex must be
+  /// at `from`. What release_blocked() has dropped stays out.
+  void give_room(const ClothMotion& cloth, std::span<const RoomRequest> requests, PieceMotion& piece);
   /// pairs() lacks those inside patches of cloth that are too flat to meet themselves. For a solve that is about to put
   /// the cloth at x (per cloth vertex [m], straight from where it was last kept): returns true where all are still flat
   /// there; else it adds what is needed now behind pairs(), and returns false.

@@ -1,6 +1,6 @@
-// What a solve that is under way adds to the pairs: room for vertices that want farther, and pairs inside patches of
-// cloth that are flat no longer. Nothing that is in the list is looked at again: with more room and fewer patches it
-// can only become longer, and the new pairs come behind those that are there.
+// What a solve that is under way adds to the pairs: those of vertices that want to leave their room and get another,
+// and pairs inside patches of cloth that are flat no longer. Nothing that is in the list is looked at again or taken
+// out: the new pairs come behind those that are there.
 #include "solvers/cloth/candidates.h"
 
 namespace ft {
@@ -12,12 +12,13 @@ void Candidates::mark_lost() {
       for (const int v : model_.triangles[at(t)]) changed_[at(v)] = 1;
 }
 
-void Candidates::grow(const ClothMotion& cloth, std::span<const double> more, PieceMotion& piece) {
+void Candidates::give_room(const ClothMotion& cloth, std::span<const RoomRequest> requests, PieceMotion& piece) {
   changed_.assign(boxes_.size(), 0);
-  for (std::size_t i = 0; i < more.size(); ++i) {
-    if (!(more[i] > 0)) continue;
+  for (const RoomRequest& request : requests) {
+    const std::size_t i = at(request.vertex);
     changed_[i] = 1;
-    piece.slack[i] += more[i];
+    piece.centre[i] = 0.5 * (request.from + request.to) - cloth.x[i];
+    piece.slack[i] = 0.5 * (request.to - request.from).norm() + request.spare;
     set_box(i, cloth, piece);
   }
   add_missing(cloth, piece);

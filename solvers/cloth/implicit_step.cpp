@@ -237,7 +237,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     });
     if (in.more_room && most_missing > in.enough_room) {
       result.seconds_contact += watch.lap();
-      in.more_room(s.missing);
+      in.more_room(s.missing, x, s.direction);
       watch.lap();
       s.contact.extend(s.all);
     }

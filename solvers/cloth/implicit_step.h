@@ -31,9 +31,10 @@ struct StepInput {
   int newton_iterations = 3;            ///< at least, unless nothing moves; more where the cloth is still strained
   /// Root mean square of what an iteration may still change the edges' lengths by at the end, over their rest lengths.
   double settled_strain = 5e-3;
-  /// Called when an iteration wants to take a vertex farther past its slack than enough_room; per vertex, how far [m].
-  /// It may give more: slack, and pairs behind those that are there, are looked at again. May be empty.
-  std::function<void(std::span<const double> missing)> more_room;
+  /// Called when an iteration wants to take a vertex farther past its slack than enough_room: how far, per vertex,
+  /// where the cloth is, and by what it wants to move [m]. It may give other balls that hold the places, and pairs
+  /// behind those that are there; both are looked at again. May be empty.
+  std::function<void(std::span<const double> missing, std::span<const Vec3> x, std::span<const Vec3> move)> more_room;
   double enough_room = 0;  ///< m
   /// Called with where an iteration is about to put the cloth, straight from where it is [m]: true where `pairs` holds
   /// all that can meet on the way. It may add behind them and return false: the way is looked at again. May be empty.

@@ -144,22 +144,35 @@ TEST(Candidates, lists_neighbours_only_where_the_cloth_is_about_to_bend) {
   }
 }
 
-TEST(Candidates, are_complete_before_and_after_the_room_grows) {
+TEST(Candidates, are_complete_before_and_after_vertices_get_other_room) {
   TwoSheets s(0);
   Candidates candidates(*s.model);
   EXPECT_EQ(s.collect(candidates), 1);
   EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
   const ContactPairs before = candidates.pairs();
-  std::vector<double> more(s.cloth.x.size(), 0.0);
-  for (std::size_t i = 0; i < more.size(); i += 3) more[i] = 0.015 * random_uniform({k_seed, 1, 0, i}, 0);
-  candidates.grow(s.cloth, more, s.piece);
+  // Every third vertex wants to leave its ball, then every third but one, and some of these twice; none comes near
+  // others of its sheet.
+  const auto ask = [&](std::uint64_t round, auto&& asks) {
+    const std::vector<Vec3> from = somewhere_in_reach(s, 100 + round);
+    std::vector<RoomRequest> requests;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      if (!asks(i)) continue;
+      Vec3 way;
+      for (int k = 0; k < 3; ++k) way[k] = 2 * random_uniform({k_seed, 1, round, i}, static_cast<std::uint64_t>(k)) - 1;
+      requests.push_back({static_cast<int>(i), from[i], from[i] + Vec3(0.006, 0.015, 0.006).cwiseProduct(way), 1e-3});
+    }
+    candidates.give_room(s.cloth, requests, s.piece);
+    for (const RoomRequest& r : requests)
+      for (const Vec3& p : {r.from, r.to})
+        EXPECT_LE((s.cloth.x[at(r.vertex)] + s.piece.centre[at(r.vertex)] - p).norm(), s.piece.slack[at(r.vertex)]);
+  };
+  ask(0, [](std::size_t i) { return i % 3 == 0; });
   const ContactPairs needed = touching(s);
   EXPECT_EQ(missing_in(candidates.pairs(), needed), 0);
   EXPECT_GT(missing_in(before, needed), 100) << "the list of before would have done";
 
   const ContactPairs some = candidates.pairs();
-  for (std::size_t i = 0; i < more.size(); ++i) more[i] = i % 3 == 1 ? 0.01 : 0.0;
-  candidates.grow(s.cloth, more, s.piece);
+  ask(1, [](std::size_t i) { return i % 3 == 1 || i % 9 == 0; });
   EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
   expect_all_new_behind(some, candidates.pairs());
 }
@@ -189,7 +202,7 @@ TEST(Candidates, are_complete_when_what_would_meet_is_kept_apart) {
     EXPECT_NEAR(s.piece.carry[i].x(), wanted[i].x(), 1e-4) << "only what they approach by is taken";
 }
 
-TEST(Candidates, that_were_let_pass_stay_out_when_the_room_grows) {
+TEST(Candidates, that_were_let_pass_stay_out_when_vertices_get_other_room) {
   TwoSheets s(-2);
   Candidates candidates(*s.model);
   ASSERT_LT(s.collect(candidates), 1);
@@ -198,7 +211,12 @@ TEST(Candidates, that_were_let_pass_stay_out_when_the_room_grows) {
   const ContactPairs left = sorted(candidates.pairs());
   ASSERT_LT(left.vertex_face.size(), all.vertex_face.size());
   ASSERT_LT(left.edge_edge.size(), all.edge_edge.size());
-  candidates.grow(s.cloth, std::vector<double>(s.cloth.x.size(), 1e-3), s.piece);
+  std::vector<RoomRequest> requests;
+  for (std::size_t i = 0; i < s.cloth.x.size(); ++i) {
+    const Vec3 carried = s.cloth.x[i] + s.piece.carry[i];
+    requests.push_back({static_cast<int>(i), carried, carried + Vec3(0, -1e-3, 0), 1e-3});
+  }
+  candidates.give_room(s.cloth, requests, s.piece);
   const ContactPairs grown = sorted(candidates.pairs());
   const auto back = [](const std::vector<Stencil>& before, const std::vector<Stencil>& without,
                        const std::vector<Stencil>& now) {
