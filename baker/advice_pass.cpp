@@ -113,7 +113,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
   double frame_seconds = 0;
   std::vector<FrameReport> reports;
   auto left = static_cast<double>(plan->groups.size());  // groups that share what is left of the time
-  for (const GroupPlan& group : plan->groups) {
+  for (GroupPlan& group : plan->groups) {
     const PrimaryPlan& primary = plan->primaries[group.primary];
     const double share = (options.seconds - since(clock)) / left--;
     const auto begin = Clock::now();
@@ -143,7 +143,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     for (const GarmentOutput& secondary : group.outputs) {
       Evidence e;
       e.primary = primary.name;
-      e.secondary = secondary.mesh.name;
+      e.secondary = secondary.mesh->name;
       e.two_way_possible = group.lockstep.has_value();
       std::vector<Wrench> forces(reports.size());
       for (std::size_t i = 0; i < reports.size(); ++i) {

@@ -109,9 +109,9 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
   return std::optional<Checkpoint>(std::move(*checkpoint));
 }
 
-Result<Solvers> make_solvers(const BakePlan& plan, const SolverFactory& factory) {
+Result<Solvers> make_solvers(BakePlan& plan, const SolverFactory& factory) {
   Solvers out;
-  for (const GroupPlan& group : plan.groups) {
+  for (GroupPlan& group : plan.groups) {
     if (group.outputs.empty()) {
       const Shot& shot = plan.shot();
       out.push_back(make_body_only(shot.first_frame, shot.preroll, shot.fps));
@@ -160,6 +160,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
     return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
 
   CacheSet caches(*plan, *solvers, folder.path);
+  for (GroupPlan& group : plan->groups)
+    for (GarmentOutput& output : group.outputs) output.mesh.reset();  // the caches have them, and forget them in turn
   warn_of_space(folder, caches.expected_bytes(), progress);
   auto files = write_hybrid_files(*plan, folder.path, manifest.notes);
   if (!files) return failed(files.error());
@@ -181,8 +183,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
 
 }  // namespace
 
-Result<std::unique_ptr<Solver>> make_group_solver(const GroupPlan& group, const SolverFactory& cloth) {
-  return group.lockstep ? make_lockstep_solver(*group.lockstep) : cloth(group.setup);
+Result<std::unique_ptr<Solver>> make_group_solver(GroupPlan& group, const SolverFactory& cloth) {
+  return group.lockstep ? make_lockstep_solver(*group.lockstep) : cloth(std::move(group.setup));
 }
 
 BakeResult bake(const BakeOptions& options, const BakeServices& services, Progress& progress) {

@@ -41,8 +41,8 @@ struct BakeResult {
   std::vector<std::string> faults;  ///< for stderr
 };
 
-/// Cloth by the factory, cords in lock step with their prop.
-Result<std::unique_ptr<Solver>> make_group_solver(const GroupPlan& group, const SolverFactory& cloth);
+/// Cloth by the factory, cords in lock step with their prop. Takes the group's setup.
+Result<std::unique_ptr<Solver>> make_group_solver(GroupPlan& group, const SolverFactory& cloth);
 
 /// progress is told of the walk only; what ends before the walk is in the result alone.
 BakeResult bake(const BakeOptions& options, const BakeServices& services, Progress& progress);

@@ -8,6 +8,13 @@
 #include "io/shot/weld.h"
 
 namespace ft {
+namespace {
+
+std::shared_ptr<const Mesh> shared(Mesh mesh) {
+  return std::make_shared<const Mesh>(std::move(mesh));
+}
+
+}  // namespace
 
 CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder)
     : plan_(plan), solvers_(solvers), folder_(std::move(folder)) {
@@ -18,22 +25,22 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     const auto& outputs = plan.groups[g].outputs;
     CHECK(outputs.size() == static_cast<std::size_t>(solver.system_count()));
     for (int s = 0; s < solver.system_count(); ++s) {
-      const Mesh& mesh = outputs[static_cast<std::size_t>(s)].mesh;
-      add({g, s, false, mesh}, mesh.name, plan.groups[g].lockstep ? "cords" : "cloth", true);
+      const auto& mesh = outputs[static_cast<std::size_t>(s)].mesh;
+      add({g, s, false, mesh}, mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
     }
     const bool alone = outputs.empty();
     if (!plan.shot().cache_collider && !alone) continue;
     std::vector<Vec3> collider;
     solver.collider_positions(solver.initial_state(), collider);
     if (!collider.empty() && !plan.groups[g].lockstep)  // a prop is its own collider
-      add({g, -1, true, make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles())},
+      add({g, -1, true, shared(make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles()))},
           primary.name + ".collider", "collider", false);
     const auto is_there = [&](const ManifestSystem& system) { return system.name == primary.name; };
     if (std::any_of(systems_.begin(), systems_.end(), is_there)) continue;
     std::vector<Vec3> body(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
     primary.trajectory->bind_pose(body);
-    add({g, -1, false, make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles)}, primary.name,
-        "body", alone);
+    add({g, -1, false, shared(make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles))},
+        primary.name, "body", alone);
   }
 }
 
@@ -42,8 +49,8 @@ void CacheSet::add(Source source, std::string name, const std::string& role, boo
   system.name = std::move(name);
   system.role = role;
   system.primary = plan_.primaries[plan_.groups[source.group].primary].name;
-  system.vertex_count = source.mesh.vertex_count();
-  system.face_count = source.mesh.face_count();
+  system.vertex_count = source.mesh->vertex_count();
+  system.face_count = source.mesh->face_count();
   system.topology = system.name + ".obj";
   for (const std::string& name_of_format : plan_.shot().cache_formats) {
     const CacheFormat* format = find_cache_format(name_of_format);
@@ -56,14 +63,14 @@ void CacheSet::add(Source source, std::string name, const std::string& role, boo
 }
 
 Status CacheSet::open(int keep_frames) {
-  writers_.clear();
+  CHECK(writers_.empty());
   const std::string version = "followthrough " + program_version();
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     if (keep_frames == 0)
-      if (const Status written = write_obj(folder_ / systems_[i].topology, sources_[i].mesh); !written) return written;
+      if (const Status written = write_obj(folder_ / systems_[i].topology, *sources_[i].mesh); !written) return written;
     CacheInfo info;
     info.system = systems_[i].name;
-    info.mesh = sources_[i].mesh;
+    info.mesh = *sources_[i].mesh;
     info.fps = plan_.shot().fps;
     info.first_frame = plan_.first_written();
     info.frame_count = plan_.written_count();
@@ -75,6 +82,7 @@ Status CacheSet::open(int keep_frames) {
       CHECK((*writer)->frame_count() == keep_frames);
       writers.push_back(std::move(*writer));
     }
+    sources_[i].mesh.reset();
   }
   return {};
 }
@@ -88,39 +96,44 @@ void CacheSet::positions_of(const Source& source, const State& state, std::span<
   spread_welded(joined_of, joined, x);
 }
 
-Snapshot CacheSet::take(std::span<const State> states, const Snapshot* before) const {
+Snapshot CacheSet::take(std::span<const State> states) const {
   Snapshot out;
   out.frame = states.empty() ? 0 : states[0].frame;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
     const State& state = states[source.group];
-    std::vector<Vec3> x(static_cast<std::size_t>(source.mesh.vertex_count())), v;
-    if (source.garment >= 0) {
+    std::vector<Vec3> x(static_cast<std::size_t>(systems_[i].vertex_count));
+    if (source.garment >= 0)
       positions_of(source, state, x);
-      v.assign(x.size(), Vec3::Zero());
-      if (before) {
-        // Motion blur must not see the way from one place to the other.
-        std::vector<Vec3> from = before->positions[i];
-        const auto& teleports = plan_.primaries[plan_.groups[source.group].primary].scan.teleports;
-        if (const Teleport* teleport = teleport_into(teleports, out.frame)) carry(*teleport, std::span(from));
-        for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - from[k]) * plan_.shot().fps;
-      }
-    } else if (source.collider || solvers_[source.group]->moves_primary()) {
+    else if (source.collider || solvers_[source.group]->moves_primary())
       solvers_[source.group]->collider_positions(state, x);
-    } else {
+    else
       plan_.primaries[plan_.groups[source.group].primary].trajectory->sample(state.time, x);
-    }
     out.positions.push_back(std::move(x));
-    out.velocities.push_back(std::move(v));
   }
   return out;
 }
 
-Status CacheSet::write(const Snapshot& snapshot) {
-  for (std::size_t i = 0; i < writers_.size(); ++i)
+std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::span<const Vec3> x,
+                                          const std::vector<Vec3>* before) const {
+  if (before == nullptr) return std::vector<Vec3>(x.size(), Vec3::Zero());
+  std::vector<Vec3> v = *before;
+  // Motion blur must not see the way from one place to the other.
+  const auto& teleports = plan_.primaries[plan_.groups[source.group].primary].scan.teleports;
+  if (const Teleport* teleport = teleport_into(teleports, frame)) carry(*teleport, std::span(v));
+  for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - v[k]) * plan_.shot().fps;
+  return v;
+}
+
+Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
+  for (std::size_t i = 0; i < writers_.size(); ++i) {
+    const std::vector<Vec3>& x = snapshot.positions[i];
+    std::vector<Vec3> v;
+    if (sources_[i].garment >= 0)
+      v = velocities_of(sources_[i], snapshot.frame, x, before != nullptr ? &before->positions[i] : nullptr);
     for (auto& writer : writers_[i])
-      if (const Status written = writer->write_frame(snapshot.positions[i], snapshot.velocities[i]); !written)
-        return written;
+      if (const Status written = writer->write_frame(x, v); !written) return written;
+  }
   return {};
 }
 
@@ -131,10 +144,11 @@ Status CacheSet::close() {
   writers_.clear();
   for (ManifestSystem& system : systems_)
     for (ManifestCache& cache : system.caches) {
-      auto bytes = read_file(folder_ / cache.file, std::numeric_limits<std::uint64_t>::max());
-      if (!bytes) return output_error("cannot read back what was written: " + bytes.error().what, bytes.error().where);
-      cache.bytes = bytes->size();
-      cache.content = hash_bytes(*bytes).hex();
+      const auto content = hash_file(folder_ / cache.file);
+      if (!content)
+        return output_error("cannot read back what was written: " + content.error().what, content.error().where);
+      cache.bytes = content->bytes;
+      cache.content = content->hash.hex();
     }
   return {};
 }

@@ -16,21 +16,22 @@ namespace ft {
 
 using Solvers = std::vector<std::unique_ptr<Solver>>;
 
-/// Positions of every cached system at one frame [m], velocities [m/s] (of cloth only; empty otherwise).
+/// Positions of every cached system at one frame [m].
 struct Snapshot {
   int frame = 0;
-  std::vector<std::vector<Vec3>> positions, velocities;
+  std::vector<std::vector<Vec3>> positions;
 };
 
 class CacheSet {
  public:
   CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder);
 
-  /// keep_frames: frames that files of an interrupted bake keep; 0: new files, and the OBJ of each system beside them.
+  /// Once. keep_frames: frames that files of an interrupted bake keep; 0: new files, and the OBJ of each system beside
+  /// them.
   Status open(int keep_frames);
-  /// before: the snapshot of the frame before, for velocities; null: they are zero.
-  Snapshot take(std::span<const State> states, const Snapshot* before) const;
-  Status write(const Snapshot& snapshot);
+  Snapshot take(std::span<const State> states) const;
+  /// before: the snapshot of the frame before, for the velocities of what moves by itself; null: they are zero.
+  Status write(const Snapshot& snapshot, const Snapshot* before);
   Status close();
 
   /// For the manifest; with sizes and content hashes once close() has succeeded.
@@ -43,10 +44,13 @@ class CacheSet {
     std::size_t group = 0;
     int garment = -1;  ///< -1: the collider or the body
     bool collider = false;
-    Mesh mesh;  ///< rest shape
+    std::shared_ptr<const Mesh> mesh;  ///< rest shape; null once the files have it
   };
   /// Of a garment, in the order of its file.
   void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
+  /// Of a garment at `frame` [m/s].
+  std::vector<Vec3> velocities_of(const Source& source, int frame, std::span<const Vec3> x,
+                                  const std::vector<Vec3>* before) const;
   void add(Source source, std::string name, const std::string& role, bool all_formats);
 
   const BakePlan& plan_;

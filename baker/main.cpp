@@ -2,6 +2,10 @@
 // the import child (it must not touch anything else), then the command line.
 #include <unistd.h>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 #include <cstdlib>
 #include <cstring>
 
@@ -23,9 +27,20 @@ __attribute__((constructor(101))) void check_machine() {
 #endif
 }
 
+/// Lists that come and go with every search are larger than this [bytes] and shall not leave holes behind. Left to
+/// itself the allocator takes more and more of them from its heap: 5 % of the memory at 40,000 vertices.
+constexpr int k_mapped_from = 1 << 20;
+
+void give_memory_back() {
+#if defined(M_MMAP_THRESHOLD)
+  mallopt(M_MMAP_THRESHOLD, k_mapped_from);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  give_memory_back();
   if (argc > 1 && std::strcmp(argv[1], "--import-child") == 0) return ft::import_child_main(argc, argv);
   return ft::run_command_line(argc, argv);
 }

@@ -123,12 +123,12 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   ClothGarment garment;
   GarmentOutput output;
   garment.name = spec.name;
-  output.mesh = std::move(*mesh);
-  output.mesh.name = spec.name;
-  place_garment(output.mesh, spec);
-  garment.mesh = output.mesh;
-  if (spec.weld > 0 && all_finite(output.mesh.positions)) {
-    WeldedMesh welded = weld(output.mesh, spec.weld);
+  mesh->name = spec.name;
+  place_garment(*mesh, spec);
+  garment.mesh = *mesh;
+  output.mesh = std::make_shared<const Mesh>(std::move(*mesh));
+  if (spec.weld > 0 && all_finite(output.mesh->positions)) {
+    WeldedMesh welded = weld(*output.mesh, spec.weld);
     garment.mesh = std::move(welded.mesh);
     garment.mesh.name = spec.name;
     output.joined_of = std::move(welded.joined_of);
@@ -161,7 +161,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     if (!set_fabric_value(garment.fabric, key, value))
       return located(usage_error("fabric has no value \"" + key + "\""));
 
-  auto maps = resolve_maps(spec.maps, output.mesh);
+  auto maps = resolve_maps(spec.maps, *output.mesh);
   if (!maps) return located(maps.error());
   garment.maps =
       output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
@@ -200,8 +200,8 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
                                      [&](const ClothGarment& garment) { return garment.name == pin_spec.to; });
     const bool to_world = pin_spec.to == k_pin_world, to_cloth = !pin_spec.to.empty() && !to_world;
     CHECK(!to_cloth || target != garments.end());  // the shot file was judged
-    auto resolved = to_cloth ? resolve_pin(pin_spec, output.mesh, target->mesh.positions, triangulate(target->mesh))
-                             : resolve_pin(pin_spec, output.mesh, body, primary.trajectory->surface().triangles);
+    auto resolved = to_cloth ? resolve_pin(pin_spec, *output.mesh, target->mesh.positions, triangulate(target->mesh))
+                             : resolve_pin(pin_spec, *output.mesh, body, primary.trajectory->surface().triangles);
     if (!resolved) return located(resolved.error());
     ClothPin pin = output.joined_of.empty() ? std::move(*resolved) : on_joined(*resolved, output.joined_of);
     pin.hold = hold_span(pin_spec, shot);

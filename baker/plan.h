@@ -34,8 +34,8 @@ struct PrimaryPlan {
 
 /// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation. Cords leave as tubes.
 struct GarmentOutput {
-  Mesh mesh;                   ///< the file's, placed
-  std::vector<int> joined_of;  ///< per vertex of the file: its vertex in the simulation; empty: the same
+  std::shared_ptr<const Mesh> mesh;  ///< the file's, placed
+  std::vector<int> joined_of;        ///< per vertex of the file: its vertex in the simulation; empty: the same
 };
 
 /// All garments of one primary are solved together and feel each other, and so are all cords of one primary; cloth and

@@ -18,7 +18,7 @@ std::uint64_t cache_bytes(const BakePlan& plan) {
   for (const GroupPlan& group : plan.groups) {
     for (const GarmentOutput& garment : group.outputs)
       for (const std::string& format : plan.shot().cache_formats)
-        sum += frames * static_cast<std::uint64_t>(garment.mesh.vertex_count()) * (format == "pc2" ? 12 : 24);
+        sum += frames * static_cast<std::uint64_t>(garment.mesh->vertex_count()) * (format == "pc2" ? 12 : 24);
     // Body as drawn, and the collider: about as many vertices again before refinement.
     if (plan.shot().cache_collider)
       sum += 2 * 12 * frames *

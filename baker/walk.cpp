@@ -31,7 +31,7 @@ double since(Clock::time_point start) {
 int checkpoint_interval(std::span<const State> states) {
   std::uint64_t bytes = 0;
   for (const State& state : states)
-    for (const StateBlock& block : state.blocks) bytes += sizeof(double) * block.values.size();
+    for (const StateBlock& block : state.blocks) bytes += sizeof(double) * block.values.read().size();
   return std::clamp(static_cast<int>(bytes / k_checkpoint_bytes_per_frame) + 1, 1, k_most_frames_between_checkpoints);
 }
 
@@ -87,7 +87,10 @@ class Walk {
   Status frames();
   Status complete();
   FrameReport advance();
-  Status emit(const Snapshot& snapshot, bool checkpoint);
+  using SharedSnapshot = std::shared_ptr<const Snapshot>;
+  SharedSnapshot take() const { return std::make_shared<const Snapshot>(caches_.take(states_)); }
+  /// before: null at the start.
+  Status emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, bool checkpoint);
   Status save_checkpoint();  ///< of the states as they are
 
   const BakePlan& plan_;
@@ -130,13 +133,13 @@ FrameReport Walk::advance() {
   return report;
 }
 
-Status Walk::emit(const Snapshot& snapshot, bool checkpoint) {
-  if (!finite(snapshot))
+Status Walk::emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, bool checkpoint) {
+  if (!finite(*snapshot))
     return Error{ErrorKind::k_diverged,
                  "the solver returned positions that are not finite; nothing of this frame was written",
-                 fmt::format("frame {}", snapshot.frame), "try more substeps ([solver] max_substeps)"};
-  if (snapshot.frame >= plan_.first_written()) {
-    const Status taken = writer_.submit([this, snapshot] { return caches_.write(snapshot); });
+                 fmt::format("frame {}", snapshot->frame), "try more substeps ([solver] max_substeps)"};
+  if (snapshot->frame >= plan_.first_written()) {
+    const Status taken = writer_.submit([this, snapshot, before] { return caches_.write(*snapshot, before.get()); });
     if (!taken) return taken;
   }
   if (!checkpoint) return {};
@@ -158,13 +161,10 @@ Status Walk::frames() {
   progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame,
                    shot.preroll, states_[0].frame + 1, vertices, thread_count()});
   Pace pace;
-  std::optional<Snapshot> before;
+  SharedSnapshot before = take();  // in the caches already, where a bake goes on
   if (manifest_.frames.empty()) {
     manifest_.frames.push_back(certify_start(plan_, solvers_, states_));
-    before = caches_.take(states_, nullptr);
-    if (const Status emitted = emit(*before, true); !emitted) return emitted;
-  } else {
-    before = caches_.take(states_, nullptr);  // positions only; this frame is in the caches already
+    if (const Status emitted = emit(before, nullptr, true); !emitted) return emitted;
   }
   const int interval = checkpoint_interval(states_);
   int newest_checkpoint = states_[0].frame;
@@ -182,10 +182,10 @@ Status Walk::frames() {
     FrameReport report = advance();
     if (report.profile.total <= 0) report.profile.total = since(clock);
     manifest_.frames.push_back(report);
-    Snapshot now = caches_.take(states_, &*before);
+    SharedSnapshot now = take();
     const bool checkpoint = report.frame - newest_checkpoint >= interval || report.frame == shot.last_frame;
     if (checkpoint) newest_checkpoint = report.frame;
-    if (const Status emitted = emit(now, checkpoint); !emitted) return emitted;
+    if (const Status emitted = emit(now, before, checkpoint); !emitted) return emitted;
     before = std::move(now);
     pace.add(since(clock));
     progress_.frame({report, report.frame - begin, total, report.frame < shot.first_frame, since(clock),

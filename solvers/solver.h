@@ -90,6 +90,7 @@ class Solver {
 
   /// One system per cache: a garment, a rope.
   virtual int system_count() const = 0;
+  /// Its vertices and faces; what else a file says of them is not kept.
   virtual const Mesh& system_mesh(int system) const = 0;
   /// Positions in the vertex order of system_mesh().
   virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const = 0;

@@ -33,37 +33,76 @@ Status sync_folder(const std::filesystem::path& folder) {
   return {};
 }
 
+/// A regular file, from its beginning.
+class Input {
+ public:
+  static Result<Input> open(const std::filesystem::path& path) {
+    Input file(::open(path.c_str(), O_RDONLY | O_CLOEXEC), path);
+    if (file.descriptor_ < 0) return input_error("cannot read: " + reason(errno), path.string());
+    struct stat info {};
+    if (::fstat(file.descriptor_, &info) != 0 || !S_ISREG(info.st_mode))
+      return input_error("is not a regular file", path.string());
+    file.size_ = static_cast<std::uint64_t>(info.st_size);
+    return file;
+  }
+  Input(Input&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)), path_(std::move(other.path_)), size_(other.size_) {}
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+  ~Input() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+  std::uint64_t size() const { return size_; }
+  /// How much of `data` there was.
+  Result<std::size_t> read(std::span<std::byte> data) {
+    std::size_t done = 0;
+    while (done < data.size()) {
+      const ssize_t n = ::read(descriptor_, data.data() + done, data.size() - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) return input_error("cannot read: " + reason(errno), path_.string());
+      if (n == 0) break;
+      done += static_cast<std::size_t>(n);
+    }
+    return done;
+  }
+
+ private:
+  Input(int descriptor, std::filesystem::path path) : descriptor_(descriptor), path_(std::move(path)) {}
+  int descriptor_;
+  std::filesystem::path path_;
+  std::uint64_t size_ = 0;
+};
+
 }  // namespace
 
 Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return input_error("cannot read: " + reason(errno), path.string());
-  struct stat info {};
-  if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
-    ::close(fd);
-    return input_error("is not a regular file", path.string());
-  }
-  const auto size = static_cast<std::uint64_t>(info.st_size);
-  if (size > max_bytes) {
-    ::close(fd);
+  auto file = Input::open(path);
+  if (!file) return file.error();
+  if (file->size() > max_bytes)
     return input_error("is larger than the limit of " + std::to_string(max_bytes) + " bytes", path.string());
-  }
-  Bytes data(static_cast<std::size_t>(size));
-  std::size_t done = 0;
-  while (done < data.size()) {
-    const ssize_t n = ::read(fd, data.data() + done, data.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      ::close(fd);
-      return input_error("cannot read: " + reason(error), path.string());
-    }
-    if (n == 0) break;
-    done += static_cast<std::size_t>(n);
-  }
-  ::close(fd);
-  data.resize(done);
+  Bytes data(static_cast<std::size_t>(file->size()));
+  const auto done = file->read(data);
+  if (!done) return done.error();
+  data.resize(done.value());
   return data;
+}
+
+Result<FileContent> hash_file(const std::filesystem::path& path) {
+  auto file = Input::open(path);
+  if (!file) return file.error();
+  FileContent out;
+  Hasher hasher;
+  Bytes part(std::size_t{1} << 20);
+  for (;;) {
+    const auto done = file->read(part);
+    if (!done) return done.error();
+    hasher.bytes(part.data(), done.value());
+    out.bytes += done.value();
+    if (done.value() < part.size()) break;
+  }
+  out.hash = hasher.digest();
+  return out;
 }
 
 Result<std::string> read_text(const std::filesystem::path& path, std::uint64_t max_bytes) {

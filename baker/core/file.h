@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "baker/core/bytes.h"
+#include "baker/core/hash.h"
 #include "baker/core/result.h"
 
 namespace ft {
@@ -17,6 +18,12 @@ namespace ft {
 inline constexpr std::uint64_t k_max_file_bytes = std::uint64_t{4} << 30;
 
 Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t max_bytes = k_max_file_bytes);
+/// Of a whole file, without ever holding more than a little of it.
+struct FileContent {
+  std::uint64_t bytes = 0;
+  Hash128 hash;  ///< as hash_bytes() of all of them
+};
+Result<FileContent> hash_file(const std::filesystem::path& path);
 Result<std::string> read_text(const std::filesystem::path& path, std::uint64_t max_bytes = k_max_file_bytes);
 
 /// Writes path.tmp, syncs it, renames it over path, syncs the folder: after a crash there is the old file or the new

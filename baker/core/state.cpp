@@ -1,5 +1,7 @@
 #include "baker/core/state.h"
 
+#include <atomic>
+
 namespace ft {
 namespace {
 
@@ -12,24 +14,44 @@ ByteParts content_of(const State& state) {
   out.write(static_cast<std::uint64_t>(state.blocks.size()));
   for (const StateBlock& block : state.blocks) {
     out.write_string(block.name);
-    out.write(static_cast<std::uint64_t>(block.values.size()));
-    out.view_array(std::span<const double>(block.values));
+    const std::vector<double>& values = block.values.read();
+    out.write(static_cast<std::uint64_t>(values.size()));
+    out.view_array(std::span<const double>(values));
   }
   return out;
 }
 
+StateBlock& block_of(State& state, std::string_view name) {
+  for (StateBlock& b : state.blocks)
+    if (b.name == name) return b;
+  state.blocks.push_back({std::string(name), {}});
+  return state.blocks.back();
+}
+
 }  // namespace
 
+const std::vector<double>& SharedNumbers::read() const {
+  static const std::vector<double> none;
+  return values_ ? *values_ : none;
+}
+
+std::vector<double>& SharedNumbers::write() {
+  if (!values_ || values_.use_count() > 1) values_ = std::make_shared<std::vector<double>>(read());
+  std::atomic_thread_fence(std::memory_order_acquire);  // whoever had them in another thread has read them
+  return *values_;
+}
+
 std::vector<double>& State::block(std::string_view name) {
-  for (StateBlock& b : blocks)
-    if (b.name == name) return b.values;
-  blocks.push_back({std::string(name), {}});
-  return blocks.back().values;
+  return block_of(*this, name).values.write();
+}
+
+void State::set(std::string_view name, std::vector<double> values) {
+  block_of(*this, name).values = SharedNumbers(std::move(values));
 }
 
 const std::vector<double>* State::find(std::string_view name) const {
   for (const StateBlock& b : blocks)
-    if (b.name == name) return &b.values;
+    if (b.name == name) return &b.values.read();
   return nullptr;
 }
 

@@ -2,9 +2,11 @@
 // hash(State) is the determinism test, save(State) is the checkpoint, resuming is the same code path as continuing.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "baker/core/byte_parts.h"
@@ -14,10 +16,26 @@
 
 namespace ft {
 
+/// Numbers that copies of a state have in common until one of them is changed: a checkpoint is a copy that costs
+/// nothing while it waits to be written. Copies may be read in several threads; each belongs to one.
+class SharedNumbers {
+ public:
+  SharedNumbers() = default;
+  SharedNumbers(std::vector<double> values) : values_(std::make_shared<std::vector<double>>(std::move(values))) {}
+  const std::vector<double>& read() const;
+  /// To be changed: first copied, if somebody else has them.
+  std::vector<double>& write();
+  /// Whether both are one.
+  bool is(const SharedNumbers& other) const { return values_ == other.values_; }
+
+ private:
+  std::shared_ptr<std::vector<double>> values_;  ///< null: none
+};
+
 /// A named column of numbers. Doubles carry positions exactly; integers up to 2^53 go in as doubles too.
 struct StateBlock {
   std::string name;
-  std::vector<double> values;
+  SharedNumbers values;
 };
 
 struct State {
@@ -25,8 +43,10 @@ struct State {
   double time = 0;  ///< s from the first frame of the shot
   std::vector<StateBlock> blocks;
 
-  /// The block of that name; made (empty) when missing.
+  /// The block of that name, to be changed; made (empty) when missing.
   std::vector<double>& block(std::string_view name);
+  /// Puts others in the place of a block's numbers, whoever else has the old ones.
+  void set(std::string_view name, std::vector<double> values);
   const std::vector<double>* find(std::string_view name) const;
 };
 

@@ -43,7 +43,7 @@ struct BodyAdvance::Scratch {
   Candidates candidates;
   ImplicitStep step;
   PieceMotion piece;
-  std::vector<Vec3> end, centre, x, v, pins;
+  std::vector<Vec3> end, centre, pins;  ///< end: of cloth and body
   std::vector<RoomRequest> requests;
 };
 
@@ -80,7 +80,6 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.h_older = cloth.h_older;
   step.time = in.time_t0 + end * in.h;
   step.all_start = s.piece.start;
-  step.all_begin = s.end;
   step.pin_target = s.pins;
   step.push = in.push;
   s.centre.resize(cloth.x.size());
@@ -91,8 +90,6 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations;
   if (shortened) step.settled_strain = k_shortened_settled;
-  s.x.resize(cloth.x.size());
-  s.v.resize(cloth.x.size());
   step.enough_room = k_negligible;
   step.more_room = [&](std::span<const double> missing, std::span<const Vec3> x, std::span<const Vec3> move) {
     const auto clock = std::chrono::steady_clock::now();
@@ -114,7 +111,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     return all;
   };
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
-  const StepResult result = s.step.solve(step, s.x, s.v);
+  const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
   report.lost_weight += h / in.h * result.lost_weight;
   report.linear_iterations += result.linear_iterations;
@@ -131,12 +128,12 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     sum.peak = std::max(sum.peak, force);
     if (force > 0) sum.contact_time += h;
   }
+  std::copy_n(s.end.begin(), cloth.x.size(), cloth.x_older.begin());
+  // What was newest grows older, and what was oldest has become the newest.
   cloth.x_older.swap(cloth.x_previous);
   cloth.v_older.swap(cloth.v_previous);
   cloth.x_previous.swap(cloth.x);
   cloth.v_previous.swap(cloth.v);
-  cloth.x.swap(s.x);
-  cloth.v.swap(s.v);
   cloth.h_older = cloth.h_previous;
   cloth.h_previous = step.h;
 }

@@ -72,6 +72,7 @@ struct Holds {
   };
   std::vector<int> start;
   std::vector<Hold> items;
+  std::vector<int> held;  ///< vertices with any, ascending
 
   Holds(std::span<const Pull> pulls, int vertex_count) : start(at(vertex_count) + 1, 0) {
     const auto each = [&](auto&& visit) {
@@ -80,7 +81,10 @@ struct Holds {
           if (const int v = pulls[at(p)].vertex[at(k)]; v < vertex_count) visit(v, Hold{p, k});
     };
     each([&](int v, const Hold&) { ++start[at(v) + 1]; });
-    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+    for (std::size_t i = 1; i < start.size(); ++i) {
+      if (start[i] > 0) held.push_back(static_cast<int>(i - 1));
+      start[i] += start[i - 1];
+    }
     items.resize(at(start.back()));
     std::vector<int> next(start.begin(), start.end() - 1);
     each([&](int v, const Hold& hold) { items[at(next[at(v)]++)] = hold; });
@@ -88,8 +92,13 @@ struct Holds {
   std::span<const Hold> of(std::size_t v) const { return {items.data() + start[v], items.data() + start[v + 1]}; }
 };
 
-/// Inverses of the diagonal blocks. l1-Jacobi: they carry the absolute row sum, so that shared contacts cannot make the
-/// sweeps diverge.
+/// Diagonal of the block of a vertex that nothing has hold of.
+double free_diagonal(const CarryInput& in, std::size_t vertex, double g) {
+  return g * (1 + 8 * static_cast<double>(in.neighbours->row(static_cast<int>(vertex)).size()));
+}
+
+/// Inverses of the diagonal blocks of vertices that something has hold of. l1-Jacobi: they carry the absolute row sum,
+/// so that shared contacts cannot make the sweeps diverge.
 std::vector<Mat3> inverse_blocks(const CarryInput& in, std::span<const Pull> pulls, const Holds& holds, double g) {
   const auto row_sum = [&](const Pull& p) {
     double sum = 0;
@@ -97,17 +106,16 @@ std::vector<Mat3> inverse_blocks(const CarryInput& in, std::span<const Pull> pul
       if (p.vertex[k] < in.cloth_vertex_count) sum += std::abs(p.weight[k]);
     return sum;
   };
-  std::vector<Mat3> out(at(in.cloth_vertex_count));
+  std::vector<Mat3> out(holds.held.size());
   parallel_for(out.size(), k_vertices, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto degree = static_cast<double>(in.neighbours->row(static_cast<int>(i)).size());
-      const double free = g * (1 + 8 * degree);
-      Mat3 block = Mat3::Identity() * free;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = at(holds.held[k]);
+      Mat3 block = Mat3::Identity() * free_diagonal(in, i, g);
       for (const Holds::Hold& hold : holds.of(i)) {
         const Pull& p = pulls[at(hold.pull)];
         block += (p.strength * std::abs(p.weight[at(hold.corner)]) * row_sum(p)) * p.normal * p.normal.transpose();
       }
-      out[i] = holds.of(i).empty() ? Mat3(Mat3::Identity() / free) : Mat3(block.inverse());
+      out[k] = block.inverse();
     }
   });
   return out;
@@ -122,7 +130,9 @@ void carry_field(const CarryInput& in, std::span<Vec3> carry) {
   const Holds holds(pulls, n);
   const std::vector<Mat3> inverse = inverse_blocks(in, pulls, holds, g);
   std::vector<double> missing(pulls.size());
-  std::vector<Vec3> now(in.inertia.begin(), in.inertia.end()), next(at(n));
+  std::vector<Vec3> other(at(n));
+  std::span<Vec3> now = carry.first(at(n)), next = other;
+  std::copy_n(in.inertia.begin(), at(n), now.begin());
   for (int sweep = 0; sweep < in.sweeps; ++sweep) {
     parallel_for(pulls.size(), k_vertices, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -134,6 +144,8 @@ void carry_field(const CarryInput& in, std::span<Vec3> carry) {
       }
     });
     parallel_for(next.size(), k_vertices, [&](std::size_t begin, std::size_t end) {
+      const auto first = std::lower_bound(holds.held.begin(), holds.held.end(), static_cast<int>(begin));
+      auto block = inverse.begin() + (first - holds.held.begin());
       for (std::size_t i = begin; i < end; ++i) {
         Vec3 residual = g * (in.inertia[i] - now[i]);
         for (const int j : in.neighbours->row(static_cast<int>(i))) residual -= (4 * g) * (now[i] - now[at(j)]);
@@ -141,10 +153,13 @@ void carry_field(const CarryInput& in, std::span<Vec3> carry) {
           const Pull& p = pulls[at(hold.pull)];
           residual += (missing[at(hold.pull)] * p.weight[at(hold.corner)]) * p.normal;
         }
-        next[i] = now[i] + inverse[i] * residual;
+        if (holds.of(i).empty())
+          next[i] = now[i] + (1 / free_diagonal(in, i, g)) * residual;
+        else
+          next[i] = now[i] + *block++ * residual;
       }
     });
-    now.swap(next);
+    std::swap(now, next);
   }
   if (in.clumps != nullptr) in.clumps->take_mean(now);
   double fastest = 0;

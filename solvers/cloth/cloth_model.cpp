@@ -233,6 +233,11 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   model->attachments = std::move(model->topology->attachments);
   model->seams = std::move(model->topology->seams);
   model->topology.reset();
+  for (ClothGarment& garment : model->setup.garments) {
+    Mesh& mesh = garment.mesh;
+    mesh.uvs = {}, mesh.face_uvs = {}, mesh.groups = {}, mesh.stitches = {};
+    garment.maps = {};
+  }
   if (s.primary) {
     CHECK(s.poses == nullptr || &s.poses->body() == s.primary.get());
     model->collider = std::make_unique<MovingCollider>(

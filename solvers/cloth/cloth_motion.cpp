@@ -15,16 +15,16 @@ void carry(const Teleport& teleport, ClothMotion& m) {
 }
 
 void store(State& state, const ClothMotion& m) {
-  state.block("x") = flat(m.x);
-  state.block("v") = flat(m.v);
-  state.block("x_previous") = flat(m.x_previous);
-  state.block("v_previous") = flat(m.v_previous);
-  state.block("x_older") = flat(m.x_older);
-  state.block("v_older") = flat(m.v_older);
-  state.block("h_previous") = {m.h_previous};
-  state.block("h_older") = {m.h_older};
-  state.block("released") = m.released;
-  state.block("tangled") = m.tangled;
+  state.set("x", flat(m.x));
+  state.set("v", flat(m.v));
+  state.set("x_previous", flat(m.x_previous));
+  state.set("v_previous", flat(m.v_previous));
+  state.set("x_older", flat(m.x_older));
+  state.set("v_older", flat(m.v_older));
+  state.set("h_previous", {m.h_previous});
+  state.set("h_older", {m.h_older});
+  state.set("released", m.released);
+  state.set("tangled", m.tangled);
 }
 
 ClothMotion load_motion(const State& state, std::size_t count) {

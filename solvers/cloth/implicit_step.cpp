@@ -86,7 +86,7 @@ struct ImplicitStep::Scratch {
   LinearSystem system;
   ContactPotential contact;
   StepTruncation truncation;
-  std::vector<Vec3> past, y, gradient, direction, cut, all, trial;
+  std::vector<Vec3> y, gradient, direction, cut, trial;
   std::vector<double> missing;
   std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
   std::vector<char> held;         ///< per vertex: not solved for
@@ -101,7 +101,7 @@ ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
 }
 ImplicitStep::~ImplicitStep() = default;
 
-StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::span<Vec3> v_out) {
+StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::span<Vec3> v_out) {
   Scratch& s = *scratch_;
   const std::size_t n = at(model_.vertex_count());
   const bool multistep = model_.setup.bdf2;
@@ -124,18 +124,16 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   context.time = in.time;
   for (const auto& energy : model_.energies) energy->begin_step(context);
 
-  s.past.resize(n);
+  const auto past = [&](std::size_t i) -> Vec3 { return w.a * in.x_t0[i] - w.b * in.x_tm1[i] + w.c * in.x_tm2[i]; };
   s.y.resize(n);
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      s.past[i] = w.a * in.x_t0[i] - w.b * in.x_tm1[i] + w.c * in.x_tm2[i];
       s.y[i] =
-          s.past[i] + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i] + w.c * in.v_tm2[i]) + bh * bh * model_.setup.gravity;
+          past(i) + bh * (w.a * in.v_t0[i] - w.b * in.v_tm1[i] + w.c * in.v_tm2[i]) + bh * bh * model_.setup.gravity;
       if (!in.push.empty()) s.y[i] += bh * bh * in.push[i];
     }
   });
-  s.all.assign(in.all_begin.begin(), in.all_begin.end());
-  s.trial = s.all;
+  s.trial.assign(all.begin(), all.end());
   s.gradient.resize(n);
   s.direction.resize(n);
   s.cut.resize(n);
@@ -148,7 +146,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   for (std::size_t p = 0; p < model_.pins.size(); ++p)
     if (s.pin_share[p] > 0 && !model_.pins[p].to_world) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
 
-  const auto cloth = [&](std::vector<Vec3>& all) { return std::span<Vec3>(all.data(), n); };
+  const auto cloth = [&](std::span<Vec3> of_all) { return of_all.first(n); };
   /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
   const auto potential_of_cloth = [&](std::span<const Vec3> x) {
     double e = parallel_sum(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -168,7 +166,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   double smallest_radius = 1e-3;
   for (const double r : model_.contact.radius) smallest_radius = std::min(smallest_radius, r);
   s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
-  s.contact.update(s.all);
+  s.contact.update(all);
   result.seconds_contact += watch.lap();
 
   /// What the potential loses along a displacement, to the first order; s.gradient is that of a descent [J].
@@ -182,13 +180,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
   const double gravity = model_.setup.gravity.norm();
   const double settled_drift =
       gravity > 0 ? k_settled_drift * in.h * in.h * gravity : std::numeric_limits<double>::infinity();
-  double of_cloth = potential_of_cloth(cloth(s.all));
+  double of_cloth = potential_of_cloth(cloth(all));
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     s.contact.lag_friction();
     s.contact.mark_touching(s.touches);
-    const std::span<const Vec3> x(s.all.data(), n);
+    const std::span<const Vec3> x = all.first(n);
     BlockMatrix& hessian = s.system.begin();
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -211,18 +209,18 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       term.stiffness = Mat3f::Identity() * static_cast<float>(stiffness);
       s.terms.push_back(term);
     }
-    s.contact.add_gradient(s.all, s.gradient);
-    s.contact.add_terms(s.all, s.terms);
+    s.contact.add_gradient(all, s.gradient);
+    s.contact.add_terms(all, s.terms);
     s.system.add_pair_terms(s.terms);
     for (Vec3& g : s.gradient) g = -g;
-    const double before = of_cloth + s.contact.value(s.all);
+    const double before = of_cloth + s.contact.value(all);
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
     const auto find_direction = [&](std::span<const char> held) {
       result.linear_iterations += s.system.solve(s.gradient, held, s.direction).iterations;
       for (Vec3& d : s.direction)
         if (!d.allFinite()) d.setZero(), result.finite = false;
-      s.truncation.calm(s.all, s.direction);
+      s.truncation.calm(all, s.direction);
       result.seconds_linear += watch.lap();
     };
     find_direction(model_.unused);
@@ -230,7 +228,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     const double most_missing = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
       double most = 0;
       for (std::size_t i = begin; i < end; ++i) {
-        s.missing[i] = std::max(0.0, (s.all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
+        s.missing[i] = std::max(0.0, (all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
         most = std::max(most, s.missing[i]);
       }
       return most;
@@ -239,17 +237,17 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
       result.seconds_contact += watch.lap();
       in.more_room(s.missing, x, s.direction);
       watch.lap();
-      s.contact.extend(s.all);
+      s.contact.extend(all);
     }
     const StepTruncation::PairsSuffice pairs_suffice = [&](std::span<const Vec3> to) {
       result.seconds_contact += watch.lap();
       const bool complete = in.pairs_suffice(to);
       watch.lap();
-      if (!complete) s.contact.extend(s.all);
+      if (!complete) s.contact.extend(all);
       return complete;
     };
     const auto truncate = [&] {
-      s.truncation.truncate(s.contact, s.all, {in.centre, in.slack},
+      s.truncation.truncate(s.contact, all, {in.centre, in.slack},
                             in.pairs_suffice ? pairs_suffice : StepTruncation::PairsSuffice(), s.direction, s.cut,
                             s.trial);
     };
@@ -274,7 +272,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
         double most = 0;
         for (std::size_t i = begin; i < end; ++i) {
           const Vec3 d = factor * s.direction[i];
-          s.trial[i] = s.all[i] + d;
+          s.trial[i] = all[i] + d;
           most = std::max(most, d.norm());
         }
         return most;
@@ -289,36 +287,32 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> x_out, std::
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
               (iteration + 1 >= in.newton_iterations && whole &&
-               strain_change(model_.rest_edges, s.all, s.trial) < in.settled_strain &&
-               largest_drift(model_, s.touches, cloth(s.all), cloth(s.trial)) <= settled_drift);
+               strain_change(model_.rest_edges, all, s.trial) < in.settled_strain &&
+               largest_drift(model_, s.touches, cloth(all), cloth(s.trial)) <= settled_drift);
     if (finite) {
-      std::copy_n(s.trial.begin(), n, s.all.begin());
+      std::copy_n(s.trial.begin(), n, all.begin());
       of_cloth = of_trial;
     } else {
-      s.contact.update(s.all);
+      s.contact.update(all);
       result.last_move = 0;
     }
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = s.contact.smallest_gap();
-  measure_on_body(in, inertia, result);
-  measure_lost(in, inertia, result);
-  const std::span<const Vec3> x = cloth(s.all);
-  for (std::size_t i = 0; i < n; ++i) {
-    x_out[i] = x[i];
-    v_out[i] = (x[i] - s.past[i]) / bh;
-  }
-  result.finite = result.finite && all_finite(x_out);
+  measure_on_body(in, all, inertia, result);
+  measure_lost(in, all, inertia, result);
+  for (std::size_t i = 0; i < n; ++i) v_out[i] = (all[i] - past(i)) / bh;
+  result.finite = result.finite && all_finite(all.first(n));
   return result;
 }
 
 /// Adds what the pins, or those to the world alone, pull with at the end of the solve.
-void ImplicitStep::add_pin_gradient(const StepInput& in, bool to_world_only) {
+void ImplicitStep::add_pin_gradient(const StepInput& in, std::span<const Vec3> all, bool to_world_only) {
   Scratch& s = *scratch_;
   for (std::size_t p = 0; p < model_.pins.size(); ++p) {
     const PinPoint& pin = model_.pins[p];
     if (s.pin_share[p] == 0 || (to_world_only && !pin.to_world)) continue;
-    const Vec3 d = s.all[at(pin.vertex)] - in.pin_target[p];
+    const Vec3 d = all[at(pin.vertex)] - in.pin_target[p];
     s.gradient[at(pin.vertex)] += pin_spring(pin, s.pin_share[p], d.norm()).secant * d;
   }
 }
@@ -326,17 +320,17 @@ void ImplicitStep::add_pin_gradient(const StepInput& in, bool to_world_only) {
 /// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has
 /// settled the cloth gets less of them. What is left of a garment's change of momentum after gravity, air and other
 /// garments and what holds it to the world came from the body.
-void ImplicitStep::measure_on_body(const StepInput& in, double inertia, StepResult& result) {
+void ImplicitStep::measure_on_body(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result) {
   Scratch& s = *scratch_;
   const std::size_t garments = model_.setup.garments.size(), n = s.y.size();
   result.on_body.resize(garments);
   if (std::none_of(s.touches.begin(), s.touches.end(), [](char c) { return c != 0; })) return;
-  const std::span<const Vec3> x(s.all.data(), n);
+  const std::span<const Vec3> x = all.first(n);
   std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
-  if (garments > 1) s.contact.add_gradient_between_garments(s.all, s.gradient);
-  add_pin_gradient(in, true);
+  if (garments > 1) s.contact.add_gradient_between_garments(all, s.gradient);
+  add_pin_gradient(in, all, true);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t g = at(model_.contact.garment[i]);
     if (s.touches[g] != 0) result.on_body[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));
@@ -344,16 +338,16 @@ void ImplicitStep::measure_on_body(const StepInput& in, double inertia, StepResu
 }
 
 /// What is left of the gradient of a whole garment: inner forces cancel out, and all others have to make its momentum.
-void ImplicitStep::measure_lost(const StepInput& in, double inertia, StepResult& result) {
+void ImplicitStep::measure_lost(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result) {
   const double gravity = model_.setup.gravity.norm();
   if (model_.attachments.empty() || !(gravity > 0)) return;
   Scratch& s = *scratch_;
-  const std::span<const Vec3> x(s.all.data(), s.y.size());
+  const std::span<const Vec3> x = all.first(s.y.size());
   std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
-  s.contact.add_gradient(s.all, s.gradient);
-  add_pin_gradient(in, false);
+  s.contact.add_gradient(all, s.gradient);
+  add_pin_gradient(in, all, false);
   std::vector<char> attached(model_.setup.garments.size(), 0);
   for (const AttachPoint& point : model_.attachments) attached[at(model_.garment_of(point.vertex))] = 1;
   for (std::size_t g = 0; g < attached.size(); ++g) {

@@ -21,9 +21,8 @@ struct StepInput {
   double h = 0, h_previous = 0, h_older = 0;                     ///< s
   double time = 0;                                               ///< at the end [s]
   std::span<const Vec3> all_start;      ///< cloth and body at the start: slip is measured from here
-  std::span<const Vec3> all_begin;      ///< carried cloth and body at the end of the step
   std::span<const Vec3> pin_target;     ///< per pin, at the end of the step
-  std::span<const Vec3> centre;         ///< of the ball that each cloth vertex has to stay in; all_begin is inside
+  std::span<const Vec3> centre;         ///< of the ball that each cloth vertex has to stay in; it starts inside
   std::span<const double> slack;        ///< its radius [m]
   std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
   double friction_share = 1;            ///< of all friction [1]
@@ -58,13 +57,14 @@ class ImplicitStep {
  public:
   explicit ImplicitStep(const ClothModel& model);
   ~ImplicitStep();
-  /// Fills x and v of the cloth at the end of the step.
-  StepResult solve(const StepInput& input, std::span<Vec3> x, std::span<Vec3> v);
+  /// all: carried cloth and body at the end of the step; the solve puts the cloth where it goes, and fills v with its
+  /// velocities then, which may be where input.v_tm2 is: that is looked at in the beginning only.
+  StepResult solve(const StepInput& input, std::span<Vec3> all, std::span<Vec3> v);
 
  private:
-  void measure_on_body(const StepInput& in, double inertia, StepResult& result);
-  void measure_lost(const StepInput& in, double inertia, StepResult& result);
-  void add_pin_gradient(const StepInput& in, bool to_world_only);
+  void measure_on_body(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result);
+  void measure_lost(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result);
+  void add_pin_gradient(const StepInput& in, std::span<const Vec3> all, bool to_world_only);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;

@@ -3,6 +3,7 @@
 // wanders off in it, and when the part opens it is found where it was. Stretched cloth still tears itself loose.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "solvers/energies/energy.h"
@@ -15,7 +16,7 @@ struct PieceMotion;
 
 class LetThroughDrag final : public Energy {
  public:
-  explicit LetThroughDrag(std::vector<double> mass) : mass_(std::move(mass)) {}
+  explicit LetThroughDrag(std::span<const double> mass) : mass_(mass) {}
   /// Takes up the cloth that is let through now, and what it is to follow in this piece.
   void follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece);
 
@@ -33,7 +34,7 @@ class LetThroughDrag final : public Energy {
     int vertex;
     Vec3 place;  ///< at the end of the piece, if it does not slip [m]
   };
-  std::vector<double> mass_;  ///< kg
+  std::span<const double> mass_;  ///< kg
   std::vector<Held> held_;
   double h_ = 0;  ///< s
 };

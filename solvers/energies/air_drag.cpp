@@ -1,6 +1,7 @@
 #include "solvers/energies/air_drag.h"
 
 #include <cmath>
+#include <limits>
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
@@ -13,23 +14,32 @@ constexpr std::size_t k_block = 512;
 }  // namespace
 
 AirDrag::AirDrag(const ClothTopology& topology, const AirSettings& air) : air_(air) {
+  for (const ClothPiece& piece : topology.pieces) {
+    const double factor = 0.5 * air.density / 3;
+    factors_.push_back({factor * piece.fabric.drag_normal, factor * piece.fabric.drag_tangential});
+    still_ = still_ && factors_.back().normal == 0 && factors_.back().tangential == 0;
+  }
+  if (still_) return;
+  CHECK(factors_.size() <= std::numeric_limits<std::uint16_t>::max());
+  std::vector<Triangle> triangles;
+  std::vector<std::size_t> element;
   for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
     if (topology.rest_area[t] == 0) continue;
-    const Fabric& fabric = topology.fabric_of_triangle(t);
-    const double factor = 0.5 * air.density * topology.rest_area[t] / 3;
-    triangles_.push_back(topology.triangles[t]);
-    normal_factor_.push_back(static_cast<float>(factor * fabric.drag_normal));
-    tangential_factor_.push_back(static_cast<float>(factor * fabric.drag_tangential));
-    still_ = still_ && normal_factor_.back() == 0 && tangential_factor_.back() == 0;
+    triangles.push_back(topology.triangles[t]);
+    element.push_back(t);
   }
-  triangles_.shrink_to_fit();
-  normal_factor_.shrink_to_fit();
-  tangential_factor_.shrink_to_fit();
-  around_ = vertex_triangles(topology.vertex_count, triangles_);
+  std::vector<int> panel_of_slot;
+  schedule_ = make_element_schedule(triangles, topology.rest, panel_of_slot);
+  corners_ = group_indices<3>(schedule_, [&](std::size_t slot) { return triangles[at(panel_of_slot[slot])]; });
+  area_.reserve(schedule_.count);
+  piece_.reserve(schedule_.count);
+  for (const int panel : panel_of_slot) {
+    area_.push_back(static_cast<float>(topology.rest_area[element[at(panel)]]));
+    piece_.push_back(static_cast<std::uint16_t>(topology.triangle_piece[element[at(panel)]]));
+  }
 }
 
-AirDrag::Panel AirDrag::panel(std::size_t triangle, const StepContext& context) const {
-  const Triangle& t = triangles_[triangle];
+AirDrag::Drag AirDrag::panel(const Triangle& t, double area, const Factors& factors, const StepContext& context) const {
   Vec3 corner[3], velocity = -air_.wind;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& v = context.v_t0[at(t[k])];
@@ -41,7 +51,7 @@ AirDrag::Panel AirDrag::panel(std::size_t triangle, const StepContext& context) 
   if (!(length > 1e-30)) return {};
   normal /= length;
   const Vec3 vn = normal * normal.dot(velocity), vt = velocity - vn;
-  const double dn = normal_factor_[triangle] * vn.norm(), dt = tangential_factor_[triangle] * vt.norm();
+  const double dn = area * factors.normal * vn.norm(), dt = area * factors.tangential * vt.norm();
   const Mat3 across = normal * normal.transpose();
   const Mat3 damping = 2 * dn * across + 2 * dt * (Mat3::Identity() - across);
   const Vec3 force = damping * air_.wind + dn * vn + dt * vt;  // -(D (v - w) - dn vn - dt vt) at v = 0
@@ -51,18 +61,24 @@ AirDrag::Panel AirDrag::panel(std::size_t triangle, const StepContext& context) 
           {entry(force[0]), entry(force[1]), entry(force[2])}};
 }
 
-AirDrag::Panel& AirDrag::Panel::operator+=(const Panel& other) {
+AirDrag::Drag& AirDrag::Drag::operator+=(const Drag& other) {
   for (std::size_t k = 0; k < damping.size(); ++k) damping[k] += other.damping[k];
   for (std::size_t k = 0; k < force.size(); ++k) force[k] += other.force[k];
   return *this;
 }
 
-Mat3 AirDrag::Panel::damping_matrix() const {
+Mat3f AirDrag::Drag::damping_matrix() const {
   const auto& [xx, yy, zz, xy, yz, zx] = damping;
-  return Mat3f{{xx, xy, zx}, {xy, yy, yz}, {zx, yz, zz}}.cast<double>();
+  return Mat3f{{xx, xy, zx}, {xy, yy, yz}, {zx, yz, zz}};
 }
 
-Vec3 AirDrag::Panel::force_vector() const {
+Vec3 AirDrag::Drag::damping_times(const Vec3& v) const {
+  const auto& [xx, yy, zz, xy, yz, zx] = damping;
+  return {xx * v.x() + xy * v.y() + zx * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
+          zx * v.x() + yz * v.y() + zz * v.z()};
+}
+
+Vec3 AirDrag::Drag::force_vector() const {
   return {force[0], force[1], force[2]};
 }
 
@@ -76,22 +92,21 @@ void AirDrag::begin_step(const StepContext& context) {
   if (still_) return;
   CHECK(context.v_t0.size() == context.x_t0.size());
   rate_time_ = context.rate_time();
-  panels_.resize(triangles_.size());
-  parallel_for(triangles_.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) panels_[t] = panel(t, context);
-  });
-  const std::size_t n = context.x_t0.size();
-  vertices_.resize(n);
   x_t0_ = context.x_t0;
   x_tm1_ = context.x_tm1;
   a_ = context.a;
   b_ = context.has_history() ? context.b : 0;
-  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+  vertices_.assign(context.x_t0.size(), Drag{});
+  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
+    GroupIndices<3>::Group corners;
     for (std::size_t i = begin; i < end; ++i) {
-      Panel sum;
-      if (i + 1 < around_.start.size())
-        for (const int t : around_.row(static_cast<int>(i))) sum += panels_[at(t)];
-      vertices_[i] = sum;
+      corners_.get(i, corners);
+      for (std::size_t l = 0; l < schedule_.used(i); ++l) {
+        const Triangle t{corners.column[0][l], corners.column[1][l], corners.column[2][l]};
+        const std::size_t slot = i * k_lanes + l;
+        const Drag of_panel = panel(t, area_[slot], factors_[piece_[slot]], context);
+        for (const int v : t) vertices_[at(v)] += of_panel;
+      }
     }
   });
 }
@@ -102,7 +117,7 @@ double AirDrag::value(std::span<const Vec3> x) const {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 v = velocity(x, i);
-      sum += rate_time_ * v.dot(0.5 * (vertices_[i].damping_matrix() * v) - vertices_[i].force_vector());
+      sum += rate_time_ * v.dot(0.5 * vertices_[i].damping_times(v) - vertices_[i].force_vector());
     }
     return sum;
   });
@@ -112,7 +127,7 @@ void AirDrag::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) co
   if (still_ || vertices_.empty()) return;
   parallel_for(x.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      gradient[i] += vertices_[i].damping_matrix() * velocity(x, i) - vertices_[i].force_vector();
+      gradient[i] += vertices_[i].damping_times(velocity(x, i)) - vertices_[i].force_vector();
   });
 }
 
@@ -120,7 +135,8 @@ void AirDrag::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   if (still_ || vertices_.empty()) return;
   parallel_for(x.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      hessian.blocks[at(hessian.pattern->diagonal[i])] += (vertices_[i].damping_matrix() / rate_time_).cast<float>();
+      hessian.blocks[at(hessian.pattern->diagonal[i])] +=
+          vertices_[i].damping_matrix() / static_cast<float>(rate_time_);
   });
 }
 

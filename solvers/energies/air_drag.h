@@ -7,11 +7,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
-#include "baker/core/mesh.h"
 #include "solvers/energies/cloth_topology.h"
+#include "solvers/energies/element_schedule.h"
 #include "solvers/energies/energy.h"
+#include "solvers/energies/group_indices.h"
 
 namespace ft {
 
@@ -32,25 +34,32 @@ class AirDrag final : public Energy {
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
 
  private:
-  /// A panel's damping matrix [kg/s] per corner and the force that its linearised law has at zero velocity [N] per
-  /// corner. In float: the law itself is known to a few per cent.
-  struct Panel {
+  /// Damping matrix [kg/s] and the force that the linearised law has at zero velocity [N], of a panel for each of its
+  /// corners, or of all around a vertex. In float: the law itself is known to a few per cent.
+  struct Drag {
     std::array<float, 6> damping{};  ///< xx, yy, zz, xy, yz, zx
     std::array<float, 3> force{};
-    Panel& operator+=(const Panel& other);
-    Mat3 damping_matrix() const;
+    Drag& operator+=(const Drag& other);
+    Mat3f damping_matrix() const;
+    Vec3 damping_times(const Vec3& v) const;
     Vec3 force_vector() const;
   };
-  Panel panel(std::size_t triangle, const StepContext& context) const;
+  /// Per area, as a fabric has it: rho/2 C / 3 [kg/m3].
+  struct Factors {
+    double normal = 0, tangential = 0;
+  };
+  Drag panel(const Triangle& corners, double area, const Factors& factors, const StepContext& context) const;
+  Vec3 velocity(std::span<const Vec3> x, std::size_t vertex) const;
 
   AirSettings air_;
-  std::vector<Triangle> triangles_;
-  std::vector<float> normal_factor_, tangential_factor_;  ///< rho/2 C A / 3 of each triangle [kg/m]
-  Adjacency around_;                                      ///< vertex -> triangles
-  bool still_ = true;                                     ///< vacuum
+  std::vector<Factors> factors_;  ///< of the pieces
+  bool still_ = true;             ///< vacuum; then there is nothing of what follows
+  ElementSchedule schedule_;
+  GroupIndices<3> corners_;
+  std::vector<float> area_;  ///< of the panel in each slot, at rest [m2]
+  std::vector<std::uint16_t> piece_;
   // Of the step, per vertex: U = rate_time/2 v.D v - rate_time f.v with v = (x - reference) / rate_time.
-  Vec3 velocity(std::span<const Vec3> x, std::size_t vertex) const;
-  std::vector<Panel> panels_, vertices_;
+  std::vector<Drag> vertices_;
   std::span<const Vec3> x_t0_, x_tm1_;
   double a_ = 1, b_ = 0;  ///< reference = a x_t0 - b x_tm1; b = 0: x_t0
   double rate_time_ = 1;

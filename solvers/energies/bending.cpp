@@ -1,6 +1,7 @@
 #include "solvers/energies/bending.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -16,19 +17,25 @@ namespace {
 /// A triangle pressed below this share of its rest area counts as degenerate.
 constexpr double k_collapsed = 1e-3;
 
-float degenerate_below(double rest_area) {
+/// The upper half of a float: the limit is a rough one, too.
+std::uint16_t degenerate_below(double rest_area) {
   const double least = 2 * k_collapsed * rest_area;
-  return least > 0 ? std::max(static_cast<float>(least * least), std::numeric_limits<float>::min()) : 1;
+  const float floor = least > 0 ? std::max(static_cast<float>(least * least), std::numeric_limits<float>::min()) : 1.0f;
+  return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(floor) >> 16);
+}
+
+void whole_floats(const std::uint16_t (&upper)[k_lanes], float (&out)[k_lanes]) {
+  for (int l = 0; l < k_lanes; ++l) out[l] = std::bit_cast<float>(std::uint32_t{upper[l]} << 16);
 }
 
 struct HingeEdges {
   alignas(32) HingeLane e[3], a[3], b[3];
 };
 
-void edges(const Bending::HingeGroup& g, std::span<const Vec3> x, HingeEdges& out) {
+void edges(const Bending::Vertices& v, std::span<const Vec3> x, HingeEdges& out) {
   for (int l = 0; l < k_lanes; ++l) {
-    const Vec3 &x0 = x[at(g.vertex[0][l])], &x1 = x[at(g.vertex[1][l])];
-    const Vec3 &x2 = x[at(g.vertex[2][l])], &x3 = x[at(g.vertex[3][l])];
+    const Vec3 &x0 = x[at(v.column[0][l])], &x1 = x[at(v.column[1][l])];
+    const Vec3 &x2 = x[at(v.column[2][l])], &x3 = x[at(v.column[3][l])];
     for (int k = 0; k < 3; ++k) out.e[k][l] = x1[k] - x0[k], out.a[k][l] = x2[k] - x0[k], out.b[k][l] = x3[k] - x0[k];
   }
 }
@@ -40,15 +47,18 @@ double angle_difference(double a, double b) {
   return d > std::numbers::pi ? d - full : d < -std::numbers::pi ? d + full : d;
 }
 
-void add_coupling(Bending::HingeGroup& g, std::size_t lane, int slot, int other, double value) {
+/// Neighbours of a hinge: slots; -1: none so far.
+using Neighbours = std::array<int, Bending::k_couplings - 1>;
+
+void add_coupling(Bending::HingeGroup& g, std::size_t lane, Neighbours& neighbours, int slot, int other, double value) {
   const float v = static_cast<float>(value);
   if (other == slot) {
     g.coupling[0][lane] += v;
     return;
   }
-  for (int k = 0; k + 1 < Bending::k_couplings; ++k) {
-    if (g.neighbour[k][lane] < 0) g.neighbour[k][lane] = other;
-    if (g.neighbour[k][lane] != other) continue;
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    if (neighbours[k] < 0) neighbours[k] = other;
+    if (neighbours[k] != other) continue;
     g.coupling[k + 1][lane] += v;
     return;
   }
@@ -58,6 +68,8 @@ void add_coupling(Bending::HingeGroup& g, std::size_t lane, int slot, int other,
 }  // namespace
 
 Bending::Bending(const ClothTopology& topology) {
+  for (const ClothPiece& piece : topology.pieces) damping_time_.push_back(piece.fabric.damping);
+  CHECK(damping_time_.size() <= std::numeric_limits<std::uint16_t>::max());
   std::vector<std::array<int, 4>> hinges;
   std::vector<int> index(topology.hinges.size(), -1);  // hinges that some triangle uses
   for (const BendElement& bend : topology.bends)
@@ -66,73 +78,74 @@ Bending::Bending(const ClothTopology& topology) {
         index[at(h)] = static_cast<int>(hinges.size());
         hinges.push_back(topology.hinges[at(h)].vertex);
       }
-  hinge_schedule_ = make_element_schedule(hinges, topology.rest);
-  std::vector<int> slot_of(hinges.size());
-  for (std::size_t s = 0; s < hinge_schedule_.slot.size(); ++s)
-    if (hinge_schedule_.slot[s] >= 0) slot_of[at(hinge_schedule_.slot[s])] = static_cast<int>(s);
-  hinge_groups_.assign(hinge_schedule_.group_count(), HingeGroup{});
-  phi_.assign(hinge_schedule_.slot.size(), 0.0);
-  rho_ = moment_ = phi_;
-  for (std::size_t s = 0; s < phi_.size(); ++s) {
-    HingeGroup& g = hinge_groups_[s / k_lanes];
-    const std::size_t l = s % k_lanes;
-    g.floor2[l] = g.floor3[l] = 1;
-    for (auto& row : g.neighbour) row[l] = -1;
-  }
+  std::vector<int> hinge_of_slot, slot_of(hinges.size());
+  schedule_ = make_element_schedule(hinges, topology.rest, hinge_of_slot);
+  for (std::size_t s = 0; s < schedule_.count; ++s) slot_of[at(hinge_of_slot[s])] = static_cast<int>(s);
+  vertices_ = group_indices<4>(schedule_, [&](std::size_t slot) { return hinges[at(hinge_of_slot[slot])]; });
+  groups_.assign(schedule_.group_count(), HingeGroup{});
+  for (HingeGroup& g : groups_)
+    for (std::size_t l = 0; l < k_lanes; ++l) g.floor2[l] = g.floor3[l] = degenerate_below(0);
   for (std::size_t h = 0; h < index.size(); ++h) {
     if (index[h] < 0) continue;
     const Hinge& hinge = topology.hinges[h];
     const std::size_t s = at(slot_of[at(index[h])]), l = s % k_lanes;
-    HingeGroup& g = hinge_groups_[s / k_lanes];
-    for (std::size_t k = 0; k < 4; ++k) g.vertex[k][l] = hinge.vertex[k];
-    g.rest_angle[l] = hinge.rest_angle;
-    g.damping_time[l] = static_cast<float>(topology.pieces[at(hinge.piece)].fabric.damping);
+    HingeGroup& g = groups_[s / k_lanes];
+    g.rest_angle[l] = static_cast<float>(hinge.rest_angle);
+    g.piece[l] = static_cast<std::uint16_t>(hinge.piece);
     g.floor2[l] = degenerate_below(topology.rest_area[at(hinge.triangle[0])]);
     g.floor3[l] = degenerate_below(topology.rest_area[at(hinge.triangle[1])]);
   }
+  std::vector<Neighbours> neighbours(schedule_.count);
+  for (Neighbours& row : neighbours) row.fill(-1);
   for (const BendElement& bend : topology.bends) {
     for (std::size_t i = 0; i < 3; ++i) {
       if (bend.hinge[i] < 0) continue;
       const int row = slot_of[at(index[at(bend.hinge[i])])];
       for (std::size_t j = 0; j < 3; ++j)
         if (bend.hinge[j] >= 0)
-          add_coupling(hinge_groups_[at(row) / k_lanes], at(row) % k_lanes, row, slot_of[at(index[at(bend.hinge[j])])],
+          add_coupling(groups_[at(row) / k_lanes], at(row) % k_lanes, neighbours[at(row)], row,
+                       slot_of[at(index[at(bend.hinge[j])])],
                        bend.sign[i] * bend.sign[j] * bend.stiffness(static_cast<int>(i), static_cast<int>(j)));
     }
   }
-  for (std::size_t s = 0; s < phi_.size(); ++s)  // unused couplings look at themselves, with no weight
-    for (auto& row : hinge_groups_[s / k_lanes].neighbour)
-      if (row[s % k_lanes] < 0) row[s % k_lanes] = static_cast<int>(s);
+  for (std::size_t s = 0; s < neighbours.size(); ++s)  // unused couplings look at themselves, with no weight
+    std::replace(neighbours[s].begin(), neighbours[s].end(), -1, static_cast<int>(s));
+  neighbours_ = group_indices<k_couplings - 1>(schedule_, [&](std::size_t slot) { return neighbours[slot]; });
+  rho_.assign(groups_.size() * k_lanes, 0.0);
+  moment_ = rho_;
+  motion_.assign(rho_.size(), 0.0f);
+  root_.assign(damping_time_.size(), 0.0);
 }
 
 std::vector<std::array<int, 4>> Bending::stencils() const {
   std::vector<std::array<int, 4>> out;
-  for (std::size_t slot = 0; slot < hinge_schedule_.slot.size(); ++slot) {
-    const auto& v = hinge_groups_[slot / k_lanes].vertex;
-    const std::size_t l = slot % k_lanes;
-    if (hinge_schedule_.slot[slot] >= 0) out.push_back({v[0][l], v[1][l], v[2][l], v[3][l]});
-  }
+  out.reserve(schedule_.count);
+  for (std::size_t slot = 0; slot < schedule_.count; ++slot)
+    out.push_back(
+        {vertices_.number(slot, 0), vertices_.number(slot, 1), vertices_.number(slot, 2), vertices_.number(slot, 3)});
   return out;
 }
 
 void Bending::find_places(const BlockPattern& pattern) const {
-  positions_.bind(pattern, hinge_schedule_.slot, [&](std::size_t slot, std::size_t corner) {
-    return hinge_groups_[slot / k_lanes].vertex[corner][slot % k_lanes];
-  });
+  positions_.bind(pattern, schedule_.count,
+                  [&](std::size_t slot, std::size_t corner) { return vertices_.number(slot, corner); });
 }
 
-void Bending::work_out(std::span<const Vec3> x, Angles& angles) const {
+void Bending::work_out(std::span<const Vec3> x, Bends& bends) const {
   const Hash128 of = hash_bytes(std::as_bytes(x));
-  if (angles.of == of && !angles.angle.empty()) return;
-  angles.of = of;
-  angles.angle.resize(phi_.size());
-  parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
+  if (bends.of == of && !bends.phi.empty()) return;
+  bends.of = of;
+  bends.phi.resize(rho_.size());
+  parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
+    Vertices v;
     HingeEdges h;
     alignas(32) HingeLane angle;
     for (std::size_t i = begin; i < end; ++i) {
-      edges(hinge_groups_[i], x, h);
+      vertices_.get(i, v);
+      edges(v, x, h);
       hinge_angle_lanes(h.e, h.a, h.b, angle);
-      std::copy_n(angle, k_lanes, angles.angle.data() + i * k_lanes);
+      double* phi = bends.phi.data() + i * k_lanes;
+      for (int l = 0; l < k_lanes; ++l) phi[l] = angle[l] - groups_[i].rest_angle[l];
     }
   });
 }
@@ -140,55 +153,57 @@ void Bending::work_out(std::span<const Vec3> x, Angles& angles) const {
 void Bending::begin_step(const StepContext& context) {
   CHECK(context.h > 0 && context.beta_h > 0);
   measured_ = false;
-  inverse_rate_time_ = context.x_t0.empty() ? 0 : 1 / context.rate_time();
-  if (inverse_rate_time_ == 0) return;
+  damps_ = !context.x_t0.empty();
+  if (!damps_) return;
+  for (std::size_t p = 0; p < root_.size(); ++p) root_[p] = std::sqrt(damping_time_[p] / context.rate_time());
   const bool history = context.has_history() && context.b != 0;
-  history_ = history ? context.b : 0;
-  std::swap(start_, before_);  // the start of the last step is mostly where this one came from
-  if (history) work_out(context.x_tm1, before_);
-  if (last_.of == hash_bytes(std::as_bytes(context.x_t0)) && !last_.angle.empty())
-    start_ = last_;
-  else
-    work_out(context.x_t0, start_);
+  if (history) work_out(context.x_tm1, start_);  // the start of the last step is mostly where this one came from
+  work_out(context.x_t0, last_);                 // and its end where this one starts
+  start_.of = last_.of;
+  start_.phi.resize(rho_.size());
+  parallel_for(rho_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const double before = start_.phi[s];
+      start_.phi[s] = last_.phi[s];
+      motion_[s] = history ? static_cast<float>(context.b * angle_difference(start_.phi[s], before)) : 0.0f;
+    }
+  });
 }
 
-/// Fills phi_, rho_, moment_ and energy_.
+/// Fills last_, rho_, moment_ and energy_.
 void Bending::measure(std::span<const Vec3> x) const {
   if (measured_ && last_.of == hash_bytes(std::as_bytes(x))) return;
   measured_ = true;
   work_out(x, last_);
-  parallel_for(hinge_groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
+  parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const HingeGroup& g = hinge_groups_[i];
-      const double* angle = last_.angle.data() + i * k_lanes;
-      double* phi = phi_.data() + i * k_lanes;
-      double* rho = rho_.data() + i * k_lanes;
-      for (int l = 0; l < k_lanes; ++l) {
-        phi[l] = angle[l] - g.rest_angle[l];
-        rho[l] = 0;
+      const std::size_t first = i * k_lanes;
+      double* rho = rho_.data() + first;
+      if (!damps_) {
+        std::fill_n(rho, k_lanes, 0.0);
+        continue;
       }
-      if (inverse_rate_time_ == 0) continue;
-      const double* start = start_.angle.data() + i * k_lanes;
-      for (int l = 0; l < k_lanes; ++l) {
-        const double before = history_ != 0 ? before_.angle[i * k_lanes + at(l)] : start[l];
-        const double reference = start[l] + history_ * angle_difference(start[l], before);
-        rho[l] = std::sqrt(g.damping_time[l] * inverse_rate_time_) * angle_difference(angle[l], reference);
-      }
+      const double *phi = last_.phi.data() + first, *start = start_.phi.data() + first;
+      const float* motion = motion_.data() + first;
+      for (int l = 0; l < k_lanes; ++l)
+        rho[l] = root_[groups_[i].piece[l]] * angle_difference(phi[l], start[l] + motion[l]);
     }
   });
-  energy_ = sum_over_chunks(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
+  energy_ = sum_over_chunks(schedule_, [&](std::size_t begin, std::size_t end) {
     double total = 0;
+    GroupIndices<k_couplings - 1>::Group neighbours;
     for (std::size_t i = begin; i < end; ++i) {
-      const HingeGroup& g = hinge_groups_[i];
+      const HingeGroup& g = groups_[i];
+      neighbours_.get(i, neighbours);
       for (std::size_t l = 0; l < k_lanes; ++l) {
         const std::size_t slot = i * k_lanes + l;
-        double elastic = g.coupling[0][l] * phi_[slot], viscous = g.coupling[0][l] * rho_[slot];
+        double elastic = g.coupling[0][l] * last_.phi[slot], viscous = g.coupling[0][l] * rho_[slot];
         for (int k = 0; k + 1 < k_couplings; ++k) {
-          const std::size_t n = at(g.neighbour[k][l]);
-          elastic += g.coupling[k + 1][l] * phi_[n], viscous += g.coupling[k + 1][l] * rho_[n];
+          const std::size_t n = at(neighbours.column[k][l]);
+          elastic += g.coupling[k + 1][l] * last_.phi[n], viscous += g.coupling[k + 1][l] * rho_[n];
         }
-        moment_[slot] = elastic + std::sqrt(g.damping_time[l] * inverse_rate_time_) * viscous;
-        total += 0.5 * (elastic * phi_[slot] + viscous * rho_[slot]);
+        moment_[slot] = elastic + (damps_ ? root_[g.piece[l]] : 0) * viscous;
+        total += 0.5 * (elastic * last_.phi[slot] + viscous * rho_[slot]);
       }
     }
     return total;
@@ -201,21 +216,26 @@ double Bending::value(std::span<const Vec3> x) const {
 }
 
 struct Bending::HingeShape {
+  Vertices vertices;
   HingeEdges edges;
   HingeGradients d;
 
   void of(const HingeGroup& g, std::span<const Vec3> x) {
-    ft::edges(g, x, edges);
-    hinge_gradient_lanes(edges.e, edges.a, edges.b, g.floor2, g.floor3, d);
+    ft::edges(vertices, x, edges);
+    alignas(32) float floor2[k_lanes], floor3[k_lanes];
+    whole_floats(g.floor2, floor2);
+    whole_floats(g.floor3, floor3);
+    hinge_gradient_lanes(edges.e, edges.a, edges.b, floor2, floor3, d);
   }
 };
 
 void Bending::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   measure(x);
-  for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
     HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {
-      shape.of(hinge_groups_[i], x);
+      vertices_.get(i, shape.vertices);
+      shape.of(groups_[i], x);
       add_group_gradient(i, shape, gradient);
     }
   });
@@ -223,10 +243,11 @@ void Bending::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) co
 
 void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   find_places(*hessian.pattern);
-  for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
     HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {
-      shape.of(hinge_groups_[i], x);
+      vertices_.get(i, shape.vertices);
+      shape.of(groups_[i], x);
       add_group_hessian(i, shape, hessian);
     }
   });
@@ -235,10 +256,11 @@ void Bending::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
 void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
   measure(x);
   find_places(*hessian.pattern);
-  for_each_chunk(hinge_schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
     HingeShape shape;
     for (std::size_t i = begin; i < end; ++i) {
-      shape.of(hinge_groups_[i], x);
+      vertices_.get(i, shape.vertices);
+      shape.of(groups_[i], x);
       add_group_gradient(i, shape, gradient);
       add_group_hessian(i, shape, hessian);
     }
@@ -246,7 +268,6 @@ void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient,
 }
 
 void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const {
-  const HingeGroup& g = hinge_groups_[group];
   const HingeGradients& d = shape.d;
   const double* moment = moment_.data() + group * k_lanes;
   alignas(32) HingeLane g0[3], g1[3], g2[3], g3[3];
@@ -256,23 +277,25 @@ void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std
       g1[k][l] = d.s2[l] * g2[k][l] + d.s3[l] * g3[k][l];
       g0[k][l] = g2[k][l] + g3[k][l] - g1[k][l];
     }
-  // Padding has vertex numbers that belong to other chunks: it must not even add zero.
-  const std::size_t used = hinge_schedule_.used(group);
+  // Padding has the vertices of another element: it must not even add zero.
+  const std::size_t used = schedule_.used(group);
   for (std::size_t l = 0; l < used; ++l) {
-    gradient[at(g.vertex[0][l])] -= Vec3(g0[0][l], g0[1][l], g0[2][l]);
-    gradient[at(g.vertex[1][l])] -= Vec3(g1[0][l], g1[1][l], g1[2][l]);
-    gradient[at(g.vertex[2][l])] += Vec3(g2[0][l], g2[1][l], g2[2][l]);
-    gradient[at(g.vertex[3][l])] += Vec3(g3[0][l], g3[1][l], g3[2][l]);
+    gradient[at(shape.vertices.column[0][l])] -= Vec3(g0[0][l], g0[1][l], g0[2][l]);
+    gradient[at(shape.vertices.column[1][l])] -= Vec3(g1[0][l], g1[1][l], g1[2][l]);
+    gradient[at(shape.vertices.column[2][l])] += Vec3(g2[0][l], g2[1][l], g2[2][l]);
+    gradient[at(shape.vertices.column[3][l])] += Vec3(g3[0][l], g3[1][l], g3[2][l]);
   }
 }
 
 void Bending::add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const {
-  const HingeGroup& g = hinge_groups_[group];
+  const HingeGroup& g = groups_[group];
   const HingeGradients& d = shape.d;
   Lanes v[4][3], block[9];  // square root of the stiffness times grad theta, vertex by vertex
   alignas(32) HingeLane root;
-  for (int l = 0; l < k_lanes; ++l)
-    root[l] = std::sqrt(g.coupling[0][l] * (1 + g.damping_time[l] * inverse_rate_time_));
+  for (int l = 0; l < k_lanes; ++l) {
+    const double damping = damps_ ? root_[g.piece[l]] : 0;
+    root[l] = std::sqrt(g.coupling[0][l] * (1 + damping * damping));
+  }
   for (int k = 0; k < 3; ++k) {
     alignas(32) float one[k_lanes], two[k_lanes], three[k_lanes];
     for (int l = 0; l < k_lanes; ++l) {
@@ -285,16 +308,19 @@ void Bending::add_group_hessian(std::size_t group, const HingeShape& shape, Bloc
         std::memcpy(&v[3][k], three, sizeof three);
     v[0][k] = -(v[1][k] + v[2][k] + v[3][k]);
   }
-  const std::size_t first = group * k_lanes, used = hinge_schedule_.used(group);
-  LaneInts vertex[4];
-  for (std::size_t a = 0; a < 4; ++a) std::memcpy(&vertex[a], &g.vertex[a], sizeof vertex[a]);
+  const std::size_t used = schedule_.used(group);
+  LaneInts vertex[4], diagonal[4];
+  for (std::size_t a = 0; a < 4; ++a) {
+    std::memcpy(&vertex[a], &shape.vertices.column[a], sizeof vertex[a]);
+    diagonal[a] = diagonal_places(hessian.pattern->diagonal, vertex[a]);
+  }
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = a; b < 4; ++b) {
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) block[3 * c + r] = v[a][r] * v[b][c];
       if (a != b) transpose_where(vertex[a] > vertex[b], block);
-      const std::size_t index = positions_.index_of(a, b);
-      add_blocks(block, used, hessian.blocks.data(), [&](std::size_t l) { return positions_[first + l][index]; });
+      add_blocks(block, used, hessian.blocks.data(),
+                 a == b ? diagonal[a] : positions_.places(group, a, b, vertex, diagonal));
     }
 }
 

@@ -9,6 +9,7 @@
 // from folding through itself.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "baker/core/hash.h"
@@ -16,6 +17,7 @@
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/element_schedule.h"
 #include "solvers/energies/energy.h"
+#include "solvers/energies/group_indices.h"
 
 namespace ft {
 
@@ -34,40 +36,43 @@ class Bending final : public Energy {
 
   /// k_lanes hinges; no coupling in padding.
   struct HingeGroup {
-    int vertex[4][k_lanes];
-    int neighbour[k_couplings - 1][k_lanes];  ///< slots of the other hinges of a row of K
-    float coupling[k_couplings][k_lanes];     ///< with itself, and with those [N m]
-    double rest_angle[k_lanes];               ///< rad
-    float damping_time[k_lanes];              ///< s
-    float floor2[k_lanes], floor3[k_lanes];   ///< see hinge_gradient_lanes() [m4]
+    float coupling[k_couplings][k_lanes];            ///< with itself, and with its neighbours [N m]
+    float rest_angle[k_lanes];                       ///< rad
+    std::uint16_t piece[k_lanes];                    ///< of the topology
+    std::uint16_t floor2[k_lanes], floor3[k_lanes];  ///< upper halves of what hinge_gradient_lanes() takes [m4]
   };
+  using Vertices = GroupIndices<4>::Group;
 
  private:
   struct HingeShape;
-  /// Of all hinges; the same bits whenever they are worked out.
-  struct Angles {
-    Hash128 of;                 ///< of the positions
-    std::vector<double> angle;  ///< per hinge slot [rad]
+  /// How far all hinges are from their rest angles; the same bits whenever it is worked out.
+  struct Bends {
+    Hash128 of;               ///< of the positions
+    std::vector<double> phi;  ///< per hinge slot [rad]
   };
-  void work_out(std::span<const Vec3> x, Angles& angles) const;
+  void work_out(std::span<const Vec3> x, Bends& bends) const;
   void measure(std::span<const Vec3> x) const;
   void add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const;
   void add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const;
   void find_places(const BlockPattern& pattern) const;
 
-  ElementSchedule hinge_schedule_;
-  std::vector<HingeGroup> hinge_groups_;
-  // Of the step: theta_ref = start + history (start - before).
-  double inverse_rate_time_ = 0;  ///< 1/s; 0: no damping
-  double history_ = 0;
+  ElementSchedule schedule_;
+  GroupIndices<4> vertices_;
+  GroupIndices<k_couplings - 1> neighbours_;  ///< slots of the other hinges of a row of K
+  std::vector<HingeGroup> groups_;
+  std::vector<double> damping_time_;  ///< of the pieces [s]
+  // Of the step: theta_ref is motion_ past the start.
+  bool damps_ = false;
+  std::vector<double> root_;  ///< of the pieces: sqrt(d) [1]
+  Bends start_;
+  std::vector<float> motion_;  ///< rad
   mutable BlockPositions<4> positions_;
-  Angles start_, before_;
   // Of the last x that was measured: the next question is mostly about the same one, and the next step starts there.
-  mutable Angles last_;
-  mutable bool measured_ = false;          ///< in this step, what follows
-  mutable std::vector<double> phi_, rho_;  ///< per hinge slot
-  mutable std::vector<double> moment_;     ///< dU / d theta [N m]
-  mutable double energy_ = 0;              ///< J
+  mutable Bends last_;
+  mutable bool measured_ = false;       ///< in this step, what follows
+  mutable std::vector<double> rho_;     ///< per hinge slot
+  mutable std::vector<double> moment_;  ///< dU / d theta [N m]; gathering it anew while the matrix is filled is slow
+  mutable double energy_ = 0;           ///< J
 };
 
 }  // namespace ft

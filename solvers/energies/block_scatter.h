@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstring>
+#include <span>
 
 #include "baker/core/types.h"
 #include "solvers/energies/element_schedule.h"
@@ -35,22 +36,26 @@ inline void transpose(const Lanes* in, Lanes* out) {
 
 }  // namespace detail
 
-/// block: nine numbers, column by column, of k_lanes blocks. position(l): where block l goes, negative for nowhere.
-template <class Position>
-inline void add_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, Position&& position) {
+/// block: nine numbers, column by column, of k_lanes blocks, of which the first `used` go to those places.
+inline void add_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, const LaneInts& place) {
   static_assert(k_lanes == 8 && sizeof(Mat3f) == 9 * sizeof(float));
   Lanes by_lane[8];
   detail::transpose(block, by_lane);
   for (std::size_t l = 0; l < used; ++l) {
-    const int p = position(l);
-    if (p < 0) continue;
-    float* target = blocks[p].data();
+    float* target = blocks[place[l]].data();
     Lanes sum;
     std::memcpy(&sum, target, sizeof sum);
     sum += by_lane[l];
     std::memcpy(target, &sum, sizeof sum);
     target[8] += block[8][l];
   }
+}
+
+/// Of the diagonal blocks of k_lanes vertices.
+inline LaneInts diagonal_places(std::span<const int> diagonal, const LaneInts& vertex) {
+  LaneInts out;
+  for (int l = 0; l < k_lanes; ++l) out[l] = diagonal[static_cast<std::size_t>(vertex[l])];
+  return out;
 }
 
 /// Transposes the blocks of the lanes where turned is -1: those that are the lower ones of their elements' two.

@@ -1,7 +1,5 @@
 #include "solvers/energies/cords.h"
 
-#include <numeric>
-
 #include "solvers/energies/limited_spring.h"
 
 namespace ft {
@@ -23,9 +21,12 @@ LimitedSpring pull_of(const Cord& c, double length) {
 
 }  // namespace
 
-Cords::Cords(std::vector<Cord> cords) : cords_(std::move(cords)), slots_(cords_.size()) {
-  for (const Cord& c : cords_) stencils_.push_back(c.vertex);
-  std::iota(slots_.begin(), slots_.end(), 0);
+Cords::Cords(std::vector<Cord> cords) : cords_(std::move(cords)) {}
+
+std::vector<std::array<int, 4>> Cords::stencils() const {
+  std::vector<std::array<int, 4>> out;
+  for (const Cord& c : cords_) out.push_back(c.vertex);
+  return out;
 }
 
 double Cords::value(std::span<const Vec3> x) const {
@@ -47,8 +48,8 @@ void Cords::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) cons
 }
 
 void Cords::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
-  positions_.bind(*hessian.pattern, slots_,
-                  [&](std::size_t slot, std::size_t corner) { return stencils_[at(slots_[slot])][corner]; });
+  positions_.bind(*hessian.pattern, cords_.size(),
+                  [&](std::size_t cord, std::size_t corner) { return cords_[cord].vertex[corner]; });
   for (std::size_t i = 0; i < cords_.size(); ++i) {
     const Cord& c = cords_[i];
     const Vec3 d = gap(c, x);
@@ -64,7 +65,7 @@ void Cords::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
       for (std::size_t b = a; b < 4; ++b) {
         if (c.vertex[a] < 0 || c.vertex[b] < 0) continue;
         const double times = a != b && c.vertex[a] == c.vertex[b] ? 2 : 1;
-        hessian.blocks[at(positions_[i][positions_.index_of(a, b)])] +=
+        hessian.blocks[at(positions_.place(i, a, b, c.vertex[a], c.vertex[b]))] +=
             (times * c.weight[a] * c.weight[b] * stiffness).cast<float>();
       }
   }

@@ -25,7 +25,7 @@ struct Cord {
 /// Who derives says in begin_step() how long and how strong the cords are.
 class Cords : public Energy {
  public:
-  std::vector<std::array<int, 4>> stencils() const override { return stencils_; }
+  std::vector<std::array<int, 4>> stencils() const override;
   double value(std::span<const Vec3> x) const override;
   void add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const override;
   void add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const override;
@@ -35,8 +35,6 @@ class Cords : public Energy {
   std::vector<Cord> cords_;
 
  private:
-  std::vector<std::array<int, 4>> stencils_;
-  std::vector<int> slots_;
   mutable BlockPositions<4> positions_;
 };
 

@@ -23,7 +23,8 @@ std::uint32_t morton(const Vec3& p, const Box& box) {
 
 }  // namespace
 
-ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest) {
+ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest,
+                                      std::vector<int>& element_of_slot) {
   const std::size_t count = vertices.size() / corners;
   const auto element = [&](std::size_t i) { return vertices.subspan(i * corners, corners); };
   ElementSchedule out;
@@ -37,21 +38,21 @@ ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t
     keys[i] = {morton(centre / std::max(used, 1), box), static_cast<int>(i)};
   }
   std::sort(keys.begin(), keys.end());
-  const std::size_t groups = block_count(count, k_lanes);
-  out.slot.assign(groups * k_lanes, -1);
-  for (std::size_t i = 0; i < keys.size(); ++i) out.slot[i] = keys[i].second;
+  out.count = count;
+  element_of_slot.resize(count);
+  for (std::size_t i = 0; i < count; ++i) element_of_slot[i] = keys[i].second;
+  keys = {};
 
   // Greedy colours. A chunk that finds all 64 taken gets a colour of its own.
   std::vector<std::uint64_t> taken(rest.size(), 0);
   std::vector<std::vector<int>> own;
   constexpr std::size_t slots = k_chunk_groups * k_lanes;
-  for (std::size_t chunk = 0; chunk * slots < out.slot.size(); ++chunk) {
-    const std::size_t end = std::min(out.slot.size(), (chunk + 1) * slots);
+  for (std::size_t chunk = 0; chunk * slots < count; ++chunk) {
+    const std::size_t end = std::min(count, (chunk + 1) * slots);
     const auto for_each_vertex = [&](auto&& visit) {
       for (std::size_t s = chunk * slots; s < end; ++s)
-        if (out.slot[s] >= 0)
-          for (const int v : element(at(out.slot[s])))
-            if (v >= 0) visit(taken[at(v)]);
+        for (const int v : element(at(element_of_slot[s])))
+          if (v >= 0) visit(taken[at(v)]);
     };
     std::uint64_t used = 0;
     for_each_vertex([&](std::uint64_t& t) { used |= t; });

@@ -15,29 +15,28 @@ namespace ft {
 
 inline constexpr int k_lanes = 8;
 
+/// Elements are in slots, k_lanes of them a group; what is over in the last group is padding.
 struct ElementSchedule {
-  std::vector<int> slot;                  ///< element of each slot, k_lanes slots a group; -1 pads the last group
+  std::size_t count = 0;                  ///< of elements
   std::vector<std::vector<int>> colours;  ///< chunks of each colour
-  std::size_t group_count() const { return slot.size() / k_lanes; }
-  /// Elements of a group; padding comes last.
-  std::size_t used(std::size_t group) const {
-    std::size_t n = 0;
-    while (n < k_lanes && slot[group * k_lanes + n] >= 0) ++n;
-    return n;
-  }
+  std::size_t group_count() const { return block_count(count, k_lanes); }
+  /// Elements of a group.
+  std::size_t used(std::size_t group) const { return std::min<std::size_t>(k_lanes, count - group * k_lanes); }
 };
 
 /// Groups of one chunk.
 inline constexpr std::size_t k_chunk_groups = 32;
 
-/// vertices: corners per element, one element after the other; -1 entries are skipped.
-ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest);
+/// vertices: corners per element, one element after the other; -1 entries are skipped. element_of_slot: which element
+/// each slot holds.
+ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t corners, std::span<const Vec3> rest,
+                                      std::vector<int>& element_of_slot);
 
 template <std::size_t Corners>
-ElementSchedule make_element_schedule(const std::vector<std::array<int, Corners>>& stencils,
-                                      std::span<const Vec3> rest) {
+ElementSchedule make_element_schedule(const std::vector<std::array<int, Corners>>& stencils, std::span<const Vec3> rest,
+                                      std::vector<int>& element_of_slot) {
   return make_element_schedule({stencils.empty() ? nullptr : stencils[0].data(), Corners * stencils.size()}, Corners,
-                               rest);
+                               rest, element_of_slot);
 }
 
 /// body(first group, end group) for every chunk, colour after colour.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "baker/core/check.h"
 #include "solvers/energies/block_scatter.h"
@@ -20,10 +21,10 @@ struct Deformation {
   alignas(32) Lane f1[3], f2[3];
 };
 
-void deformation(const Membrane::Group& g, std::span<const Vec3> x, Deformation& out) {
+void deformation(const Membrane::Vertices& v, const Membrane::Group& g, std::span<const Vec3> x, Deformation& out) {
   alignas(32) Lane e1[3], e2[3];
   for (int l = 0; l < k_lanes; ++l) {
-    const Vec3 &x0 = x[at(g.vertex[0][l])], &x1 = x[at(g.vertex[1][l])], &x2 = x[at(g.vertex[2][l])];
+    const Vec3 &x0 = x[at(v.column[0][l])], &x1 = x[at(v.column[1][l])], &x2 = x[at(v.column[2][l])];
     for (int k = 0; k < 3; ++k) e1[k][l] = x1[k] - x0[k], e2[k][l] = x2[k] - x0[k];
   }
   const auto& r = g.rest_inverse;
@@ -149,9 +150,9 @@ void element_blocks(const Membrane::Group& g, const Constants& c, const Deformat
   element_block(e, bx, by, bx, by, out.b22);
 }
 
-/// Adds the six blocks of `used` elements that lie on and above the diagonal.
-void scatter(ElementBlocks& e, const Membrane::Group& g, const BlockPositions<3>& positions, std::size_t first,
-             std::size_t used, Mat3f* blocks) {
+/// Adds the six blocks of the `used` elements of a group that lie on and above the diagonal.
+void scatter(ElementBlocks& e, const Membrane::Vertices& vertices, const BlockPositions<3>& positions,
+             std::size_t group, std::size_t used, BlockMatrix& matrix) {
   Lanes b00[9], b01[9], b02[9];
   for (std::size_t column = 0; column < 3; ++column)
     for (std::size_t row = 0; row < 3; ++row) {
@@ -160,14 +161,17 @@ void scatter(ElementBlocks& e, const Membrane::Group& g, const BlockPositions<3>
       b02[k] = -(e.b12[k] + e.b22[k]);
     }
   for (std::size_t k = 0; k < 9; ++k) b00[k] = -(b01[k] + b02[k]);
-  LaneInts vertex[3];
-  for (std::size_t a = 0; a < 3; ++a) std::memcpy(&vertex[a], &g.vertex[a], sizeof vertex[a]);
+  LaneInts vertex[3], diagonal[3];
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::memcpy(&vertex[a], &vertices.column[a], sizeof vertex[a]);
+    diagonal[a] = diagonal_places(matrix.pattern->diagonal, vertex[a]);
+  }
   transpose_where(vertex[0] > vertex[1], b01);
   transpose_where(vertex[0] > vertex[2], b02);
   transpose_where(vertex[1] > vertex[2], e.b12);
   const auto add = [&](const Lanes* block, std::size_t a, std::size_t b) {
-    const std::size_t index = positions.index_of(a, b);
-    add_blocks(block, used, blocks, [&](std::size_t l) { return positions[first + l][index]; });
+    add_blocks(block, used, matrix.blocks.data(),
+               a == b ? diagonal[a] : positions.places(group, a, b, vertex, diagonal));
   };
   add(b00, 0, 0), add(b01, 0, 1), add(b02, 0, 2), add(e.b11, 1, 1), add(e.b12, 1, 2), add(e.b22, 2, 2);
 }
@@ -213,17 +217,18 @@ Membrane::Membrane(const ClothTopology& topology) {
     triangles.push_back(topology.triangles[t]);
     element.push_back(t);
   }
-  schedule_ = make_element_schedule(triangles, topology.rest);
+  std::vector<int> element_of_slot;
+  schedule_ = make_element_schedule(triangles, topology.rest, element_of_slot);
   groups_.assign(schedule_.group_count(), Group{});
   reference_.assign(groups_.size(), Reference{});
-  for (std::size_t slot = 0; slot < schedule_.slot.size(); ++slot) {
-    if (schedule_.slot[slot] < 0) continue;
-    const std::size_t t = element[at(schedule_.slot[slot])];
+  vertices_ = group_indices<3>(schedule_, [&](std::size_t slot) { return triangles[at(element_of_slot[slot])]; });
+  CHECK(materials_.size() <= std::numeric_limits<std::uint16_t>::max());
+  for (std::size_t slot = 0; slot < schedule_.count; ++slot) {
+    const std::size_t t = element[at(element_of_slot[slot])];
     Group& g = groups_[slot / k_lanes];
     const std::size_t l = slot % k_lanes;
-    for (std::size_t k = 0; k < 3; ++k) g.vertex[k][l] = topology.triangles[t][k];
     for (std::size_t k = 0; k < 4; ++k) g.rest_inverse[k][l] = topology.rest_inverse[t][k];
-    g.material[l] = topology.triangle_piece[t];
+    g.material[l] = static_cast<std::uint16_t>(topology.triangle_piece[t]);
     g.area[l] = topology.rest_area[t] * topology.factor(t, &VertexMaps::stretch) *
                 cap_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
   }
@@ -231,18 +236,15 @@ Membrane::Membrane(const ClothTopology& topology) {
 
 std::vector<std::array<int, 4>> Membrane::stencils() const {
   std::vector<std::array<int, 4>> out;
-  for (std::size_t slot = 0; slot < schedule_.slot.size(); ++slot) {
-    const auto& v = groups_[slot / k_lanes].vertex;
-    const std::size_t l = slot % k_lanes;
-    if (schedule_.slot[slot] >= 0) out.push_back({v[0][l], v[1][l], v[2][l], -1});
-  }
+  out.reserve(schedule_.count);
+  for (std::size_t slot = 0; slot < schedule_.count; ++slot)
+    out.push_back({vertices_.number(slot, 0), vertices_.number(slot, 1), vertices_.number(slot, 2), -1});
   return out;
 }
 
 void Membrane::find_places(const BlockPattern& pattern) const {
-  positions_.bind(pattern, schedule_.slot, [&](std::size_t slot, std::size_t corner) {
-    return groups_[slot / k_lanes].vertex[corner][slot % k_lanes];
-  });
+  positions_.bind(pattern, schedule_.count,
+                  [&](std::size_t slot, std::size_t corner) { return vertices_.number(slot, corner); });
 }
 
 void Membrane::begin_step(const StepContext& context) {
@@ -251,13 +253,15 @@ void Membrane::begin_step(const StepContext& context) {
   if (inverse_rate_time_ == 0) return;
   const bool history = context.has_history() && context.b != 0;
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
+    Vertices v;
     Deformation d;
     alignas(32) Lane e[3];
     for (std::size_t i = begin; i < end; ++i) {
-      deformation(groups_[i], context.x_t0, d);
+      vertices_.get(i, v);
+      deformation(v, groups_[i], context.x_t0, d);
       strain(d, reference_[i].strain);
       if (!history) continue;
-      deformation(groups_[i], context.x_tm1, d);
+      deformation(v, groups_[i], context.x_tm1, d);
       strain(d, e);
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < k_lanes; ++l)
@@ -268,14 +272,16 @@ void Membrane::begin_step(const StepContext& context) {
 
 double Membrane::value(std::span<const Vec3> x) const {
   return sum_over_chunks(schedule_, [&](std::size_t begin, std::size_t end) {
+    Vertices v;
     Deformation d;
     Constants c;
     alignas(32) Lane e[3], sum = {};
     for (std::size_t i = begin; i < end; ++i) {
       const Group& g = groups_[i];
       const Reference& ref = reference_[i];
+      vertices_.get(i, v);
       constants(g, materials_, c);
-      deformation(g, x, d);
+      deformation(v, g, x, d);
       strain(d, e);
       for (int l = 0; l < k_lanes; ++l) {
         const double damping = c.damping_time[l] * inverse_rate_time_;
@@ -295,14 +301,16 @@ double Membrane::value(std::span<const Vec3> x) const {
 }
 
 struct Membrane::Stressed {
+  Vertices vertices;
   Constants constants;
   Deformation d;
   alignas(32) Lane e[3], s[3];  ///< see strain() and stress()
 };
 
 void Membrane::measure(std::size_t group, std::span<const Vec3> x, Stressed& out) const {
+  vertices_.get(group, out.vertices);
   constants(groups_[group], materials_, out.constants);
-  deformation(groups_[group], x, out.d);
+  deformation(out.vertices, groups_[group], x, out.d);
   strain(out.d, out.e);
   stress(out.constants, reference_[group], inverse_rate_time_, out.e, out.s);
 }
@@ -341,10 +349,9 @@ void Membrane::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient
 }
 
 void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, std::span<Vec3> gradient) const {
-  const Group& g = groups_[group];
   const Deformation& d = stressed.d;
   const Lane* s = stressed.s;
-  const auto& r = g.rest_inverse;
+  const auto& r = groups_[group].rest_inverse;
   alignas(32) Lane g1[3], g2[3];
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < k_lanes; ++l) {
@@ -353,20 +360,20 @@ void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, s
       g1[k][l] = p1 * r[0][l] + p2 * r[1][l];
       g2[k][l] = p1 * r[2][l] + p2 * r[3][l];
     }
-  // Padding has vertex numbers that belong to other chunks: it must not even add zero.
+  // Padding has the vertices of another element: it must not even add zero.
   const std::size_t used = schedule_.used(group);
   for (std::size_t l = 0; l < used; ++l) {
     const Vec3 a(g1[0][l], g1[1][l], g1[2][l]), b(g2[0][l], g2[1][l], g2[2][l]);
-    gradient[at(g.vertex[0][l])] -= a + b;
-    gradient[at(g.vertex[1][l])] += a;
-    gradient[at(g.vertex[2][l])] += b;
+    gradient[at(stressed.vertices.column[0][l])] -= a + b;
+    gradient[at(stressed.vertices.column[1][l])] += a;
+    gradient[at(stressed.vertices.column[2][l])] += b;
   }
 }
 
 void Membrane::add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const {
   ElementBlocks blocks;
   element_blocks(groups_[group], stressed.constants, stressed.d, stressed.e, stressed.s, inverse_rate_time_, blocks);
-  scatter(blocks, groups_[group], positions_, group * k_lanes, schedule_.used(group), hessian.blocks.data());
+  scatter(blocks, stressed.vertices, positions_, group, schedule_.used(group), hessian);
 }
 
 }  // namespace ft

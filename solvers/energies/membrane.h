@@ -7,12 +7,14 @@
 // under strong compression; cloth buckles out of the plane long before.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "solvers/energies/block_positions.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/element_schedule.h"
 #include "solvers/energies/energy.h"
+#include "solvers/energies/group_indices.h"
 
 namespace ft {
 
@@ -48,11 +50,11 @@ class Membrane final : public Energy {
   };
   /// k_lanes triangles; all zero in padding.
   struct Group {
-    int vertex[3][k_lanes];
-    int material[k_lanes];
-    double area[k_lanes];             ///< at rest, times the factor of what varies over the garment [m2]
     double rest_inverse[4][k_lanes];  ///< 1/m
+    double area[k_lanes];             ///< at rest, times the factor of what varies over the garment [m2]
+    std::uint16_t material[k_lanes];
   };
+  using Vertices = GroupIndices<3>::Group;
   struct Reference {
     double strain[3][k_lanes];  ///< E_ref
   };
@@ -65,6 +67,7 @@ class Membrane final : public Energy {
   void find_places(const BlockPattern& pattern) const;
 
   ElementSchedule schedule_;
+  GroupIndices<3> vertices_;
   std::vector<Group> groups_;
   std::vector<Material> materials_;  ///< of the pieces
   // Of the step.

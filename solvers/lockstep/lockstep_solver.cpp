@@ -81,14 +81,14 @@ class LockstepSolver final : public Solver {
 };
 
 void LockstepSolver::store(State& state, const Moving& m) const {
-  state.block("x") = flat(m.motion.x);
-  state.block("v") = flat(m.motion.v);
-  state.block("x_previous") = flat(m.motion.x_previous);
-  state.block("v_previous") = flat(m.motion.v_previous);
-  state.block("h_previous") = {m.motion.h_previous};
-  state.block("through") = m.through;
-  state.block("free") = {m.free ? 1.0 : 0.0};
-  state.block("hold_impulse") = {m.hold_impulse.x(), m.hold_impulse.y(), m.hold_impulse.z()};
+  state.set("x", flat(m.motion.x));
+  state.set("v", flat(m.motion.v));
+  state.set("x_previous", flat(m.motion.x_previous));
+  state.set("v_previous", flat(m.motion.v_previous));
+  state.set("h_previous", {m.motion.h_previous});
+  state.set("through", m.through);
+  state.set("free", {m.free ? 1.0 : 0.0});
+  state.set("hold_impulse", {m.hold_impulse.x(), m.hold_impulse.y(), m.hold_impulse.z()});
 }
 
 LockstepSolver::Moving LockstepSolver::load(const State& state) const {

@@ -55,9 +55,11 @@ class FakeSolver final : public Solver {
     state.time = (state.frame - setup_.first_frame) / setup_.fps;
     double scale = 1;
     for (const ClothGarment& g : setup_.garments) scale += g.fabric.mass_per_area;
-    for (StateBlock& block : state.blocks)
-      for (double& v : block.values)
-        v += 1e-3 * std::sin(10 * v + scale * state.frame);  // depends on all that went before
+    for (StateBlock& block : state.blocks) {
+      std::vector<double> values = block.values.read();
+      for (double& v : values) v += 1e-3 * std::sin(10 * v + scale * state.frame);  // depends on all that went before
+      block.values = std::move(values);
+    }
     FrameReport report;
     report.frame = state.frame;
     report.substeps = 4;
