@@ -79,11 +79,13 @@ bool Carver::push_out(const Carving& carving, int local, const Scratch& scratch,
       &contact);
 }
 
-void Carver::push_out_all(Carving& carving, Scratch& scratch) const {
+/// again: those that have moved; the others stand where they were found to be well.
+void Carver::push_out_all(Carving& carving, bool again, Scratch& scratch) const {
   parallel_for(carving.active.size(), k_carve_block, [&](std::size_t begin, std::size_t end) {
     std::vector<int> hints(carving.opponents.size(), -1);
     for (std::size_t i = begin; i < end; ++i) {
       const int v = carving.active[i];
+      if (again && carving.moved[at(v)] == 0) continue;
       if (push_out(carving, v, scratch, scratch.x[at(carving.part.vertices[at(v)])], carving.contacts[at(v)], hints))
         carving.moved[at(v)] = 1;
     }
@@ -192,10 +194,10 @@ void Carver::give_way(int p, Scratch& scratch) const {
   if (!carving.active.empty()) {
     std::vector<Vec3> drawn(count);
     for (std::size_t i = 0; i < count; ++i) drawn[i] = scratch.x[at(part.vertices[i])];
-    push_out_all(carving, scratch);
+    push_out_all(carving, false, scratch);
     for (int round = 1; round < k_push_rounds; ++round) {
       smooth(carving, drawn, scratch);
-      push_out_all(carving, scratch);
+      push_out_all(carving, true, scratch);
     }
   }
   span_slots(carving, scratch);

@@ -64,7 +64,7 @@ struct Carver {
                 std::span<int> hints) const;
   bool lift_middle(const Carving& carving, const Edge& edge, const Scratch& scratch, Vec3& middle,
                    std::span<int> hints) const;
-  void push_out_all(Carving& carving, Scratch& scratch) const;
+  void push_out_all(Carving& carving, bool again, Scratch& scratch) const;
   void span_slots(Carving& carving, Scratch& scratch) const;
   void smooth(const Carving& carving, std::span<const Vec3> drawn, Scratch& scratch) const;
   void lift_edges(const Carving& carving, Scratch& scratch) const;
