@@ -43,7 +43,7 @@ struct BodyAdvance::Scratch {
   Candidates candidates;
   ImplicitStep step;
   PieceMotion piece;
-  std::vector<Vec3> end, centre, pins;  ///< end: of cloth and body
+  std::vector<Vec3> end, centre, pins, pin_motion;  ///< end: of cloth and body
   std::vector<RoomRequest> requests;
 };
 
@@ -67,7 +67,12 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
                         AdvanceReport& report) {
   Scratch& s = *scratch_;
   s.pins.resize(in.pins_t0.size());
-  for (std::size_t p = 0; p < s.pins.size(); ++p) s.pins[p] = in.pins_t0[p] + end * (in.pins_t1[p] - in.pins_t0[p]);
+  s.pin_motion.resize(s.pins.size());
+  for (std::size_t p = 0; p < s.pins.size(); ++p) {
+    const Vec3 motion = in.pins_t1[p] - in.pins_t0[p];
+    s.pins[p] = in.pins_t0[p] + end * motion;
+    s.pin_motion[p] = h / in.h * motion;
+  }
   StepInput step;
   step.x_t0 = cloth.x;
   step.v_t0 = cloth.v;
@@ -81,6 +86,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.time = in.time_t0 + end * in.h;
   step.all_start = s.piece.start;
   step.pin_target = s.pins;
+  step.pin_motion = s.pin_motion;
   step.push = in.push;
   s.centre.resize(cloth.x.size());
   for (std::size_t i = 0; i < s.centre.size(); ++i) s.centre[i] = cloth.x[i] + s.piece.centre[i];

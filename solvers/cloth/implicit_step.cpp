@@ -6,8 +6,8 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/stopwatch.h"
+#include "solvers/cloth/pin_pull.h"
 #include "solvers/cloth/step_truncation.h"
-#include "solvers/energies/limited_spring.h"
 
 namespace ft {
 namespace {
@@ -37,10 +37,6 @@ constexpr int k_most_halvings = 4;
 /// Truncation and lagged friction leave the exact descent direction: a rise by this share is no reason to halve.
 constexpr double k_tolerated_rise = 1e-3;
 constexpr double k_energy_noise = 1e-9;  ///< rounding of the potential [J]
-
-LimitedSpring pin_spring(const PinPoint& pin, double share, double stretch) {
-  return limited_spring(stretch, share * pin.stiffness, share * pin.max_pull);
-}
 
 /// Root mean square, over all edges, of the change of length between two states by the length at rest.
 double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::span<const Vec3> to) {
@@ -88,9 +84,9 @@ struct ImplicitStep::Scratch {
   StepTruncation truncation;
   std::vector<Vec3> y, gradient, direction, cut, trial;
   std::vector<double> missing;
-  std::vector<double> pin_share;  ///< of its force that a pin has at the end of the step
-  std::vector<char> held;         ///< per vertex: not solved for
-  std::vector<char> touches;      ///< per garment: whether the body has had a hold on it in this solve
+  std::vector<PinPull> pins;
+  std::vector<char> held;     ///< per vertex: not solved for
+  std::vector<char> touches;  ///< per garment: whether the body has had a hold on it in this solve
   std::vector<PairTerm> terms;
 };
 
@@ -139,12 +135,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   s.cut.resize(n);
   s.missing.resize(n);
 
-  s.pin_share.resize(model_.pins.size());
-  for (std::size_t p = 0; p < s.pin_share.size(); ++p) s.pin_share[p] = model_.pins[p].hold.share(in.time);
-
+  s.pins.clear();
+  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+    const std::size_t v = at(model_.pins[p].vertex);
+    s.pins.emplace_back(model_.pins[p], in.x_t0[v], in.v_t0[v], in.pin_target[p], in.pin_motion[p], in.h, in.time);
+  }
   s.touches.assign(model_.setup.garments.size(), 0);
   for (std::size_t p = 0; p < model_.pins.size(); ++p)
-    if (s.pin_share[p] > 0 && !model_.pins[p].to_world) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
+    if (s.pins[p].holds() && !model_.pins[p].to_world) s.touches[at(model_.garment_of(model_.pins[p].vertex))] = 1;
 
   const auto cloth = [&](std::span<Vec3> of_all) { return of_all.first(n); };
   /// All of the potential but contact, which changes from iteration to iteration where the cloth does not.
@@ -157,9 +155,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     e *= 0.5 * inertia;
     for (const auto& energy : model_.energies) e += energy->value(x);
     for (std::size_t p = 0; p < model_.pins.size(); ++p)
-      if (s.pin_share[p] > 0)
-        e +=
-            pin_spring(model_.pins[p], s.pin_share[p], (x[at(model_.pins[p].vertex)] - in.pin_target[p]).norm()).energy;
+      if (s.pins[p].holds()) e += s.pins[p].energy(x[at(model_.pins[p].vertex)]);
     return e;
   };
 
@@ -199,14 +195,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     s.terms.clear();
     for (std::size_t p = 0; p < model_.pins.size(); ++p) {
       const PinPoint& pin = model_.pins[p];
-      if (s.pin_share[p] == 0) continue;
-      const Vec3 d = x[at(pin.vertex)] - in.pin_target[p];
-      const double stiffness = pin_spring(pin, s.pin_share[p], d.norm()).secant;
-      s.gradient[at(pin.vertex)] += stiffness * d;
+      if (!s.pins[p].holds()) continue;
+      const Vec3& place = x[at(pin.vertex)];
+      s.gradient[at(pin.vertex)] += s.pins[p].gradient(place);
       PairTerm term;
       term.vertex[0] = pin.vertex;
       term.weight[0] = 1;
-      term.stiffness = Mat3f::Identity() * static_cast<float>(stiffness);
+      term.stiffness = Mat3f::Identity() * static_cast<float>(s.pins[p].stiffness(place));
       s.terms.push_back(term);
     }
     s.contact.add_gradient(all, s.gradient);
@@ -299,28 +294,27 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = s.contact.smallest_gap();
-  measure_on_body(in, all, inertia, result);
-  measure_lost(in, all, inertia, result);
+  measure_on_body(all, inertia, result);
+  measure_lost(all, inertia, result);
   for (std::size_t i = 0; i < n; ++i) v_out[i] = (all[i] - past(i)) / bh;
   result.finite = result.finite && all_finite(all.first(n));
   return result;
 }
 
 /// Adds what the pins, or those to the world alone, pull with at the end of the solve.
-void ImplicitStep::add_pin_gradient(const StepInput& in, std::span<const Vec3> all, bool to_world_only) {
+void ImplicitStep::add_pin_gradient(std::span<const Vec3> all, bool to_world_only) {
   Scratch& s = *scratch_;
   for (std::size_t p = 0; p < model_.pins.size(); ++p) {
     const PinPoint& pin = model_.pins[p];
-    if (s.pin_share[p] == 0 || (to_world_only && !pin.to_world)) continue;
-    const Vec3 d = all[at(pin.vertex)] - in.pin_target[p];
-    s.gradient[at(pin.vertex)] += pin_spring(pin, s.pin_share[p], d.norm()).secant * d;
+    if (!s.pins[p].holds() || (to_world_only && !pin.to_world)) continue;
+    s.gradient[at(pin.vertex)] += s.pins[p].gradient(all[at(pin.vertex)]);
   }
 }
 
 /// From what moves the garments, not from the contacts' forces: those are what Newton was after, and until it has
 /// settled the cloth gets less of them. What is left of a garment's change of momentum after gravity, air and other
 /// garments and what holds it to the world came from the body.
-void ImplicitStep::measure_on_body(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result) {
+void ImplicitStep::measure_on_body(std::span<const Vec3> all, double inertia, StepResult& result) {
   Scratch& s = *scratch_;
   const std::size_t garments = model_.setup.garments.size(), n = s.y.size();
   result.on_body.resize(garments);
@@ -330,7 +324,7 @@ void ImplicitStep::measure_on_body(const StepInput& in, std::span<const Vec3> al
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   if (garments > 1) s.contact.add_gradient_between_garments(all, s.gradient);
-  add_pin_gradient(in, all, true);
+  add_pin_gradient(all, true);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t g = at(model_.contact.garment[i]);
     if (s.touches[g] != 0) result.on_body[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));
@@ -338,7 +332,7 @@ void ImplicitStep::measure_on_body(const StepInput& in, std::span<const Vec3> al
 }
 
 /// What is left of the gradient of a whole garment: inner forces cancel out, and all others have to make its momentum.
-void ImplicitStep::measure_lost(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result) {
+void ImplicitStep::measure_lost(std::span<const Vec3> all, double inertia, StepResult& result) {
   const double gravity = model_.setup.gravity.norm();
   if (model_.attachments.empty() || !(gravity > 0)) return;
   Scratch& s = *scratch_;
@@ -347,7 +341,7 @@ void ImplicitStep::measure_lost(const StepInput& in, std::span<const Vec3> all, 
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   s.contact.add_gradient(all, s.gradient);
-  add_pin_gradient(in, all, false);
+  add_pin_gradient(all, false);
   std::vector<char> attached(model_.setup.garments.size(), 0);
   for (const AttachPoint& point : model_.attachments) attached[at(model_.garment_of(point.vertex))] = 1;
   for (std::size_t g = 0; g < attached.size(); ++g) {

@@ -22,6 +22,7 @@ struct StepInput {
   double time = 0;                                               ///< at the end [s]
   std::span<const Vec3> all_start;      ///< cloth and body at the start: slip is measured from here
   std::span<const Vec3> pin_target;     ///< per pin, at the end of the step
+  std::span<const Vec3> pin_motion;     ///< per pin: how far its target moves in the step [m]
   std::span<const Vec3> centre;         ///< of the ball that each cloth vertex has to stay in; it starts inside
   std::span<const double> slack;        ///< its radius [m]
   std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
@@ -62,9 +63,9 @@ class ImplicitStep {
   StepResult solve(const StepInput& input, std::span<Vec3> all, std::span<Vec3> v);
 
  private:
-  void measure_on_body(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result);
-  void measure_lost(const StepInput& in, std::span<const Vec3> all, double inertia, StepResult& result);
-  void add_pin_gradient(const StepInput& in, std::span<const Vec3> all, bool to_world_only);
+  void measure_on_body(std::span<const Vec3> all, double inertia, StepResult& result);
+  void measure_lost(std::span<const Vec3> all, double inertia, StepResult& result);
+  void add_pin_gradient(std::span<const Vec3> all, bool to_world_only);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;
