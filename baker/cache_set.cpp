@@ -20,6 +20,8 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     for (int s = 0; s < solver.system_count(); ++s) {
       const Mesh& mesh = outputs[static_cast<std::size_t>(s)].mesh;
       add({g, s, false, mesh}, mesh.name, plan.groups[g].lockstep ? "cords" : "cloth", true);
+      if (!plan.groups[g].lockstep)
+        systems_.back().pattern_scale = plan.groups[g].setup.garments[static_cast<std::size_t>(s)].pattern_scale;
     }
     const bool alone = outputs.empty();
     if (!plan.shot().cache_collider && !alone) continue;
