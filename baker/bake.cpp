@@ -17,6 +17,7 @@
 #include "baker/plan_text.h"
 #include "baker/signals.h"
 #include "baker/standing.h"
+#include "baker/start_report.h"
 #include "baker/walk.h"
 
 namespace ft {
@@ -87,6 +88,19 @@ Status remove_left_behind(const BakeFolder& folder, const Manifest& before, cons
   return {};
 }
 
+/// A try on some of the frames does not take the place of a finished bake of more of them, unless that is asked for.
+Status keep_whole_shot(const BakeOptions& options, const Standing& standing, const Manifest& now,
+                       const BakeFolder& folder) {
+  const Manifest& before = standing.before;
+  if (!options.frames || options.force || standing.kind != Standing::Kind::k_stale || !before.complete) return {};
+  const bool within = before.first_frame <= now.first_frame && now.last_frame <= before.last_frame;
+  if (!within || before.last_frame - before.first_frame == now.last_frame - now.first_frame) return {};
+  return usage_error(fmt::format("there is a finished bake of frames {}-{}, which frames {}-{} would replace",
+                                 before.first_frame, before.last_frame, now.first_frame, now.last_frame),
+                     folder.path.string(),
+                     "bake them into a folder of their own with --out, or replace it with --force");
+}
+
 /// The checkpoint to go on from, if the user wants that and it can be.
 Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, const BakeFolder& folder,
                                                   const BakeInputs& inputs, const Standing& standing,
@@ -154,6 +168,10 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   manifest.notes = plan->notes;
   const RoomReport room = find_room(*plan);
   for (const std::string& line : room_lines(room, k_room_lines)) progress.note(line);
+  for (std::string& line : start_lines(find_start(*plan))) {
+    progress.note(line);
+    if (plan->shot().preroll == 0) manifest.notes.push_back(std::move(line));
+  }
   auto solvers = make_solvers(*plan, services.make_solver);
   if (!solvers) return failed(solvers.error());
   if (const int signal = signal_received(); signal != 0)
@@ -196,7 +214,12 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   if (const Status apart = check_inputs_stay(*inputs, folder); !apart) return failed(apart.error());
   const Manifest now = manifest_of(*inputs);
   Standing standing = find_standing(folder, now);
-  if (options.explain) return {0, {describe(standing, folder)}, {}};
+  const Status kept = keep_whole_shot(options, standing, now, folder);
+  if (options.explain) {
+    BakeResult out{0, {describe(standing, folder)}, {}};
+    if (!kept) out.lines.push_back("this bake would be refused: " + kept.error().text());
+    return out;
+  }
 
   if (const Status writable = check_writable(folder.path); !writable) return failed(writable.error());
   if (options.dry_run) {
@@ -207,7 +230,12 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
     if (!plan) return failed(plan.error());
     BakeResult out{0, plan_lines(*plan, folder.path), {}};
     for (std::string& line : room_lines(find_room(*plan), k_room_lines)) out.lines.push_back(std::move(line));
+    const StartReport start = find_start(*plan);
+    for (std::string& line : start_lines(start)) out.lines.push_back("start: " + std::move(line));
+    if (start.bad.empty() && start.garment_count > 0)
+      out.lines.push_back("start: no garment crosses the body, itself or another");
     out.lines.push_back(describe(standing, folder));
+    if (!kept) out.lines.push_back("this bake would be refused: " + kept.error().text());
     return out;
   }
   if (standing.kind == Standing::Kind::k_up_to_date && !options.force) {
@@ -218,6 +246,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
     out.lines.push_back(describe(standing, folder));
     return out;
   }
+  if (!kept) return failed(kept.error());
   if (standing.kind == Standing::Kind::k_stale) progress.note(describe(standing, folder));
   if (standing.kind == Standing::Kind::k_unfinished && !options.resume)
     progress.note("an earlier bake was not finished; starting anew (--resume goes on with it)");

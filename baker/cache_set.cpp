@@ -25,8 +25,9 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     const auto& outputs = plan.groups[g].outputs;
     CHECK(outputs.size() == static_cast<std::size_t>(solver.system_count()));
     for (int s = 0; s < solver.system_count(); ++s) {
-      const auto& mesh = outputs[static_cast<std::size_t>(s)].mesh;
-      add({g, s, false, mesh}, mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
+      const GarmentOutput& output = outputs[static_cast<std::size_t>(s)];
+      add({g, s, false, output.mesh}, output.mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
+      systems_.back().pattern_scale = output.pattern_scale;
     }
     const bool alone = outputs.empty();
     if (!plan.shot().cache_collider && !alone) continue;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "io/shot/mesh_file.h"
+#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/sewing.h"
 
 namespace ft {
 
@@ -19,7 +21,7 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   const auto path = folder / system.caches[0].file;
   auto reader = open_cache(path);
   if (!reader) return reader.error();
-  CacheTrack track{system.name, std::move(*reader), {}, {}};
+  CacheTrack track{system.name, std::move(*reader), {}, {}, system.pattern_scale};
   auto rest = read_obj(folder / system.topology);
   if (!rest) return rest.error();
   track.rest = std::move(*rest);
@@ -32,7 +34,20 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
     return input_error(fmt::format("has {} frames, the manifest says {}", info.frame_count, manifest.written_count()),
                        path.string());
   track.triangles = triangulate(track.rest);
+  if (track.pattern_scale > 0 && track.rest.uvs.empty())
+    return input_error("has no vt, and the manifest says that the cloth is cut from its pattern",
+                       (folder / system.topology).string());
   return track;
+}
+
+RestEdges rest_edges_of(const CacheTrack& cloth) {
+  RestEdges out = rest_edges(cloth.rest.positions, cloth.triangles);
+  if (!(cloth.pattern_scale > 0)) return out;
+  const ClothPiece piece{0, cloth.rest.vertex_count(), Fabric{}, cloth.pattern_scale};
+  lengths_from_pattern(make_cloth_topology(cloth.rest.positions, cloth.triangles, std::span(&piece, 1),
+                                           corner_uvs(cloth.rest, cloth.triangles)),
+                       out);
+  return out;
 }
 
 }  // namespace ft

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/edge_strain.h"
 #include "baker/manifest.h"
 #include "io/cache/cache.h"
 
@@ -16,6 +17,7 @@ struct CacheTrack {
   std::unique_ptr<CacheReader> reader;
   Mesh rest;                        ///< from the topology file: rest shape, in the garment's own order [m]
   std::vector<Triangle> triangles;  ///< of rest
+  double pattern_scale = 0;         ///< m per unit of its uvs, which are the rest shape then; 0: the positions are
 
   /// Appends the positions of a frame, counted from 0 [m].
   Status read(int index, std::vector<Vec3>& out) const;
@@ -24,5 +26,8 @@ struct CacheTrack {
 /// Opens the first cache of a system; refuses one whose topology or number of frames is not what the manifest says.
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest);
+
+/// The lengths from which the bake of a cloth measured its strain.
+RestEdges rest_edges_of(const CacheTrack& cloth);
 
 }  // namespace ft

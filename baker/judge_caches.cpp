@@ -31,7 +31,6 @@ struct Group {
 
 void prepare(Group& group) {
   int first = 0;
-  std::vector<Vec3> rest;
   std::vector<Stitch> stitches;
   for (const CacheTrack& cloth : group.cloths) {
     group.first_vertex.push_back(first);
@@ -41,11 +40,12 @@ void prepare(Group& group) {
       s.vertex += first, s.edge[0] += first, s.edge[1] += first;
       stitches.push_back(s);
     }
-    rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
+    const RestEdges own = rest_edges_of(cloth);
+    for (const Edge& e : own.edges) group.rest_edges.edges.push_back({e[0] + first, e[1] + first});
+    group.rest_edges.lengths.insert(group.rest_edges.lengths.end(), own.lengths.begin(), own.lengths.end());
     first += cloth.rest.vertex_count();
   }
   group.first_vertex.push_back(first);
-  group.rest_edges = rest_edges(rest, group.cloth_triangles);
   group.sewn = SewnPairs(first, stitches, group.cloth_triangles);
 }
 

@@ -18,10 +18,12 @@ Json system_json(const ManifestSystem& system) {
   Json caches = Json::array();
   for (const ManifestCache& c : system.caches)
     caches.push_back({{"format", c.format}, {"file", c.file}, {"bytes", c.bytes}, {"content", c.content}});
-  return Json{{"name", system.name},        {"role", system.role},
-              {"primary", system.primary},  {"vertices", system.vertex_count},
-              {"faces", system.face_count}, {"topology", system.topology},
-              {"caches", std::move(caches)}};
+  Json out{{"name", system.name},        {"role", system.role},
+           {"primary", system.primary},  {"vertices", system.vertex_count},
+           {"faces", system.face_count}, {"topology", system.topology},
+           {"caches", std::move(caches)}};
+  if (system.pattern_scale > 0) out["pattern_scale"] = system.pattern_scale;
+  return out;
 }
 
 ManifestSystem system_from(const Json& json) {
@@ -32,6 +34,7 @@ ManifestSystem system_from(const Json& json) {
   out.vertex_count = json.at("vertices").get<int>();
   out.face_count = json.at("faces").get<int>();
   out.topology = json.at("topology").get<std::string>();
+  out.pattern_scale = json.value("pattern_scale", 0.0);
   for (const Json& c : json.at("caches"))
     out.caches.push_back({c.at("format").get<std::string>(), c.at("file").get<std::string>(),
                           c.at("bytes").get<std::uint64_t>(), c.at("content").get<std::string>()});

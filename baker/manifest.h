@@ -35,6 +35,7 @@ struct ManifestSystem {
   int vertex_count = 0, face_count = 0;
   std::string topology;  ///< OBJ of the rest shape, for formats that hold points only
   std::vector<ManifestCache> caches;
+  double pattern_scale = 0;  ///< of a cloth whose rest lengths are those of its flat pattern: m per unit of vt; else 0
 };
 
 /// A file beside the caches, of an adjusted motion.

@@ -20,6 +20,9 @@ namespace {
 // [m].
 constexpr double k_smallest_primary = 0.05, k_largest_primary = 30;
 
+/// What moves by less than this share of its size over a whole shot stands still.
+constexpr double k_still = 1e-5;
+
 constexpr double k_prop_step = 1.0 / 600;  ///< longest between samples of a prop's adjusted track [s]
 
 std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
@@ -44,6 +47,7 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.meshes = spec.meshes;
   request.preroll = shot.preroll / shot.fps;
   request.duration = (shot.last_frame - shot.first_frame) / shot.fps;
+  request.first_frame = shot.first_frame;
   request.cache_folder = cache;
   request.keep_character = is_hybrid(shot, spec.name);
   return request;
@@ -55,7 +59,8 @@ std::vector<Vec3> bind_pose(const Trajectory& trajectory) {
   return out;
 }
 
-Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory) {
+Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory, const CharacterInfo& info,
+                     std::vector<std::string>& notes) {
   const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
   const auto pose = bind_pose(trajectory);
   if (pose.empty() || trajectory.surface().triangles.empty())
@@ -70,11 +75,17 @@ Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory
             ? "if the file is in centimetres, write unit_scale = 0.01; any unit_scale or height silences this"
             : "write unit_scale, in metres per unit of the file, or height");
   // Every frame's pose is looked at once before the first is solved: a pose that is not finite must not reach a solver.
-  std::vector<Vec3> sample(pose.size());
+  std::vector<Vec3> sample(pose.size()), first;
+  bool moves = false;
   for (int frame = shot.first_frame; frame <= shot.last_frame; ++frame) {
     trajectory.sample((frame - shot.first_frame) / shot.fps, sample);
     if (!all_finite(sample)) return input_error(fmt::format("the pose at frame {} is not finite", frame), where);
+    if (frame == shot.first_frame) first = sample;
+    for (std::size_t v = 0; v < sample.size() && !moves; ++v) moves = (sample[v] - first[v]).norm() > k_still * size;
   }
+  if (!moves && shot.last_frame > shot.first_frame && !info.still)
+    notes.push_back(fmt::format("primary \"{}\" does not move in frames {}-{}: is it the right clip, and clip_start?",
+                                spec.name, shot.first_frame, shot.last_frame));
   return {};
 }
 
@@ -118,7 +129,8 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
     return error;
   };
-  auto mesh = read_obj(spec.mesh);
+  std::vector<std::string> mesh_notes;
+  auto mesh = read_obj(spec.mesh, &mesh_notes);
   if (!mesh) return located(mesh.error());
   ClothGarment garment;
   GarmentOutput output;
@@ -138,6 +150,8 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
     return error;
   }
+  for (const std::string& note : inspect_garment(garment.mesh).notes) mesh_notes.push_back(note);
+  for (const std::string& note : mesh_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
 
   if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
     std::vector<std::string> pattern_notes;
@@ -180,6 +194,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   if (!cloth_box.overlaps(body_box))
     notes.push_back(fmt::format("cloth \"{}\" is nowhere near \"{}\" in the bind pose: are offset and up right?",
                                 spec.name, primary.name));
+  output.pattern_scale = garment.pattern_scale;
   group.setup.garments.push_back(std::move(garment));
   group.outputs.push_back(std::move(output));
   return {};
@@ -256,8 +271,9 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   auto imported = importer(request);
   if (!imported) return imported.error();
   CHECK(imported->trajectory);
-  if (const Status checked = check_primary(shot, spec, *imported->trajectory); !checked) return checked.error();
   for (const std::string& note : imported->info.notes) notes.push_back("primary \"" + spec.name + "\": " + note);
+  if (const Status checked = check_primary(shot, spec, *imported->trajectory, imported->info, notes); !checked)
+    return checked.error();
   PrimaryPlan out;
   out.name = spec.name;
   out.scan = scan_of(shot, spec, *imported->trajectory);

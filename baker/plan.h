@@ -36,6 +36,7 @@ struct PrimaryPlan {
 struct GarmentOutput {
   std::shared_ptr<const Mesh> mesh;  ///< the file's, placed
   std::vector<int> joined_of;        ///< per vertex of the file: its vertex in the simulation; empty: the same
+  double pattern_scale = 0;          ///< of the garment
 };
 
 /// All garments of one primary are solved together and feel each other, and so are all cords of one primary; cloth and

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "io/shot/shot_maps.h"
 #include "solvers/cloth/attach.h"
 
 namespace ft {
@@ -40,6 +43,29 @@ std::string attachment_text(std::span<const ClothGarment> garments, const ClothG
                      garments[static_cast<std::size_t>(pin.to)].name, 1e3 * nearest, 1e3 * farthest);
 }
 
+/// ", open by up to 310 mm, closed 1.2 s after the start".
+std::string seam_text(const ClothGarment& garment, const ClothSetup& setup) {
+  double widest = 0;
+  const auto& x = garment.mesh.positions;
+  for (const Stitch& s : garment.mesh.stitches)
+    widest = std::max(widest, (x[at(s.vertex)] - (1 - s.place) * x[at(s.edge[0])] - s.place * x[at(s.edge[1])]).norm());
+  const double preroll = setup.preroll_frames / setup.fps;
+  return fmt::format(", open by up to {:.3g} mm, closed {:.3g} s after the start", 1e3 * widest,
+                     garment.sewing_time > 0 ? garment.sewing_time : 0.5 * preroll);
+}
+
+/// "map of thickness: 0.001 to 0.004 m, mean 0.0021 m".
+std::string map_text(const NamedMap& map, std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  const MapKind* kind = find_map_kind(map.name);
+  std::string unit;
+  if (kind && kind->unit != "1") unit.append(1, ' ').append(kind->unit);
+  return fmt::format("map of {}: {:.4g} to {:.4g}{}, mean {:.4g}{}", map.name, *lowest, *highest, unit,
+                     sum / static_cast<double>(values.size()), unit);
+}
+
 }  // namespace
 
 std::string sewing_text(const Mesh& mesh) {
@@ -64,8 +90,8 @@ std::vector<std::string> character_lines(const CharacterInfo& info) {
                             box_text(info.bind_bounds), info.bind_bounds.lo.y(), info.bind_bounds.hi.y(),
                             info.unit_scale, info.up.empty() ? "y" : info.up));
   for (const ClipInfo& clip : info.clips)
-    out.push_back(fmt::format("  clip \"{}\": {:.4g} s from {:.4g} s, {} channels", clip.name, clip.duration,
-                              clip.start, clip.channel_count));
+    out.push_back(fmt::format("  clip \"{}\": {:.4g} s from {:.4g} s, {} channels{}", clip.name, clip.duration,
+                              clip.start, clip.channel_count, clip.duration > 0 ? "" : ", a still"));
   if (info.clips.empty()) out.push_back("  no clips");
   for (const std::string& name : info.mesh_names) out.push_back("  mesh \"" + name + "\"");
   return out;
@@ -96,10 +122,14 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
                                 garment.name, plan.primaries[group.primary].name, garment.mesh.vertex_count(),
                                 garment.mesh.face_count(), pinned, box_text(bounds(garment.mesh.positions)),
                                 garment.fabric.name, garment.fabric.mass_per_area));
+      for (const NamedMap& map : k_vertex_maps)
+        if (!(garment.maps.*map.values).empty()) out.push_back("  " + map_text(map, garment.maps.*map.values));
       for (const ClothPin& pin : garment.pins)
         if (pin.to >= 0) out.push_back("  " + attachment_text(group.setup.garments, garment, pin));
       if (!garment.mesh.stitches.empty())
-        out.push_back("  " + sewing_text(garment.mesh) + (garment.pattern_scale > 0 ? ", cut from its pattern" : ""));
+        out.push_back("  " + sewing_text(garment.mesh) + seam_text(garment, group.setup));
+      if (garment.pattern_scale > 0)
+        out.push_back(fmt::format("  cut from its pattern at {:g} m per unit of vt", garment.pattern_scale));
     }
   for (const GroupPlan& group : plan.groups) {
     if (!group.lockstep) continue;

@@ -6,8 +6,37 @@
 #include <new>
 
 #include "baker/version.h"
+#include "io/shot/words.h"
 
 namespace ft {
+namespace {
+
+/// The first word that names neither a command nor an option of its command, and what was probably meant; empty: none.
+std::string unknown_word(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = nullptr;
+  for (int i = 1; i < argc; ++i) {
+    std::string word = argv[i];
+    if (command == nullptr && !word.starts_with("-")) {
+      std::vector<std::string> known;
+      for (const CLI::App* one : app.get_subcommands({})) {
+        known.push_back(one->get_name());
+        if (known.back() == word) command = one;
+      }
+      if (command == nullptr)
+        return "there is no command \"" + printable(word) + "\" (" + suggestion(word, known) + ")";
+    } else if (command != nullptr && word.starts_with("--") && word.size() > 2) {
+      word = word.substr(0, word.find('='));
+      if (command->get_option_no_throw(word) != nullptr) continue;
+      std::vector<std::string> known;
+      for (const CLI::Option* one : command->get_options())
+        for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
+      return command->get_name() + " has no option " + printable(word) + " (" + suggestion(word, known) + ")";
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 void complain(const std::string& text) {
   std::fflush(stdout);
@@ -38,7 +67,8 @@ int run_command_line(int argc, char** argv) {
   } catch (const CLI::Success& answer) {
     return app.exit(answer);  // --help, --version
   } catch (const CLI::ParseError& fault) {
-    complain(std::string(fault.what()) +
+    const std::string unknown = unknown_word(app, argc, argv);
+    complain((unknown.empty() ? std::string(fault.what()) : unknown) +
              " (followthrough --help lists the commands, followthrough COMMAND --help their options)");
     return 2;
   } catch (const std::bad_alloc&) {

@@ -96,7 +96,8 @@ Result<Lines> shot_info(const std::filesystem::path& path, bool scan) {
 }
 
 Result<Lines> mesh_info(const std::filesystem::path& path) {
-  auto mesh = read_obj(path);
+  std::vector<std::string> notes;
+  auto mesh = read_obj(path, &notes);
   if (!mesh) return mesh.error();
   Lines out{fmt::format("mesh: {} vertices, {} faces, {} pattern coordinates", mesh->vertex_count(), mesh->face_count(),
                         mesh->uvs.size())};
@@ -104,6 +105,7 @@ Result<Lines> mesh_info(const std::filesystem::path& path) {
   for (const VertexGroup& group : mesh->groups)
     out.push_back(fmt::format("  group \"{}\": {} vertices", group.name, group.vertices.size()));
   if (!mesh->stitches.empty()) out.push_back(fmt::format("  {} panels, {}", panel_count(*mesh), sewing_text(*mesh)));
+  for (const std::string& note : notes) out.push_back("  note: " + note);
   const Status garment = check_garment(*mesh);
   out.push_back(garment ? "  as a garment: good" : "  as a garment: " + garment.error().what);
   return out;

@@ -7,6 +7,7 @@
 
 #include "baker/core/bytes.h"
 #include "baker/core/file.h"
+#include "io/import/stray_vertices.h"
 #include "io/shot/mesh_file.h"
 
 namespace ft {
@@ -167,7 +168,6 @@ Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, con
     const Status read = kind == ".pc2" ? read_pc2(*bytes, fps, name, out) : read_mdd(*bytes, fps, name, out);
     if (!read) return read.error();
   }
-  if (Status s = check_positions(out, name); !s) return s.error();
   if (!topology.empty()) {
     const auto bytes = read_file(topology);
     if (!bytes) return bytes.error();
@@ -184,6 +184,13 @@ Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, con
   if (out.mesh.face_count() == 0 && faces_needed)
     return input_error("holds points but no faces", name,
                        out.format == "OBJ" ? "" : "give an OBJ with the same vertices: topology = \"body.obj\"");
+  if (out.mesh.face_count() == 0) {
+    if (Status s = check_positions(out, name); !s) return s.error();
+  } else {
+    auto strays = mend_stray_vertices(out, name);
+    if (!strays) return strays.error();
+    out.strays = std::move(*strays);
+  }
   out.content = hasher.digest();
   return out;
 }

@@ -9,11 +9,13 @@
 #include "io/import/body.h"
 #include "io/import/character_trajectory.h"
 #include "io/import/clips.h"
+#include "io/import/facing.h"
 #include "io/import/geometry_cache.h"
 #include "io/import/import_cache.h"
 #include "io/import/placed_character.h"
 #include "io/import/placement.h"
 #include "io/import/sampled_trajectory.h"
+#include "io/import/stray_vertices.h"
 
 namespace ft {
 namespace {
@@ -79,6 +81,17 @@ void describe(const Character& character, const std::vector<int>& meshes, Charac
   info.notes.insert(info.notes.begin(), character.notes.begin(), character.notes.end());
 }
 
+/// Its faces then point outwards in the pose of its first sample; linear: file units to metres.
+void turn_cache_outwards(GeometryCache& cache, const Mat3& linear, std::vector<std::string>& notes) {
+  std::vector<Vec3> positions;
+  for (const Vec3f& p : cache.sample(0)) positions.push_back(linear * p.cast<double>());
+  std::vector<Triangle> triangles = triangulate(cache.mesh);
+  const FacingReport facing = turn_outwards(positions, triangles);
+  if (facing.turned_count == 0) return;
+  notes.push_back(facing.text());
+  cache.mesh = make_triangle_mesh(cache.mesh.name, std::move(cache.mesh.positions), triangles);
+}
+
 Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
   const double fps = request.source_fps > 0               ? request.source_fps
                      : request.file.extension() == ".mdd" ? 0
@@ -103,6 +116,7 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
   } else if (!placement.unit_given && cache->times.size() > 1) {  // a prop may have any size
     if (Status s = check_height(measured, placement, name); !s) return s.error();
   }
+  const Mat3 linear = placement.unit_scale * placement.axes;
   const Clip whole{cache->format, 0, cache->times.back(), {}};
   if (Status s = check_clip_range(whole, request.clip_start, request.duration, request.speed, request.shot_fps, name);
       !s)
@@ -110,13 +124,25 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
 
   ImportedPrimary out;
   out.content = cache->content;
+  out.info.notes = cache->notes;
+  turn_cache_outwards(*cache, linear, out.info.notes);
   out.info.format = cache->format;
   out.info.vertex_count = cache->vertex_count;
   out.info.unit_scale = placement.unit_scale, out.info.up = placement.up;
   out.info.bind_bounds = box;
   out.info.clips.push_back({"samples", 0, cache->times.back(), static_cast<int>(cache->times.size())});
   out.info.mesh_names.push_back(cache->mesh.name);
-  out.info.notes = cache->notes;
+  if (cache->times.size() == 1 && request.duration > 0) {
+    out.info.still = true;
+    out.info.notes.push_back(cache->format == "OBJ" ? "is one OBJ and no numbered sequence: it stands still"
+                                                    : "holds one sample: it stands still");
+  }
+  const auto frame_of = [&](int sample) {
+    const double time = cache->times[static_cast<std::size_t>(sample)] - request.clip_start;
+    return request.first_frame + std::round(100 * time / request.speed * request.shot_fps) / 100;
+  };
+  for (std::string& note : stray_notes(cache->strays, request.file.filename().string(), placement.unit_scale, frame_of))
+    out.info.notes.push_back(std::move(note));
   out.trajectory = std::make_unique<SampledTrajectory>(
       std::move(*cache), placement.axes, placement.unit_scale,
       Playback{request.clip_start, request.speed, request.preroll, request.clip_bind});
@@ -189,6 +215,8 @@ Result<PlacedCharacter> place_character(const ImportRequest& request) {
   std::vector<Vec3> positions(skin.base.size());
   deform(skin, placement->matrix(), bind.globals, rest.rest_morphs(), positions);
   if (!all_finite(positions)) return input_error("its bind pose is not finite", name);
+  if (const FacingReport facing = turn_outwards(positions, skin.surface.triangles); facing.turned_count > 0)
+    notes.push_back(facing.text());
   const double measured = bounds(positions).size().y();
   if (request.height > 0 && measured > 0) {
     placement->unit_scale *= request.height / measured;
@@ -202,6 +230,10 @@ Result<PlacedCharacter> place_character(const ImportRequest& request) {
             check_clip_range(*clip, request.clip_start, request.duration, request.speed, request.shot_fps, clip_file);
         !s)
       return s.error();
+  out.info.still = clip == nullptr || clip->duration() <= 0;
+  if (clip != nullptr && out.info.still && request.duration > 0)
+    notes.push_back("clip \"" + clip->name + "\" has " + (clip->channels.empty() ? "no keys" : "one key only") +
+                    ": the character stands still");
   assign_parts(character, positions, skin);
   if (bind.from_inverse_binds)
     notes.emplace_back("the nodes do not rest in the bind pose; it was taken from the inverse bind matrices");
@@ -273,10 +305,12 @@ Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const
   for (std::size_t m = 0; m < character.meshes.size(); ++m) meshes.push_back(static_cast<int>(m));
   describe(character, meshes, info);
   info.unit_scale = placement->unit_scale, info.up = placement->up;
-  const Skin skin = weld(character, meshes, info.notes);
+  Skin skin = weld(character, meshes, info.notes);
   const ClipPose rest(character, nullptr);
   std::vector<Vec3> positions(skin.base.size());
   deform(skin, placement->matrix(), bind.globals, rest.rest_morphs(), positions);
+  if (const FacingReport facing = turn_outwards(positions, skin.surface.triangles); facing.turned_count > 0)
+    info.notes.push_back(facing.text());
   if (positions.empty())
     for (const Mat4& m : bind.globals) positions.push_back((placement->matrix() * m).topRightCorner<3, 1>());
   info.bind_bounds = bounds(positions);

@@ -33,6 +33,7 @@ struct CharacterInfo {
   Box bind_bounds;  ///< m
   std::vector<ClipInfo> clips;
   std::vector<std::string> mesh_names;
+  bool still = false;              ///< there is nothing to play, and a note says so
   std::vector<std::string> notes;  ///< what was repaired or is odd: "weights normalised (sums 0.185..1.0)"
 };
 
@@ -50,6 +51,7 @@ struct ImportRequest {
   std::vector<std::string> meshes;
   double preroll = 1;                  ///< s
   double duration = 0;                 ///< s of the shot: frames outside the clip are refused
+  int first_frame = 0;                 ///< of the shot, for messages
   bool keep_character = false;         ///< for who changes its motion, see placed_character.h
   std::filesystem::path cache_folder;  ///< import cache; empty: none
   ImportLimits limits;

@@ -17,10 +17,11 @@ namespace ft {
 /// "green", "blue" with the channel as weight), seam and stitch lines (see obj_read.cpp). Unknown lines are skipped.
 /// Refuses numbers that are not finite, faces with fewer than three corners and indices that name nothing; uvs are kept
 /// only when every corner has one.
-Result<Mesh> read_obj(const std::filesystem::path& path);
+/// Colours are from 0 to 1, or from 0 to 255 where one is above 1; `notes`, if asked for, says how they were read then.
+Result<Mesh> read_obj(const std::filesystem::path& path, std::vector<std::string>* notes = nullptr);
 
 /// The same from text; `where` stands in front of line numbers in messages.
-Result<Mesh> parse_obj(std::string_view text, std::string_view where);
+Result<Mesh> parse_obj(std::string_view text, std::string_view where, std::vector<std::string>* notes = nullptr);
 
 /// Shortest digits that read back to the same doubles. Groups come back where they consist of whole faces with weight
 /// 1; groups "red", "green", "blue" are written as vertex colours.

@@ -12,11 +12,16 @@
 
 #include "baker/core/file.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/words.h"
 
 namespace ft {
 namespace {
 
 constexpr std::uint64_t k_max_obj_bytes = std::uint64_t{1} << 30;
+constexpr double k_largest_byte = 255;
+/// A colour above it is no 1 that was rounded.
+constexpr double k_most_above_one = 1.01;
+constexpr double k_most_of_light = 2;      ///< fractions above it are of 0..255, too
 constexpr std::size_t k_shown_faults = 5;  ///< messages printed in full; the rest is counted
 
 bool is_blank(char c) {
@@ -95,6 +100,8 @@ class ObjParser {
     trim(mesh_.positions, mesh_.face_sizes, mesh_.face_vertices, mesh_.uvs, mesh_.face_uvs);
     return std::move(mesh_);
   }
+
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   struct FaceGroup {
@@ -196,6 +203,10 @@ class ObjParser {
       const int first = count == 6 ? 3 : 4;
       colours_.resize(mesh_.positions.size() - 1, Vec3::Zero());
       colours_.emplace_back(x[first], x[first + 1], x[first + 2]);
+      const double largest = colours_.back().maxCoeff();
+      if (largest > k_largest_byte)
+        fault("vertex has a colour of " + number_text(largest) + "; colours are from 0 to 1, or from 0 to 255");
+      largest_colour_ = std::max(largest_colour_, largest);
     }
   }
 
@@ -290,7 +301,21 @@ class ObjParser {
                        "the file may be cut or damaged; export it again");
   }
 
+  /// Some tools write colours as 0..1, others as 0..255; one value decides for the whole file. Light that was baked
+  /// into the colours may also lie a little above 1.
+  void scale_colours() {
+    if (!(largest_colour_ > k_most_above_one)) return;
+    const bool whole = std::all_of(colours_.begin(), colours_.end(),
+                                   [](const Vec3& colour) { return colour.array().round().matrix() == colour; });
+    const bool bytes = whole || largest_colour_ > k_most_of_light;
+    if (bytes)
+      for (Vec3& colour : colours_) colour /= k_largest_byte;
+    notes_.push_back("vertex colours go up to " + number_text(largest_colour_) +
+                     (bytes ? ": they are read as 0 to 255" : ": what is above 1 counts as 1"));
+  }
+
   void finish_groups() {
+    scale_colours();
     for (FaceGroup& group : groups_) {
       auto& v = group.vertices;
       std::sort(v.begin(), v.end());
@@ -320,7 +345,9 @@ class ObjParser {
   std::vector<int> face_lines_, stitch_lines_;
   int seam_count_ = 0;
   bool seam_open_ = false;  ///< a seam line came, and no stitch of it yet
+  std::vector<std::string> notes_;
   std::vector<Vec3> colours_;
+  double largest_colour_ = 0;
   std::vector<FaceGroup> groups_;
   std::unordered_map<std::string, std::size_t> group_of_name_;  ///< looked up only, never walked
   std::vector<std::size_t> group_names_, object_names_;         ///< in force now
@@ -328,19 +355,21 @@ class ObjParser {
 
 }  // namespace
 
-Result<Mesh> parse_obj(std::string_view text, std::string_view where) {
+Result<Mesh> parse_obj(std::string_view text, std::string_view where, std::vector<std::string>* notes) {
   // Every element costs at least four bytes of text; beyond this an int could overflow.
   if (text.size() > k_max_obj_bytes) return input_error("is larger than 1 GiB", std::string(where));
   ObjParser parser(where);
   parser.parse(text);
-  return parser.finish();
+  auto mesh = parser.finish();
+  if (mesh && notes) *notes = parser.notes();
+  return mesh;
 }
 
-Result<Mesh> read_obj(const std::filesystem::path& path) {
+Result<Mesh> read_obj(const std::filesystem::path& path, std::vector<std::string>* notes) {
   const auto data = read_file(path, k_max_obj_bytes);
   if (!data) return data.error();
   const std::string_view text(reinterpret_cast<const char*>(data->data()), data->size());
-  auto mesh = parse_obj(text, path.string());
+  auto mesh = parse_obj(text, path.string(), notes);
   if (mesh) mesh->name = path.stem().string();
   return mesh;
 }

@@ -11,7 +11,9 @@ std::span<const ShotKey<Shot>> shot_keys() {
       {"fps", &Shot::fps, 1, 240, "1/s", "", false, "frame_rate framerate frames_per_second",
        "Frames per second of the shot"},
       {"preroll", &Shot::preroll, 0, 1000, "frames", "", false, "warmup run_up pre_roll",
-       "Frames before the first, in which the bind pose blends into the first frame and the cloth settles"},
+       "Frames before the first, in which the bind pose blends into the first frame and the cloth settles; with 0, "
+       "cloth "
+       "that starts through the body stays there"},
       {"write_preroll", &Shot::write_preroll, 0, 0, "", "", false, "",
        "Also write the frames of the pre-roll into the caches"},
       {"quality", &Shot::quality, 0, 0, "", "final preview", false, "",
@@ -131,7 +133,9 @@ std::span<const ShotKey<PinSpec>> pin_keys() {
 std::span<const ShotKey<MapSpec>> map_keys() {
   static const ShotKey<MapSpec> keys[] = {
       {"from", &MapSpec::from, 0, 0, "", "", false, "group vertex_group channel colour color",
-       "Vertex group of the mesh, or colour channel `red`, `green`, `blue`; weights run from 0 to 1"},
+       "Vertex group of the mesh, or colour channel `red`, `green`, `blue`; weights run from 0 to 1, colours may from "
+       "0 to "
+       "255"},
       {"file", &MapSpec::file, 0, 0, "", "", false, "values path csv",
        "A number for every vertex of the mesh: text or CSV, a line each; a first line with words names the columns"},
       {"of", &MapSpec::of, 0, 0, "", "@maps", true, "what name kind property target",

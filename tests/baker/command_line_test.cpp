@@ -123,6 +123,19 @@ TEST_F(CommandLine, Wrong_usage_is_exit_code_2) {
   EXPECT_EQ(run({"bake", shot("1-3"), "--frames", "9-3"}).exit_code, 2);
 }
 
+TEST_F(CommandLine, A_slip_of_the_pen_in_a_command_or_an_option_gets_a_guess) {
+  const auto guess = [&](std::vector<std::string> arguments, const std::string& words) {
+    const Answer a = run(std::move(arguments));
+    EXPECT_EQ(a.exit_code, 2);
+    EXPECT_NE(a.err.find(words), std::string::npos) << a.err;
+  };
+  guess({"bakee", "a.toml"}, "there is no command \"bakee\" (did you mean \"bake\"?)");
+  guess({"previw"}, "did you mean \"preview\"?");
+  guess({"boil"}, "there is no command \"boil\" (known: bake, info, ");
+  guess({"bake", "a.toml", "--frame=1-3"}, "bake has no option --frame (did you mean \"--frames\"?)");
+  guess({"bake", "a.toml", "--ouT", "x"}, "did you mean \"--out\"?");
+}
+
 TEST_F(CommandLine, A_mat_that_is_added_to_the_floor_of_the_clip_is_refused_with_the_reason) {
   const std::string mat = "[standin.mat]\nkind = \"mat\"\non = \"jumper\"\nstiffness = 66e3\n";
   const Answer a = run({"bake", shot("1-3", "mass = 64", mat), "--out", out()});

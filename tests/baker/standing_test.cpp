@@ -1,4 +1,5 @@
 // Up to date, stale and why: a second bake costs nothing, and nothing stale is taken for new.
+#include <csignal>
 #include <fstream>
 
 #include "baker/core/file.h"
@@ -141,6 +142,63 @@ TEST(Standing, Range_of_frames_has_its_own_preroll_and_place_in_the_clip) {
   ASSERT_EQ(bake(options, services, silent).exit_code, 0);
   EXPECT_DOUBLE_EQ(clip_start, 4 / 24.0);
   EXPECT_DOUBLE_EQ(duration, 2 / 24.0);
+}
+
+TEST(Standing, Some_of_the_frames_do_not_replace_a_finished_bake_of_all_unless_forced) {
+  FakeScene scene;
+  ASSERT_EQ(scene.run().exit_code, 0);
+  const auto whole = scene.products();
+  BakeOptions part = scene.options();
+  part.frames = FrameRange{5, 7};
+  for (const bool resume : {false, true}) {
+    part.resume = resume;
+    const BakeResult refused = scene.run(part);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(
+        text(refused).find("there is a finished bake of frames 1-10, which frames 5-7 would replace (bake them into "
+                           "a folder of their own with --out, or replace it with --force)"),
+        std::string::npos)
+        << text(refused);
+    EXPECT_EQ(scene.products(), whole);
+  }
+  part.resume = false;
+  for (bool BakeOptions::*look : {&BakeOptions::dry_run, &BakeOptions::explain}) {
+    BakeOptions only_looks = part;
+    only_looks.*look = true;
+    const BakeResult told = scene.run(only_looks);
+    EXPECT_EQ(told.exit_code, 0) << text(told);
+    EXPECT_NE(text(told).find("this bake would be refused: "), std::string::npos) << text(told);
+  }
+  BakeOptions elsewhere = part;
+  elsewhere.folder = scene.file("part");
+  EXPECT_EQ(scene.run(elsewhere).exit_code, 0);
+  EXPECT_EQ(scene.products(), whole);
+  part.force = true;
+  EXPECT_EQ(scene.run(part).exit_code, 0);
+  EXPECT_NE(scene.products(), whole);
+}
+
+TEST(Standing, A_part_is_replaced_by_the_whole_shot_by_other_frames_and_by_itself) {
+  FakeScene scene;
+  BakeOptions options = scene.options();
+  for (const FrameRange range : {FrameRange{5, 7}, {8, 10}, {7, 9}, {6, 10}, {1, 10}}) {
+    options.frames = range;
+    EXPECT_EQ(scene.run(options).exit_code, 0) << range.first;
+  }
+  scene.write_shot(10, "", "[cache]\ncollider = false\n");
+  EXPECT_EQ(scene.run(options).exit_code, 0) << "the same frames, other settings";
+  scene.write_shot(5);
+  EXPECT_EQ(scene.run().exit_code, 0) << "the shot itself has become shorter";
+}
+
+TEST(Standing, A_bake_that_was_not_finished_is_replaced_by_some_of_its_frames) {
+  FakeScene scene;
+  RecordedProgress progress;
+  progress.on_frame = [](int f) { f == 4 ? void(std::raise(SIGINT)) : void(); };
+  ASSERT_EQ(bake(scene.options(), scene.services(), progress).exit_code, 130);
+  BakeOptions part = scene.options();
+  part.frames = FrameRange{2, 3};
+  EXPECT_EQ(scene.run(part).exit_code, 0);
 }
 
 TEST(Standing, Dry_run_writes_nothing) {

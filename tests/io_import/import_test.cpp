@@ -149,6 +149,32 @@ TEST(Import, A_character_of_175_m_is_told_its_unit) {
   EXPECT_NEAR(bounds(bind_positions(*accepted->trajectory)).size().y(), 1.507, 1e-3);
 }
 
+TEST(Import, A_clip_with_one_key_and_a_cache_of_one_sample_are_said_to_stand_still) {
+  const test::ScratchFolder scratch;
+  const auto walker = read_text(std::filesystem::path(FT_SOURCE_DIR) / "tests/data/small_shot/walker.bvh");
+  ASSERT_TRUE(walker);
+  const std::size_t motion = walker->find("Frames:");
+  const std::size_t first = walker->find('\n', walker->find("Frame Time:")) + 1;
+  const std::string frame_time = walker->substr(walker->find("Frame Time:"), first - walker->find("Frame Time:"));
+  const std::string one_frame = walker->substr(0, motion) + "Frames: 1\n" + frame_time +
+                                walker->substr(first, walker->find('\n', first) + 1 - first);
+  ASSERT_TRUE(write_text_durably(scratch / "still.bvh", one_frame).ok());
+  ASSERT_TRUE(write_text_durably(scratch / "still.obj",
+                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+                  .ok());
+  for (const auto& [name, words] : {std::pair{"still.bvh", " has one key only: the character stands still"},
+                                    {"still.obj", "is one OBJ and no numbered sequence: it stands still"}}) {
+    ImportRequest request;
+    request.file = scratch / name;
+    for (const double duration : {0.0, 2.0}) {
+      request.duration = duration;
+      const auto imported = import_primary(request);
+      ASSERT_TRUE(imported) << imported.error().text();
+      EXPECT_EQ(has_note(imported->info, words), duration > 0) << name;
+    }
+  }
+}
+
 TEST(Import, A_bvh_is_sized_and_turned_by_guess_and_says_so) {
   struct Case {
     const char* file;

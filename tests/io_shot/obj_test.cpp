@@ -102,6 +102,26 @@ TEST(Obj, Vertex_colours_become_weighted_groups) {
   EXPECT_EQ(mesh->groups[2].vertices, (std::vector<int>{0}));
 }
 
+TEST(Obj, Colours_from_0_to_255_are_read_as_such_and_that_is_said) {
+  std::vector<std::string> notes;
+  const auto mesh = parse_obj("v 0 0 0 255 0 51\nv 1 0 0 0 1 0\nv 0 1 0 127.5 0 0\nf 1 2 3\n", "x.obj", &notes);
+  ASSERT_TRUE(mesh.ok()) << mesh.error().text();
+  EXPECT_EQ(notes, (std::vector<std::string>{"vertex colours go up to 255: they are read as 0 to 255"}));
+  ASSERT_EQ(mesh->groups.size(), 3u);
+  EXPECT_EQ(mesh->groups[0].weights, (std::vector<double>{1, 0.5}));
+  EXPECT_EQ(mesh->groups[1].weights, (std::vector<double>{1 / 255.0}));
+  EXPECT_EQ(mesh->groups[2].weights, (std::vector<double>{0.2}));
+  // Dark ones are whole numbers above 1; a 1 that was rounded and light above 1 are not of 0 to 255.
+  ASSERT_TRUE(parse_obj("v 0 0 0 2 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n", "x.obj", &notes).ok());
+  EXPECT_EQ(notes.at(0), "vertex colours go up to 2: they are read as 0 to 255");
+  ASSERT_TRUE(parse_obj("v 0 0 0 1.001 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "x.obj", &notes).ok());
+  EXPECT_TRUE(notes.empty());
+  ASSERT_TRUE(parse_obj("v 0 0 0 1.5 0 0\nv 1 0 0 0.3 0 0\nv 0 1 0\nf 1 2 3\n", "x.obj", &notes).ok());
+  EXPECT_EQ(notes.at(0), "vertex colours go up to 1.5: what is above 1 counts as 1");
+  EXPECT_EQ(fault_of("v 0 0 0\nv 1 0 0 0 65535 0\nv 0 1 0\nf 1 2 3\n").substr(0, 75),
+            "x.obj:2: vertex has a colour of 65535; colours are from 0 to 1, or from 0 t");
+}
+
 TEST(Obj, Line_ends_blanks_comments_and_continuations_do_not_matter) {
   const auto plain = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "x");
   for (const char* text :

@@ -1,0 +1,138 @@
+#include "baker/start_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "baker/plan.h"
+#include "collision/crossings.h"
+#include "collision/penetration.h"
+#include "collision/sewn_pairs.h"
+
+namespace ft {
+namespace {
+
+/// All garments of a group where the bake puts them first, in one numbering.
+struct Start {
+  std::vector<Vec3> x;
+  std::vector<Triangle> triangles;
+  std::vector<int> first_vertex;  ///< of each garment; one more at the end
+  SewnPairs sewn;
+
+  std::size_t garment_of(int vertex) const {
+    return static_cast<std::size_t>(std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex) -
+                                    first_vertex.begin()) -
+           1;
+  }
+};
+
+Start place(const ClothSetup& setup) {
+  Start out;
+  std::vector<Stitch> stitches;
+  for (const ClothGarment& garment : setup.garments) {
+    const int first = static_cast<int>(out.x.size());
+    out.first_vertex.push_back(first);
+    const bool in_the_world =
+        std::any_of(garment.pins.begin(), garment.pins.end(), [](const ClothPin& pin) { return pin.to_world; });
+    const Eigen::Isometry3d move = in_the_world ? Eigen::Isometry3d::Identity() : setup.primary->bind_to_start();
+    for (const Vec3& p : garment.mesh.positions) out.x.push_back(move * p);
+    for (const Triangle& t : triangulate(garment.mesh))
+      out.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (Stitch s : garment.mesh.stitches) {
+      s.vertex += first, s.edge[0] += first, s.edge[1] += first;
+      stitches.push_back(s);
+    }
+  }
+  out.first_vertex.push_back(static_cast<int>(out.x.size()));
+  out.sewn = SewnPairs(static_cast<int>(out.x.size()), stitches, out.triangles);
+  return out;
+}
+
+void add_body(const ClothSetup& setup, const std::string& primary, const Start& start, std::vector<BadStart>& bad) {
+  const double time = -setup.preroll_frames / setup.fps;
+  std::vector<Vec3> drawn(at(setup.primary->surface().vertex_count())),
+      body(at(setup.poses->collider().vertex_count()));
+  setup.primary->sample(time, drawn);
+  setup.poses->evaluate(time, drawn, body);
+  const auto triangles = setup.poses->collider().triangles();
+  const auto touch = [&](int vertex) -> BadStart& {
+    BadStart& entry = bad[start.garment_of(vertex)];
+    if (entry.vertex < 0) entry.vertex = vertex;
+    return entry;
+  };
+  for (const ClothGarment& garment : setup.garments) bad.push_back({garment.name, primary, true});
+  for (const Crossing& c : crossings_between(start.x, start.triangles, body, triangles))
+    ++touch(c.edge_of_first ? c.edge[0] : c.triangle[0]).crossings;
+  for (const Penetration& p : penetrations(start.x, body, triangles)) {
+    BadStart& entry = touch(p.vertex);
+    ++entry.inside;
+    if (p.depth > entry.depth) entry.depth = p.depth, entry.vertex = p.vertex;
+  }
+}
+
+void add_cloths(const ClothSetup& setup, const Start& start, std::vector<BadStart>& bad) {
+  std::map<std::pair<std::size_t, std::size_t>, BadStart> pairs;
+  for (const Crossing& c : crossings_within(start.x, start.triangles)) {
+    const auto [a, b] = std::minmax({start.garment_of(c.edge[0]), start.garment_of(c.triangle[0])});
+    if (start.sewn.together(c) || (a == b && !setup.garments[a].self_collision)) continue;
+    BadStart& entry = pairs[{a, b}];
+    entry.cloth = setup.garments[a].name, entry.other = setup.garments[b].name;
+    if (entry.vertex < 0) entry.vertex = start.garment_of(c.edge[0]) == a ? c.edge[0] : c.triangle[0];
+    ++entry.crossings;
+  }
+  for (auto& [pair, entry] : pairs) bad.push_back(std::move(entry));
+}
+
+std::string what_text(const BadStart& b) {
+  if (!b.is_primary)
+    return fmt::format("starts with {} crossings with {}", b.crossings,
+                       b.cloth == b.other ? "itself" : "cloth \"" + b.other + "\"");
+  std::string out = fmt::format("starts with {} crossings with \"{}\"", b.crossings, b.other);
+  if (b.inside > 0) out += fmt::format(", {} vertices up to {:.1f} mm inside", b.inside, 1e3 * b.depth);
+  return out;
+}
+
+}  // namespace
+
+StartReport find_start(const BakePlan& plan) {
+  StartReport out;
+  out.preroll = plan.shot().preroll;
+  out.fps = plan.shot().fps;
+  for (const GroupPlan& group : plan.groups) {
+    const ClothSetup& setup = group.setup;
+    if (group.lockstep || setup.garments.empty()) continue;
+    out.garment_count += static_cast<int>(setup.garments.size());
+    const Start start = place(setup);
+    std::vector<BadStart> bad;
+    add_body(setup, plan.primaries[group.primary].name, start, bad);
+    add_cloths(setup, start, bad);
+    for (BadStart& b : bad) {
+      if (b.vertex < 0) continue;
+      b.place = start.x[at(b.vertex)];
+      b.vertex -= start.first_vertex[start.garment_of(b.vertex)];
+      out.bad.push_back(std::move(b));
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> start_lines(const StartReport& report) {
+  std::vector<std::string> out;
+  for (const BadStart& b : report.bad)
+    out.push_back(fmt::format("cloth \"{}\" {} (vertex {} at ({:.3f}, {:.3f}, {:.3f}))", b.cloth, what_text(b),
+                              b.vertex, b.place.x(), b.place.y(), b.place.z()));
+  if (out.empty()) return out;
+  if (report.preroll > 0)
+    out.push_back(
+        fmt::format("the {} frames of pre-roll are there to take out what starts through something", report.preroll));
+  else
+    out.push_back(
+        fmt::format("there is no pre-roll in which that could be sorted out: give the shot one (preroll = {} under "
+                    "[shot]), in which the garment goes from its place on the bind pose into the first frame",
+                    std::lround(report.fps)));
+  return out;
+}
+
+}  // namespace ft
