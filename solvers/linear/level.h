@@ -56,7 +56,7 @@ struct Level {
 // Inlined always: the call costs a tenth of the sweeps that it stands in.
 [[gnu::always_inline]] inline Vec4f Level::product(std::size_t row, std::span<const Vec4f> v) const {
   Vec4f sum = row_product(matrix, row, v.data());
-  if (!extra.value.empty())
+  if (!extra.empty())
     for (int k = extra.start[row]; k < extra.start[row] + extra.used[row]; ++k)
       sum.head<3>() += extra.value[at(k)] * v[at(extra.column[at(k)])].head<3>();
   return sum;

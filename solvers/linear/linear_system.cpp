@@ -77,8 +77,7 @@ LinearSystem::~LinearSystem() = default;
 BlockMatrix& LinearSystem::begin() {
   Level& level = impl_->fine();
   level.matrix.reset(*level.pattern);
-  impl_->added.clear();
-  level.extra.gather(impl_->added, at(level.size()));
+  level.extra.clear();
   return level.matrix;
 }
 
@@ -86,21 +85,21 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   Impl& s = *impl_;
   BlockMatrix& matrix = s.fine().matrix;
   const BlockPattern& pattern = *matrix.pattern;
-  for (const PairTerm& term : terms)
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t b = 0; b < 4; ++b) {
+  s.added.clear();
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    const PairTerm& term = terms[t];
+    for (std::uint8_t a = 0; a < 4; ++a)
+      for (std::uint8_t b = 0; b < 4; ++b) {
         const int row = term.vertex[a], column = term.vertex[b];
         if (row < 0 || column < row) continue;
-        const Mat3f value = (term.weight[a] * term.weight[b]) * term.stiffness;
         const int place = row == column ? pattern.diagonal[at(row)] : pattern.find(row, column);
-        if (place >= 0) {
-          matrix.blocks[at(place)] += value;
-        } else {
-          s.added.push_back({row, column, value});
-          s.added.push_back({column, row, value});
-        }
+        if (place >= 0)
+          matrix.blocks[at(place)] += (term.weight[a] * term.weight[b]) * term.stiffness;
+        else
+          s.added.push_back({row, column, static_cast<int>(t), a, b});
       }
-  s.fine().extra.gather(s.added, at(s.fine().size()));
+  }
+  s.fine().extra.gather(s.added, terms, at(s.fine().size()));
 }
 
 /// Rows and columns that are held become zero, so that nothing couples to them.
@@ -115,6 +114,7 @@ void LinearSystem::Impl::hold(std::span<const char> fixed) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t k = at(p.diagonal[i]); k < at(p.diagonal[i + 1]); ++k)
         if (held[i] || held[at(p.column[k])]) level.matrix.blocks[k].setZero();
+      if (extra.empty()) continue;
       for (int k = extra.start[i]; k < extra.start[i] + extra.used[i]; ++k)
         if (held[i] || held[at(extra.column[at(k)])]) extra.value[at(k)].setZero();
     }

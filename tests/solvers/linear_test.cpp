@@ -6,6 +6,7 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
+#include "solvers/linear/extra_rows.h"
 #include "solvers/linear/galerkin_plan.h"
 #include "solvers/linear/interpolation.h"
 #include "solvers/linear/linear_system.h"
@@ -182,7 +183,9 @@ TEST(GalerkinPlan, Sums_up_what_a_dense_product_does_whatever_the_distances_betw
   for (int i = 0; i < sheet.pattern.vertex_count(); ++i)
     for (std::size_t k = 0; k < 3; ++k)
       if (p.rows[at(i)].coarse[k] >= 0)
-        weights.block<3, 3>(3 * i, 3 * p.rows[at(i)].coarse[k]).diagonal().setConstant(p.rows[at(i)].share[k] / 63.0);
+        weights.block<3, 3>(3 * i, 3 * p.rows[at(i)].coarse[k])
+            .diagonal()
+            .setConstant(double(p.rows[at(i)].share[k]) / Interpolation::k_shares);
   const Eigen::MatrixXd expected = weights.transpose() * dense(fine) * weights;
   std::size_t fewest = 0;
   std::vector<Mat3f> first;
@@ -197,6 +200,37 @@ TEST(GalerkinPlan, Sums_up_what_a_dense_product_does_whatever_the_distances_betw
     EXPECT_EQ(first, coarse.blocks);
     EXPECT_EQ(plan.entry_count() > fewest, most_offset < 100);
   }
+}
+
+TEST(ExtraRows, Have_both_halves_of_what_is_added_up_in_each_place) {
+  std::vector<PairTerm> terms(30);
+  std::vector<ExtraBlock> blocks;
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(36, 36);
+  for (int t = 0; t < 30; ++t) {
+    PairTerm& term = terms[at(t)];
+    term.weight = {0.7f, -0.3f, 0.2f, -0.6f};
+    const Vec3f n(float(noise(at(t), 1)), float(noise(at(t), 2)), float(noise(at(t), 3)));
+    term.stiffness = n * n.transpose();
+    const int row = t % 5, column = 6 + t % 3 * 2;  // each of fifteen places twice, rows 5, 7, 9 and 11 have none
+    blocks.push_back({row, column, t, 1, 3});
+    const Mat3 block = (term.weight[1] * term.weight[3] * term.stiffness).cast<double>();
+    expected.block<3, 3>(3 * row, 3 * column) += block;
+    expected.block<3, 3>(3 * column, 3 * row) += block;
+  }
+  ExtraRows rows;
+  rows.gather(blocks, terms, 12);
+  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(36, 36);
+  for (int i = 0; i < 12; ++i) {
+    int last = -1;
+    for (int k = rows.start[at(i)]; k < rows.start[at(i)] + rows.used[at(i)]; ++k) {
+      EXPECT_GT(rows.column[at(k)], last);
+      last = rows.column[at(k)];
+      found.block<3, 3>(3 * i, 3 * last) += rows.value[at(k)].cast<double>();
+    }
+  }
+  EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
+  rows.gather({}, terms, 12);
+  EXPECT_TRUE(rows.empty());
 }
 
 class Solves : public testing::TestWithParam<LinearSettings::Preconditioner> {};
@@ -341,6 +375,25 @@ TEST(Interpolation, sums_to_one_and_nearly_reproduces_linear_fields) {
   }
   const double cell = 1.0 / 40;
   EXPECT_LT(std::sqrt(squared / double(sheet.rest.size())), 0.25 * cell);
+}
+
+TEST(Interpolation, reproduces_linear_fields_of_a_regular_mesh_but_at_its_border) {
+  constexpr int n = 21;
+  std::vector<Vec3> rest;
+  std::vector<std::array<int, 4>> triangles;
+  for (int v = 0; v < n * n; ++v) rest.emplace_back(v % n, v / n, 0);
+  for (int v = 0; v < n * n; ++v)
+    if (v % n + 1 < n && v / n + 1 < n)
+      triangles.push_back({v, v + 1, v + n + 1, -1}), triangles.push_back({v, v + n + 1, v + n, -1});
+  const Interpolation p = make_interpolation(make_pattern(n * n, std::array{triangles}), rest);
+  for (int v = 0; v < n * n; ++v) {
+    if (std::min({v % n, v / n, n - 1 - v % n, n - 1 - v / n}) < 2) continue;
+    Vec3 x = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      if (p.rows[at(v)].coarse[k] >= 0)
+        x += p.rows[at(v)].share[k] * rest[at(p.coarse_to_fine[at(p.rows[at(v)].coarse[k])])];
+    EXPECT_EQ(x, Vec3(Interpolation::k_shares * rest[at(v)]));
+  }
 }
 
 }  // namespace
