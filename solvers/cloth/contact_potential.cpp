@@ -268,6 +268,7 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
     term.stiffness = stiffness.cast<float>();
     terms.push_back(term);
   };
+  terms.reserve(terms.size() + contacts_.size() + lagged_.size());
   for (const Contact& c : contacts_) {
     const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
     add(c.vertex, c.geometry.weight, law.stiffness * c.geometry.normal * c.geometry.normal.transpose());

@@ -1,6 +1,8 @@
 #include "solvers/linear/block_matrix.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
@@ -13,10 +15,9 @@ constexpr std::size_t k_block = 8192;  ///< blocks of the matrix per block of a 
 }  // namespace
 
 int BlockPattern::find(int row, int col) const {
-  const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
-  const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
+  const auto begin = column.begin() + diagonal[at(row)], end = column.begin() + diagonal[at(row) + 1];
   const auto it = std::lower_bound(begin, end, col);
-  return it != end && *it == col ? place[static_cast<std::size_t>(it - column.begin())] : -1;
+  return it != end && *it == col ? static_cast<int>(it - column.begin()) : -1;
 }
 
 void BlockMatrix::reset(const BlockPattern& p) {
@@ -27,32 +28,53 @@ void BlockMatrix::reset(const BlockPattern& p) {
 }
 
 BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::array<int, 4>>> stencil_lists) {
-  std::vector<std::vector<int>> rows(static_cast<std::size_t>(vertex_count));
-  for (int v = 0; v < vertex_count; ++v) rows[static_cast<std::size_t>(v)].push_back(v);
-  for (const auto& list : stencil_lists)
-    for (const auto& stencil : list)
-      for (const int a : stencil)
-        for (const int b : stencil) {
-          if (a < 0 || b < 0 || a == b) continue;
-          CHECK(a < vertex_count && b < vertex_count);
-          rows[static_cast<std::size_t>(a)].push_back(b);
-        }
-  BlockPattern pattern;
-  pattern.row_start.push_back(0);
-  std::vector<int> next;  // above the diagonal of each row so far: the next place, since rows come in ascending order
-  int count = 0;
+  const auto each_pair = [&](auto&& take) {
+    for (const auto& list : stencil_lists)
+      for (const auto& stencil : list)
+        for (const int a : stencil)
+          for (const int b : stencil)
+            if (a >= 0 && a < b) take(a, b);
+  };
+  // Higher vertices beside each, as often as they share a stencil; then once each, in the same place.
+  std::vector<int> start(at(vertex_count) + 1, 0), end, higher;
+  each_pair([&](int a, int b) {
+    CHECK(b < vertex_count);
+    ++start[at(a) + 1];
+  });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  higher.resize(at(start.back()));
+  end.assign(start.begin(), start.end() - 1);
+  each_pair([&](int a, int b) { higher[at(end[at(a)]++)] = b; });
+  std::vector<int> diagonal{0}, column;
   for (int v = 0; v < vertex_count; ++v) {
-    auto& row = rows[static_cast<std::size_t>(v)];
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    pattern.diagonal.push_back(count);
-    next.push_back(count + 1);
-    for (const int u : row) {
-      pattern.column.push_back(u);
-      pattern.place.push_back(u < v ? next[at(u)]++ : count++);
-    }
-    pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
+    const auto first = higher.begin() + start[at(v)], last = higher.begin() + end[at(v)];
+    std::sort(first, last);
+    end[at(v)] = static_cast<int>(std::unique(first, last) - higher.begin());
+    diagonal.push_back(diagonal.back() + 1 + end[at(v)] - start[at(v)]);
   }
+  column.reserve(at(diagonal.back()));
+  for (int v = 0; v < vertex_count; ++v) {
+    column.push_back(v);
+    column.insert(column.end(), higher.begin() + start[at(v)], higher.begin() + end[at(v)]);
+  }
+  return make_pattern(std::move(diagonal), std::move(column));
+}
+
+BlockPattern make_pattern(std::vector<int> diagonal, std::vector<int> column) {
+  BlockPattern pattern;
+  pattern.diagonal = std::move(diagonal);
+  pattern.column = std::move(column);
+  const int n = pattern.vertex_count();
+  pattern.below_start.assign(at(n) + 1, 0);
+  pattern.below.resize(pattern.block_count() - at(n));
+  const auto each_above = [&](auto&& take) {
+    for (int i = 0; i < n; ++i)
+      for (int k = pattern.diagonal[at(i)] + 1; k < pattern.diagonal[at(i) + 1]; ++k) take(i, k);
+  };
+  each_above([&](int, int k) { ++pattern.below_start[at(pattern.column[at(k)]) + 1]; });
+  std::partial_sum(pattern.below_start.begin(), pattern.below_start.end(), pattern.below_start.begin());
+  std::vector<int> next = pattern.below_start;
+  each_above([&](int i, int k) { pattern.below[at(next[at(pattern.column[at(k)])]++)] = {i, k}; });
   return pattern;
 }
 

@@ -11,22 +11,38 @@
 
 namespace ft {
 
-/// Who couples to whom: whole rows, each ascending, the vertex itself included. The matrix has the blocks on and above
-/// the diagonal alone, row by row.
+/// Who couples to whom. The matrix has the blocks on and above the diagonal alone, row by row; a place is an index into
+/// them. What a row has below the diagonal are transposed blocks of earlier rows.
 struct BlockPattern {
-  std::vector<int> row_start;  ///< vertex_count + 1
-  std::vector<int> column;
-  std::vector<int> place;     ///< in the matrix, as column: of block (row, column), below the diagonal of (column, row)
-  std::vector<int> diagonal;  ///< in the matrix: of the diagonal block of each row, the first that it has there
-  int vertex_count() const { return static_cast<int>(diagonal.size()); }
-  std::size_t block_count() const { return (column.size() + diagonal.size()) / 2; }
+  struct Mirrored {
+    int row, place;
+  };
+  std::vector<int> diagonal{0};     ///< place of the diagonal block of each row, its first; and the end of the last row
+  std::vector<int> column;          ///< of each block of the matrix, ascending within a row
+  std::vector<int> below_start{0};  ///< vertex_count + 1
+  std::vector<Mirrored> below;      ///< of row i: where blocks (row, i) are, row < i, ascending
+
+  int vertex_count() const { return static_cast<int>(diagonal.size()) - 1; }
+  std::size_t block_count() const { return column.size(); }
   /// Place of block (row, column), column >= row, in the matrix, or -1.
   int find(int row, int column) const;
+  /// visit(column, place) for all of a row, ascending: place is that of (row, column), below the diagonal of (column,
+  /// row).
+  template <class Visit>
+  void visit_row(int row, Visit&& visit) const;
 };
+
+template <class Visit>
+void BlockPattern::visit_row(int row, Visit&& visit) const {
+  for (int k = below_start[at(row)]; k < below_start[at(row) + 1]; ++k) visit(below[at(k)].row, below[at(k)].place);
+  for (int k = diagonal[at(row)]; k < diagonal[at(row) + 1]; ++k) visit(column[at(k)], k);
+}
 
 /// Pattern that couples all vertices of every stencil (triangles: 3 vertices; hinges: 4; springs: 2; -1 entries are
 /// skipped).
 BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::array<int, 4>>> stencil_lists);
+/// The same from what is on and above the diagonal: BlockPattern::diagonal and column.
+BlockPattern make_pattern(std::vector<int> diagonal, std::vector<int> column);
 
 struct BlockMatrix {
   const BlockPattern* pattern = nullptr;

@@ -10,35 +10,45 @@ namespace {
 
 constexpr std::size_t k_rows = 1024;  ///< per block of a loop
 
+Mat3f value_of(const ExtraBlock& b, std::span<const PairTerm> terms) {
+  const PairTerm& term = terms[at(b.term)];
+  return (term.weight[b.of_row] * term.weight[b.of_column]) * term.stiffness;
+}
+
 }  // namespace
 
-void ExtraRows::gather(std::span<const ExtraBlock> blocks, std::size_t rows) {
+void ExtraRows::clear() {
+  for (auto* list : {&start, &used, &column}) list->clear();
+  value.clear();
+}
+
+void ExtraRows::gather(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows) {
+  clear();
+  if (blocks.empty()) return;
   start.assign(rows + 1, 0);
   used.assign(rows, 0);
-  for (const ExtraBlock& b : blocks) ++start[at(b.row) + 1];
+  for (const ExtraBlock& b : blocks) ++start[at(b.row) + 1], ++start[at(b.column) + 1];
   for (std::size_t i = 0; i < rows; ++i) start[i + 1] += start[i];
-  order_.resize(blocks.size());
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const std::size_t row = at(blocks[k].row);
-    order_[at(start[row] + used[row]++)] = static_cast<int>(k);
-  }
-  column.resize(blocks.size());
-  value.resize(blocks.size());
+  order_.resize(2 * blocks.size());
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    for (const int row : {blocks[k].row, blocks[k].column})
+      order_[at(start[at(row)] + used[at(row)]++)] = static_cast<int>(k);
+  column.resize(order_.size());
+  value.resize(order_.size());
   parallel_for(rows, k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      const auto column_of = [&](int k) { return blocks[at(k)].row + blocks[at(k)].column - static_cast<int>(i); };
       int* const first = order_.data() + start[i];
       int* const last = first + used[i];
-      std::sort(first, last,
-                [&](int a, int b) { return std::pair(blocks[at(a)].column, a) < std::pair(blocks[at(b)].column, b); });
+      std::sort(first, last, [&](int a, int b) { return std::pair(column_of(a), a) < std::pair(column_of(b), b); });
       int next = start[i] - 1;
       for (const int* k = first; k != last; ++k) {
-        const ExtraBlock& b = blocks[at(*k)];
-        if (next >= start[i] && column[at(next)] == b.column) {
-          value[at(next)] += b.value;
+        if (next >= start[i] && column[at(next)] == column_of(*k)) {
+          value[at(next)] += value_of(blocks[at(*k)], terms);
         } else {
           ++next;
-          column[at(next)] = b.column;
-          value[at(next)] = b.value;
+          column[at(next)] = column_of(*k);
+          value[at(next)] = value_of(blocks[at(*k)], terms);
         }
       }
       used[i] = next + 1 - start[i];

@@ -2,6 +2,7 @@
 // run through parallel loops.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,20 +10,25 @@
 
 namespace ft {
 
+/// A block above the diagonal, and the one that mirrors it: of two vertices of a term, by their place in it. Its value
+/// is the same for both.
 struct ExtraBlock {
   int row, column;
-  Mat3f value;
+  int term;
+  std::uint8_t of_row, of_column;
 };
 
-/// Columns ascend within a row, and each place has one block.
+/// Both halves of a symmetric matrix. Columns ascend within a row, and each place has one block.
 struct ExtraRows {
-  std::vector<int> start;  ///< per row, and the end of the last
+  std::vector<int> start;  ///< per row, and the end of the last; empty without any blocks
   std::vector<int> used;   ///< per row: blocks from start on
   std::vector<int> column;
   std::vector<Mat3f> value;
 
+  bool empty() const { return start.empty(); }
+  void clear();
   /// Blocks of one place are added up in the order in which they come.
-  void gather(std::span<const ExtraBlock> blocks, std::size_t rows);
+  void gather(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows);
 
  private:
   std::vector<int> order_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ft {
 namespace {
@@ -24,11 +25,10 @@ std::vector<int> independent_set(const BlockPattern& p) {
         state[at(v)] = 1;
         coarse.push_back(v);
       }
-      for (int k = p.row_start[at(v)]; k < p.row_start[at(v) + 1]; ++k) {
-        const int u = p.column[at(k)];
+      p.visit_row(v, [&](int u, int) {
         if (state[at(v)] == 1 && u != v) state[at(u)] = 2;
         if (!queued[at(u)]) queued[at(u)] = 1, queue.push_back(u);
-      }
+      });
     }
   }
   std::sort(coarse.begin(), coarse.end());
@@ -36,7 +36,8 @@ std::vector<int> independent_set(const BlockPattern& p) {
 }
 
 struct Choice {
-  Interpolation::Row row;
+  std::array<int, 3> coarse{-1, -1, -1};
+  std::array<double, 3> weight{0, 0, 0};
   double cost = std::numeric_limits<double>::infinity();
 };
 
@@ -52,10 +53,11 @@ void consider(Choice& best, std::span<const int> nodes, std::span<const double> 
   const double cost = 8 * (point - x).squaredNorm() + spread;
   if (!(cost < best.cost)) return;
   best.cost = cost;
-  best.row = {};
+  best.coarse = {-1, -1, -1};
+  best.weight = {0, 0, 0};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    best.row.coarse[i] = coarse_of[at(nodes[i])];
-    best.row.weight[i] = static_cast<float>(weights[i]);
+    best.coarse[i] = coarse_of[at(nodes[i])];
+    best.weight[i] = weights[i];
   }
 }
 
@@ -88,6 +90,50 @@ Choice best_supports(const Vec3& x, std::span<const int> nodes, std::span<const 
   return best;
 }
 
+/// Whole shares: rounded down, and what is missing goes to those that lost most.
+Interpolation::Row in_shares(const Choice& choice) {
+  std::array<int, 3> share;
+  std::array<double, 3> lost;
+  int missing = Interpolation::k_shares;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double exact = Interpolation::k_shares * choice.weight[k];
+    share[k] = static_cast<int>(exact);
+    lost[k] = exact - share[k];
+    missing -= share[k];
+  }
+  for (; missing > 0; --missing) {
+    const auto k = static_cast<std::size_t>(std::max_element(lost.begin(), lost.end()) - lost.begin());
+    ++share[k];
+    lost[k] -= 1;
+  }
+  Interpolation::Row row;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (share[k] == 0) continue;
+    row.coarse[next] = choice.coarse[k];
+    row.share[next++] = static_cast<std::uint8_t>(share[k]);
+  }
+  return row;
+}
+
+void find_children(Interpolation& p) {
+  p.children_start.assign(at(p.coarse_count()) + 1, 0);
+  for (const Interpolation::Row& row : p.rows)
+    for (const int c : row.coarse)
+      if (c >= 0) ++p.children_start[at(c) + 1];
+  std::partial_sum(p.children_start.begin(), p.children_start.end(), p.children_start.begin());
+  p.children.resize(at(p.children_start.back()));
+  p.children_share.resize(p.children.size());
+  std::vector<int> next = p.children_start;
+  for (std::size_t v = 0; v < p.rows.size(); ++v)
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (p.rows[v].coarse[k] < 0) continue;
+      const std::size_t to = at(next[at(p.rows[v].coarse[k])]++);
+      p.children[to] = static_cast<int>(v);
+      p.children_share[to] = p.rows[v].share[k];
+    }
+}
+
 }  // namespace
 
 Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> rest) {
@@ -101,7 +147,7 @@ Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> re
   for (int v = 0; v < n; ++v) {
     if (coarse_of[at(v)] >= 0) {
       result.rows[at(v)].coarse[0] = coarse_of[at(v)];
-      result.rows[at(v)].weight[0] = 1;
+      result.rows[at(v)].share[0] = Interpolation::k_shares;
       continue;
     }
     // Coarse vertices within two rings, nearest first.
@@ -112,13 +158,12 @@ Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> re
     for (int depth = 0; depth < 2; ++depth) {
       const std::size_t end = ring.size();
       for (; begin < end; ++begin)
-        for (int k = p.row_start[at(ring[begin])]; k < p.row_start[at(ring[begin]) + 1]; ++k) {
-          const int u = p.column[at(k)];
-          if (stamp[at(u)] == v) continue;
+        p.visit_row(ring[begin], [&](int u, int) {
+          if (stamp[at(u)] == v) return;
           stamp[at(u)] = v;
           ring.push_back(u);
           if (coarse_of[at(u)] >= 0) nodes.push_back(u);
-        }
+        });
     }
     const Vec3& x = rest[at(v)];
     std::sort(nodes.begin(), nodes.end(), [&](int a, int b) {
@@ -126,8 +171,9 @@ Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> re
       return da != db ? da < db : a < b;
     });
     if (nodes.size() > k_max_candidates) nodes.resize(k_max_candidates);
-    result.rows[at(v)] = best_supports(x, nodes, rest, coarse_of).row;
+    result.rows[at(v)] = in_shares(best_supports(x, nodes, rest, coarse_of));
   }
+  find_children(result);
   return result;
 }
 

@@ -1,10 +1,8 @@
 #include "solvers/linear/level.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
+#include <cmath>
 
-#include "baker/core/check.h"
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 
@@ -14,10 +12,9 @@ namespace {
 constexpr std::size_t k_rows = 256;  ///< rows per block of work
 
 /// Of the symmetric part of a block, shifted by 1e-7 of its trace; zero where it has none.
-PaddedBlock inverse_of(const Mat3f& block) {
+SymmetricBlock inverse_of(const Mat3f& block) {
   const double trace = block.trace(), shift = 1e-7 * trace;
-  PaddedBlock inverse;
-  if (!(trace > 0)) return inverse;
+  if (!(trace > 0)) return {};
   const double xx = block(0, 0) + shift, yy = block(1, 1) + shift, zz = block(2, 2) + shift;
   const double xy = 0.5 * (static_cast<double>(block(0, 1)) + block(1, 0));
   const double xz = 0.5 * (static_cast<double>(block(0, 2)) + block(2, 0));
@@ -26,12 +23,10 @@ PaddedBlock inverse_of(const Mat3f& block) {
   const double cyy = xx * zz - xz * xz, cyz = xy * xz - xx * yz, czz = xx * yy - xy * xy;
   const double scale = 1 / (xx * cxx + xy * cxy + xz * cxz);
   const auto entry = [scale](double cofactor) { return static_cast<float>(scale * cofactor); };
-  inverse.columns[0] << entry(cxx), entry(cxy), entry(cxz), 0;
-  inverse.columns[1] << entry(cxy), entry(cyy), entry(cyz), 0;
-  inverse.columns[2] << entry(cxz), entry(cyz), entry(czz), 0;
-  return inverse.columns[0].allFinite() && inverse.columns[1].allFinite() && inverse.columns[2].allFinite()
-             ? inverse
-             : PaddedBlock();
+  const SymmetricBlock inverse{{entry(cxx), entry(cxy), entry(cxz), entry(cyy), entry(cyz), entry(czz)}};
+  const bool finite =
+      std::all_of(inverse.entries.begin(), inverse.entries.end(), [](float f) { return std::isfinite(f); });
+  return finite ? inverse : SymmetricBlock();
 }
 
 }  // namespace
@@ -48,85 +43,19 @@ void Level::build() {
       probe[i][c] = static_cast<float>(2 * random_uniform({.element = i}, static_cast<std::uint64_t>(c)) - 1);
 }
 
-bool link_levels(Level& fine, Level& coarse) {
-  fine.interpolation = make_interpolation(*fine.pattern, fine.rest);
+bool link_levels(Level& fine, Level& coarse, std::vector<Vec3>& rest) {
+  fine.interpolation = make_interpolation(*fine.pattern, rest);
   const Interpolation& p = fine.interpolation;
-  if (p.coarse_count() > (3 * fine.size()) / 4) return false;
-  const std::size_t nc = at(p.coarse_count());
-  for (std::size_t c = 0; c < nc; ++c) coarse.rest.push_back(fine.rest[at(p.coarse_to_fine[c])]);
-
-  std::vector<std::vector<std::pair<int, float>>> children(nc);
-  for (std::size_t v = 0; v < p.rows.size(); ++v)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (p.rows[v].coarse[k] >= 0)
-        children[at(p.rows[v].coarse[k])].push_back({static_cast<int>(v), p.rows[v].weight[k]});
-  fine.children_start.assign(1, 0);
-  for (const auto& list : children) {
-    for (const auto& [v, w] : list) fine.children.push_back(v), fine.children_weight.push_back(w);
-    fine.children_start.push_back(static_cast<int>(fine.children.size()));
+  if (p.coarse_count() > (3 * fine.size()) / 4) {
+    fine.interpolation = {};
+    return false;
   }
-
-  // Contributions per coarse block (I, J) with J >= I: of a fine block, and of the one that mirrors it.
-  struct Contributions {
-    std::vector<Level::Contribution> straight, transposed;
-  };
-  std::vector<std::map<int, Contributions>> upper(nc);
-  for (std::size_t i = 0; i < p.rows.size(); ++i)
-    for (int k = fine.pattern->row_start[i]; k < fine.pattern->row_start[i + 1]; ++k) {
-      const std::size_t j = at(fine.pattern->column[at(k)]);
-      const Interpolation::Row &row = p.rows[i], &col = p.rows[j];
-      for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t b = 0; b < 3; ++b) {
-          if (row.coarse[a] < 0 || col.coarse[b] < row.coarse[a]) continue;
-          Contributions& to = upper[at(row.coarse[a])][col.coarse[b]];
-          (j < i ? to.transposed : to.straight).push_back({fine.pattern->place[at(k)], row.weight[a] * col.weight[b]});
-        }
-    }
-  std::vector<std::vector<std::array<int, 4>>> stencils(1);
-  for (std::size_t i = 0; i < nc; ++i)
-    for (const auto& entry : upper[i]) stencils[0].push_back({static_cast<int>(i), entry.first, -1, -1});
-  coarse.own_pattern = make_pattern(static_cast<int>(nc), stencils);
+  for (std::size_t c = 0; c < at(p.coarse_count()); ++c) rest[c] = rest[at(p.coarse_to_fine[c])];
+  rest.resize(at(p.coarse_count()));
+  coarse.own_pattern = fine.plan.build(*fine.pattern, p);
   coarse.pattern = &coarse.own_pattern;
   coarse.build();
-  std::size_t count = 0;
-  for (const auto& row : upper)
-    for (const auto& [j, both] : row) count += both.straight.size() + both.transposed.size();
-  fine.gather.reserve(count);
-  fine.gather_start.assign(1, 0);
-  for (std::size_t i = 0; i < nc; ++i)
-    for (auto& [j, both] : upper[i])
-      for (auto* list : {&both.straight, &both.transposed}) {
-        std::sort(list->begin(), list->end(), [](const auto& x, const auto& y) { return x.place < y.place; });
-        fine.gather.insert(fine.gather.end(), list->begin(), list->end());
-        fine.gather_start.push_back(static_cast<int>(fine.gather.size()));
-      }
-  CHECK(fine.gather_start.size() == 2 * coarse.pattern->block_count() + 1);
   return true;
-}
-
-void galerkin(const Level& fine, Level& coarse) {
-  const auto sum_of = [&fine](std::size_t list) {
-    using Eight = Eigen::Array<float, 8, 1>;
-    Eight first = Eight::Zero();
-    float ninth = 0;
-    for (int k = fine.gather_start[list]; k < fine.gather_start[list + 1]; ++k) {
-      const Level::Contribution& g = fine.gather[at(k)];
-      const float* block = fine.matrix.blocks[at(g.place)].data();
-      first += g.weight * Eigen::Map<const Eight>(block);
-      ninth += g.weight * block[8];
-    }
-    Mat3f sum;
-    Eigen::Map<Eight>(sum.data()) = first;
-    sum(2, 2) = ninth;
-    return sum;
-  };
-  parallel_for(coarse.pattern->block_count(), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) coarse.matrix.blocks[e] = sum_of(2 * e) + sum_of(2 * e + 1).transpose();
-  });
-  for (const int d : coarse.pattern->diagonal) {  // symmetric, but for rounding
-    Mat3f& block = coarse.matrix.blocks[at(d)];
-    block = (0.5f * (block + block.transpose())).eval();
-  }
 }
 
 void invert_diagonal(Level& level) {
@@ -179,12 +108,13 @@ void residual(Level& level) {
 }
 
 void restrict_to(Level& coarse, const Level& fine, std::span<const Vec4f> residual) {
+  const Interpolation& p = fine.interpolation;
   parallel_for(at(coarse.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       Vec4f sum = Vec4f::Zero();
-      for (int k = fine.children_start[c]; k < fine.children_start[c + 1]; ++k)
-        sum += fine.children_weight[at(k)] * residual[at(fine.children[at(k)])];
-      coarse.b[c] = sum;
+      for (int k = p.children_start[c]; k < p.children_start[c + 1]; ++k)
+        sum += static_cast<float>(p.children_share[at(k)]) * residual[at(p.children[at(k)])];
+      coarse.b[c] = Interpolation::k_share * sum;
     }
   });
 }
@@ -197,10 +127,10 @@ void interpolate_onto(Level& fine, const Level& coarse) {
     for (std::size_t i = begin; i < end; ++i) {
       const Interpolation::Row& row = fine.interpolation.rows[i];
       Vec4f sum = Vec4f::Zero();
-      if (k_add) sum = fine.x[i];
       for (std::size_t k = 0; k < 3; ++k)
-        if (row.coarse[k] >= 0) sum += row.weight[k] * coarse.x[at(row.coarse[k])];
-      fine.x[i] = sum;
+        if (row.coarse[k] >= 0) sum += static_cast<float>(row.share[k]) * coarse.x[at(row.coarse[k])];
+      sum *= Interpolation::k_share;
+      fine.x[i] = k_add ? Vec4f(fine.x[i] + sum) : sum;
     }
   });
 }

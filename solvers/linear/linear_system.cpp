@@ -36,15 +36,19 @@ struct LinearSystem::Impl {
   bool coarse_is_factored = false;
   std::vector<ExtraBlock> added;
   std::vector<char> held;
-  std::vector<Vec4f> solution, best, direction, product, preconditioned;
+  std::vector<Vec4f> direction, product;
+  std::vector<Vec3> best;  ///< of solutions, where later ones are worse
   bool symmetric = false;  ///< the finest level smooths before the correction too
   float alpha = 0;         ///< of the last step: the residual has lost so much of product
 
   Level& fine() { return *levels.front(); }
+  /// M^-1 residual: of the finest level's r, too, nothing is wanted once the coarse correction has been added.
+  std::vector<Vec4f>& preconditioned() { return fine().r; }
   void hold(std::span<const char> fixed);
   void refresh_hierarchy();
   bool start(std::span<const Vec3> right_side);
-  bool step(double rz, bool keep);
+  bool step(double rz);
+  void advance(std::span<Vec3> solution, float beta);
   void correct(std::size_t depth);
   void solve_coarsest(Level& level);
   Products precondition();
@@ -57,15 +61,15 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
   impl_->settings = settings;
   auto first = std::make_unique<Level>();
   first->pattern = &pattern;
-  first->rest.assign(rest_positions.begin(), rest_positions.end());
   first->build();
   impl_->levels.push_back(std::move(first));
-  if (settings.preconditioner == LinearSettings::Preconditioner::k_multigrid)
-    while (impl_->levels.back()->size() > k_dense_size) {
-      auto coarse = std::make_unique<Level>();
-      if (!link_levels(*impl_->levels.back(), *coarse)) break;
-      impl_->levels.push_back(std::move(coarse));
-    }
+  if (settings.preconditioner != LinearSettings::Preconditioner::k_multigrid) return;
+  std::vector<Vec3> rest(rest_positions.begin(), rest_positions.end());
+  while (impl_->levels.back()->size() > k_dense_size) {
+    auto coarse = std::make_unique<Level>();
+    if (!link_levels(*impl_->levels.back(), *coarse, rest)) break;
+    impl_->levels.push_back(std::move(coarse));
+  }
 }
 
 LinearSystem::~LinearSystem() = default;
@@ -73,8 +77,7 @@ LinearSystem::~LinearSystem() = default;
 BlockMatrix& LinearSystem::begin() {
   Level& level = impl_->fine();
   level.matrix.reset(*level.pattern);
-  impl_->added.clear();
-  level.extra.gather(impl_->added, at(level.size()));
+  level.extra.clear();
   return level.matrix;
 }
 
@@ -82,21 +85,21 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   Impl& s = *impl_;
   BlockMatrix& matrix = s.fine().matrix;
   const BlockPattern& pattern = *matrix.pattern;
-  for (const PairTerm& term : terms)
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t b = 0; b < 4; ++b) {
+  s.added.clear();
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    const PairTerm& term = terms[t];
+    for (std::uint8_t a = 0; a < 4; ++a)
+      for (std::uint8_t b = 0; b < 4; ++b) {
         const int row = term.vertex[a], column = term.vertex[b];
         if (row < 0 || column < row) continue;
-        const Mat3f value = (term.weight[a] * term.weight[b]) * term.stiffness;
         const int place = row == column ? pattern.diagonal[at(row)] : pattern.find(row, column);
-        if (place >= 0) {
-          matrix.blocks[at(place)] += value;
-        } else {
-          s.added.push_back({row, column, value});
-          s.added.push_back({column, row, value});
-        }
+        if (place >= 0)
+          matrix.blocks[at(place)] += (term.weight[a] * term.weight[b]) * term.stiffness;
+        else
+          s.added.push_back({row, column, static_cast<int>(t), a, b});
       }
-  s.fine().extra.gather(s.added, at(s.fine().size()));
+  }
+  s.fine().extra.gather(s.added, terms, at(s.fine().size()));
 }
 
 /// Rows and columns that are held become zero, so that nothing couples to them.
@@ -109,9 +112,9 @@ void LinearSystem::Impl::hold(std::span<const char> fixed) {
   ExtraRows& extra = level.extra;
   parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      for (int k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-        if (at(p.column[at(k)]) >= i && (held[i] || held[at(p.column[at(k)])]))
-          level.matrix.blocks[at(p.place[at(k)])].setZero();
+      for (std::size_t k = at(p.diagonal[i]); k < at(p.diagonal[i + 1]); ++k)
+        if (held[i] || held[at(p.column[k])]) level.matrix.blocks[k].setZero();
+      if (extra.empty()) continue;
       for (int k = extra.start[i]; k < extra.start[i] + extra.used[i]; ++k)
         if (held[i] || held[at(extra.column[at(k)])]) extra.value[at(k)].setZero();
     }
@@ -119,11 +122,9 @@ void LinearSystem::Impl::hold(std::span<const char> fixed) {
 }
 
 void LinearSystem::Impl::refresh_hierarchy() {
-  fine().rows.fill(fine().matrix);
   invert_diagonal(fine());
   for (std::size_t d = 1; d < levels.size(); ++d) {
-    galerkin(*levels[d - 1], *levels[d]);
-    levels[d]->rows.fill(levels[d]->matrix);
+    levels[d - 1]->plan.apply(levels[d - 1]->matrix, levels[d]->matrix);
     invert_diagonal(*levels[d]);
     if (d + 1 < levels.size()) estimate_damping(*levels[d]);
   }
@@ -132,10 +133,9 @@ void LinearSystem::Impl::refresh_hierarchy() {
   if (levels.size() < 2 || last.size() > k_dense_limit) return;
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * last.size(), 3 * last.size());
   for (int i = 0; i < last.size(); ++i)
-    for (int k = last.pattern->row_start[at(i)]; k < last.pattern->row_start[at(i) + 1]; ++k) {
+    for (int k = last.pattern->diagonal[at(i)]; k < last.pattern->diagonal[at(i) + 1]; ++k) {
       const int j = last.pattern->column[at(k)];
-      if (j < i) continue;
-      const Mat3 block = last.matrix.blocks[at(last.pattern->place[at(k)])].cast<double>();
+      const Mat3 block = last.matrix.blocks[at(k)].cast<double>();
       dense.block<3, 3>(3 * i, 3 * j) = block;
       if (j > i) dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
     }
@@ -181,7 +181,7 @@ void LinearSystem::Impl::correct(std::size_t depth) {
     add_interpolated(level, coarse);
 }
 
-/// preconditioned = M^-1 residual, which is the finest level's b. Held rows have a zero inverse, yet interpolation
+/// preconditioned() = M^-1 residual, which is the finest level's b. Held rows have a zero inverse, yet interpolation
 /// writes to them.
 Products LinearSystem::Impl::apply_cycle() {
   Level& level = fine();
@@ -192,7 +192,7 @@ Products LinearSystem::Impl::apply_cycle() {
       parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
         Lanes with_residual = Lanes::Zero(), with_product = with_residual, norm_squared = with_residual;
         for (std::size_t i = begin; i < end; ++i) {
-          Vec4f& z = preconditioned[i];
+          Vec4f& z = level.r[i];
           z.setZero();
           if (held[i]) continue;
           const Vec4f& b = level.b[i];
@@ -235,13 +235,13 @@ bool LinearSystem::Impl::start(std::span<const Vec3> right_side) {
     level.b[i].head<3>() = right_side[i].cast<float>();
     sound = sound && level.inverse[i].trace() > 0;
   }
-  for (auto* v : {&solution, &best, &direction, &product, &preconditioned}) v->assign(level.b.size(), Vec4f::Zero());
+  for (auto* v : {&direction, &product}) v->assign(level.b.size(), Vec4f::Zero());
   return sound;
 }
 
-/// One step of conjugate gradients along direction; with keep, best is the solution before it. False where the
-/// curvature is not positive: nothing has changed then.
-bool LinearSystem::Impl::step(double rz, bool keep) {
+/// The residual after one step of conjugate gradients along direction, alpha of it. False where the curvature is not
+/// positive: nothing has changed then.
+bool LinearSystem::Impl::step(double rz) {
   Level& level = fine();
   const double curvature = parallel_sum(direction.size(), k_rows, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
@@ -254,13 +254,19 @@ bool LinearSystem::Impl::step(double rz, bool keep) {
   if (!(curvature > 0) || !std::isfinite(curvature)) return false;
   alpha = static_cast<float>(rz / curvature);
   parallel_for(direction.size(), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (keep) best[i] = solution[i];
-      solution[i] += alpha * direction[i];
-      level.b[i] -= alpha * product[i];
-    }
+    for (std::size_t i = begin; i < end; ++i) level.b[i] -= alpha * product[i];
   });
   return true;
+}
+
+/// The solution after that step, and the next direction.
+void LinearSystem::Impl::advance(std::span<Vec3> solution, float beta) {
+  parallel_for(direction.size(), k_rows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      solution[i] += (alpha * direction[i].head<3>()).cast<double>();
+      direction[i] = preconditioned()[i] + beta * direction[i];
+    }
+  });
 }
 
 LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> out) {
@@ -268,6 +274,7 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   s.hold(fixed);
   s.refresh_hierarchy();
   const bool sound = s.start(right_side);
+  std::fill(out.begin(), out.end(), Vec3::Zero());
 
   LinearReport report;
   report.converged =
@@ -276,27 +283,25 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   bool is_best = true;  // the solution so far, of all there were
   const Products first = s.precondition();
   double rz = first.with_residual;
-  s.direction = s.preconditioned;
+  s.direction = s.preconditioned();
   while (!report.converged && report.iterations < s.settings.max_iterations && std::isfinite(rz) && rz > 0) {
-    if (!s.step(rz, is_best)) break;
+    if (!s.step(rz)) break;
     ++report.iterations;
     const auto [next, along_last, norm_squared] = s.precondition();
     const double residual = std::sqrt(norm_squared / first.norm_squared);
-    is_best = residual < best_residual;
+    const bool better = residual < best_residual;
+    if (is_best && !better) s.best.assign(out.begin(), out.end());
+    is_best = better;
     if (is_best) best_residual = residual;
-    if (!(next >= 0) || !std::isfinite(next)) break;
-    report.converged = residual <= s.settings.tolerance && sound;
     // Flexible: the cycle is not symmetric (Bouwmeester et al. 2015, Nonsymmetric Preconditioning for Conjugate
     // Gradient and Steepest Descent Methods), so that the difference of two residuals stands for the new one alone.
-    const float beta = -s.alpha * static_cast<float>(along_last / rz);
+    s.advance(out, -s.alpha * static_cast<float>(along_last / rz));
+    if (!(next >= 0) || !std::isfinite(next)) break;
+    report.converged = residual <= s.settings.tolerance && sound;
     rz = next;
-    parallel_for(s.direction.size(), k_rows, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) s.direction[i] = s.preconditioned[i] + beta * s.direction[i];
-    });
   }
   report.residual = best_residual;
-  const std::vector<Vec4f>& found = is_best ? s.solution : s.best;
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = found[i].head<3>().cast<double>();
+  if (!is_best) std::copy(s.best.begin(), s.best.end(), out.begin());
   return report;
 }
 

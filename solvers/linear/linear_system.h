@@ -37,7 +37,7 @@ class LinearSystem {
   /// The matrix to fill: zeroed by begin(). Energies and the mass add to it.
   BlockMatrix& begin();
   /// Contact, friction and pins. Terms whose vertices share the pattern go into the matrix, the others are kept aside
-  /// as an extra sparse block matrix (sorted, so that the sum order is fixed). Call after the energies.
+  /// as an extra sparse block matrix (sorted, so that the sum order is fixed). Call once, after the energies.
   void add_pair_terms(std::span<const PairTerm> terms);
   /// Rows of fixed[i] != 0 are held at zero, and leave the matrix for good: what is solved before it is filled anew may
   /// hold more of them, but not less.

@@ -49,11 +49,10 @@ Eigen::MatrixXd dense(const BlockMatrix& m) {
   const int n = m.pattern->vertex_count();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (int i = 0; i < n; ++i)
-    for (int k = m.pattern->row_start[at(i)]; k < m.pattern->row_start[at(i) + 1]; ++k) {
-      const int j = m.pattern->column[at(k)];
-      const Mat3 block = m.blocks[at(m.pattern->place[at(k)])].cast<double>();
+    m.pattern->visit_row(i, [&](int j, int place) {
+      const Mat3 block = m.blocks[at(place)].cast<double>();
       out.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
-    }
+    });
   return out;
 }
 

@@ -6,9 +6,11 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
+#include "solvers/linear/extra_rows.h"
+#include "solvers/linear/galerkin_plan.h"
 #include "solvers/linear/interpolation.h"
 #include "solvers/linear/linear_system.h"
-#include "solvers/linear/packed_rows.h"
+#include "solvers/linear/row_product.h"
 
 namespace ft {
 namespace {
@@ -60,18 +62,23 @@ struct Sheet {
   }
 };
 
+Eigen::MatrixXd dense(const BlockMatrix& m) {
+  const int n = m.pattern->vertex_count();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (int i = 0; i < n; ++i)
+    m.pattern->visit_row(i, [&](int j, int place) {
+      const Mat3 block = m.blocks[at(place)].cast<double>();
+      a.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
+    });
+  return a;
+}
+
 Eigen::VectorXd dense_solution(const Sheet& sheet, std::span<const PairTerm> terms, std::span<const char> fixed) {
   BlockMatrix m;
   m.reset(sheet.pattern);
   sheet.fill(m);
   const int n = sheet.pattern.vertex_count();
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  for (int i = 0; i < n; ++i)
-    for (int k = sheet.pattern.row_start[at(i)]; k < sheet.pattern.row_start[at(i) + 1]; ++k) {
-      const int j = sheet.pattern.column[at(k)];
-      const Mat3 block = m.blocks[at(sheet.pattern.place[at(k)])].cast<double>();
-      a.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
-    }
+  Eigen::MatrixXd a = dense(m);
   for (const PairTerm& t : terms)
     for (std::size_t p = 0; p < 4; ++p)
       for (std::size_t q = 0; q < 4; ++q)
@@ -110,43 +117,120 @@ std::vector<PairTerm> contacts(const Sheet& sheet) {
   return terms;
 }
 
-TEST(PackedRows, Multiply_rows_of_even_and_odd_length_by_both_halves_of_a_symmetric_matrix) {
+TEST(BlockPattern, Has_every_pair_of_a_stencil_once_whatever_order_and_however_often_it_comes) {
+  const std::vector<std::array<int, 4>> lists[] = {{{5, 2, -1, -1}, {2, 5, 0, -1}}, {{5, 5, 3, 2}}};
+  const BlockPattern pattern = make_pattern(6, lists);
+  const std::vector<std::vector<int>> expected{{0, 2, 5}, {1}, {0, 2, 3, 5}, {2, 3, 5}, {4}, {0, 2, 3, 5}};
+  EXPECT_EQ(pattern.block_count(), 11u);
+  for (int i = 0; i < 6; ++i) {
+    std::vector<int> columns;
+    pattern.visit_row(i, [&](int j, int place) {
+      columns.push_back(j);
+      EXPECT_EQ(place, pattern.find(std::min(i, j), std::max(i, j)));
+    });
+    EXPECT_EQ(columns, expected[at(i)]) << i;
+    EXPECT_EQ(pattern.find(i, i), pattern.diagonal[at(i)]);
+  }
+  EXPECT_EQ(pattern.find(1, 2), -1);
+  EXPECT_EQ(BlockPattern().vertex_count(), 0);
+}
+
+/// Any values, symmetric.
+void fill_with_noise(BlockMatrix& m) {
+  for (std::size_t p = 0; p < m.pattern->block_count(); ++p)
+    for (int c = 0; c < 9; ++c) m.blocks[p].data()[c] = float(noise(p, static_cast<std::uint64_t>(c)));
+  for (int i = 0; i < m.pattern->vertex_count(); ++i) {
+    Mat3f& block = m.blocks[at(m.pattern->diagonal[at(i)])];
+    block = (block + block.transpose()).eval();
+  }
+}
+
+TEST(RowProduct, Multiplies_rows_of_even_and_odd_length_by_both_halves_of_a_symmetric_matrix) {
   std::vector<std::array<int, 4>> springs;
   for (int i = 1; i < 12; ++i)
     for (int j = 0; j < i; j += 1 + i % 3) springs.push_back({i, j, -1, -1});
   const BlockPattern pattern = make_pattern(12, std::array{springs});
   BlockMatrix matrix;
   matrix.reset(pattern);
-  Eigen::MatrixXf dense = Eigen::MatrixXf::Zero(36, 36);
+  fill_with_noise(matrix);
+  // What is read beyond the end of a block counts for nothing.
+  matrix.blocks.back().setConstant(std::numeric_limits<float>::quiet_NaN());
   std::vector<Vec4f> x(12);
-  Eigen::VectorXf flat(36);
+  Eigen::VectorXd flat(36);
   int odd = 0;
   for (int i = 0; i < 12; ++i) {
-    odd += (pattern.row_start[at(i) + 1] - pattern.row_start[at(i)]) % 2;
+    odd += (pattern.diagonal[at(i) + 1] - pattern.diagonal[at(i)]) % 2;
     x[at(i)] = Vec4f(float(noise(at(i), 90)), float(noise(at(i), 91)), float(noise(at(i), 92)), 0);
-    flat.segment<3>(3 * i) = x[at(i)].head<3>();
-    EXPECT_EQ(pattern.find(i, i), pattern.diagonal[at(i)]);
-    for (int j = i; j < 12; ++j) {
-      const int place = pattern.find(i, j);
-      if (place < 0) continue;
-      Mat3f block;
-      for (int c = 0; c < 9; ++c) block.data()[c] = float(noise(at(place), static_cast<std::uint64_t>(c)));
-      if (j == i) block = (block + block.transpose()).eval();
-      matrix.blocks[at(place)] = block;
-      dense.block<3, 3>(3 * i, 3 * j) = block;
-      dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
-    }
+    flat.segment<3>(3 * i) = x[at(i)].head<3>().cast<double>();
   }
   EXPECT_GT(odd, 0);
   EXPECT_LT(odd, 12);
-  PackedRows rows;
-  rows.fill(matrix);
-  const Eigen::VectorXf expected = dense * flat;
+  const Eigen::VectorXd expected = dense(matrix) * flat;
   for (int i = 0; i < 12; ++i) {
-    const Vec4f row = rows.product(at(i), x.data());
-    EXPECT_LT((row.head<3>() - expected.segment<3>(3 * i)).norm(), 1e-5f);
+    const Vec4f row = row_product(matrix, at(i), x.data());
+    EXPECT_LT((row.head<3>().cast<double>() - expected.segment<3>(3 * i)).norm(), 1e-5);  // a hundred roundings
     EXPECT_EQ(row[3], 0);
   }
+}
+
+TEST(GalerkinPlan, Sums_up_what_a_dense_product_does_whatever_the_distances_between_places) {
+  const Sheet sheet(11);
+  const Interpolation p = make_interpolation(sheet.pattern, sheet.rest);
+  BlockMatrix fine;
+  fine.reset(sheet.pattern);
+  fill_with_noise(fine);
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(3 * sheet.pattern.vertex_count(), 3 * p.coarse_count());
+  for (int i = 0; i < sheet.pattern.vertex_count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (p.rows[at(i)].coarse[k] >= 0)
+        weights.block<3, 3>(3 * i, 3 * p.rows[at(i)].coarse[k])
+            .diagonal()
+            .setConstant(double(p.rows[at(i)].share[k]) / Interpolation::k_shares);
+  const Eigen::MatrixXd expected = weights.transpose() * dense(fine) * weights;
+  std::size_t fewest = 0;
+  std::vector<Mat3f> first;
+  for (const std::uint32_t most_offset : {1u << 19, 40u, 1u}) {
+    GalerkinPlan plan;
+    const BlockPattern pattern = plan.build(sheet.pattern, p, most_offset);
+    BlockMatrix coarse;
+    coarse.reset(pattern);
+    plan.apply(fine, coarse);
+    EXPECT_LT((dense(coarse) - expected).norm(), 1e-5 * expected.norm());
+    if (first.empty()) first = coarse.blocks, fewest = plan.entry_count();
+    EXPECT_EQ(first, coarse.blocks);
+    EXPECT_EQ(plan.entry_count() > fewest, most_offset < 100);
+  }
+}
+
+TEST(ExtraRows, Have_both_halves_of_what_is_added_up_in_each_place) {
+  std::vector<PairTerm> terms(30);
+  std::vector<ExtraBlock> blocks;
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(36, 36);
+  for (int t = 0; t < 30; ++t) {
+    PairTerm& term = terms[at(t)];
+    term.weight = {0.7f, -0.3f, 0.2f, -0.6f};
+    const Vec3f n(float(noise(at(t), 1)), float(noise(at(t), 2)), float(noise(at(t), 3)));
+    term.stiffness = n * n.transpose();
+    const int row = t % 5, column = 6 + t % 3 * 2;  // each of fifteen places twice, rows 5, 7, 9 and 11 have none
+    blocks.push_back({row, column, t, 1, 3});
+    const Mat3 block = (term.weight[1] * term.weight[3] * term.stiffness).cast<double>();
+    expected.block<3, 3>(3 * row, 3 * column) += block;
+    expected.block<3, 3>(3 * column, 3 * row) += block;
+  }
+  ExtraRows rows;
+  rows.gather(blocks, terms, 12);
+  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(36, 36);
+  for (int i = 0; i < 12; ++i) {
+    int last = -1;
+    for (int k = rows.start[at(i)]; k < rows.start[at(i)] + rows.used[at(i)]; ++k) {
+      EXPECT_GT(rows.column[at(k)], last);
+      last = rows.column[at(k)];
+      found.block<3, 3>(3 * i, 3 * last) += rows.value[at(k)].cast<double>();
+    }
+  }
+  EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
+  rows.gather({}, terms, 12);
+  EXPECT_TRUE(rows.empty());
 }
 
 class Solves : public testing::TestWithParam<LinearSettings::Preconditioner> {};
@@ -277,17 +361,39 @@ TEST(Interpolation, sums_to_one_and_nearly_reproduces_linear_fields) {
   for (std::size_t i = 0; i < sheet.rest.size(); ++i) {
     Vec3 x = Vec3::Zero();
     float sum = 0;
+    int shares = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (p.rows[i].coarse[k] < 0) continue;
-      x += double(p.rows[i].weight[k]) * sheet.rest[at(p.coarse_to_fine[at(p.rows[i].coarse[k])])];
-      sum += p.rows[i].weight[k];
-      EXPECT_GE(p.rows[i].weight[k], 0);
+      x += double(p.rows[i].weight(k)) * sheet.rest[at(p.coarse_to_fine[at(p.rows[i].coarse[k])])];
+      sum += p.rows[i].weight(k);
+      shares += p.rows[i].share[k];
+      EXPECT_GT(p.rows[i].share[k], 0);
     }
     EXPECT_NEAR(sum, 1, 1e-6);
+    EXPECT_EQ(shares, Interpolation::k_shares);
     squared += (x - sheet.rest[i]).squaredNorm();
   }
   const double cell = 1.0 / 40;
   EXPECT_LT(std::sqrt(squared / double(sheet.rest.size())), 0.25 * cell);
+}
+
+TEST(Interpolation, reproduces_linear_fields_of_a_regular_mesh_but_at_its_border) {
+  constexpr int n = 21;
+  std::vector<Vec3> rest;
+  std::vector<std::array<int, 4>> triangles;
+  for (int v = 0; v < n * n; ++v) rest.emplace_back(v % n, v / n, 0);
+  for (int v = 0; v < n * n; ++v)
+    if (v % n + 1 < n && v / n + 1 < n)
+      triangles.push_back({v, v + 1, v + n + 1, -1}), triangles.push_back({v, v + n + 1, v + n, -1});
+  const Interpolation p = make_interpolation(make_pattern(n * n, std::array{triangles}), rest);
+  for (int v = 0; v < n * n; ++v) {
+    if (std::min({v % n, v / n, n - 1 - v % n, n - 1 - v / n}) < 2) continue;
+    Vec3 x = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      if (p.rows[at(v)].coarse[k] >= 0)
+        x += p.rows[at(v)].share[k] * rest[at(p.coarse_to_fine[at(p.rows[at(v)].coarse[k])])];
+    EXPECT_EQ(x, Vec3(Interpolation::k_shares * rest[at(v)]));
+  }
 }
 
 }  // namespace
