@@ -111,8 +111,9 @@ Bending::Bending(const ClothTopology& topology) {
   for (std::size_t s = 0; s < neighbours.size(); ++s)  // unused couplings look at themselves, with no weight
     std::replace(neighbours[s].begin(), neighbours[s].end(), -1, static_cast<int>(s));
   neighbours_ = group_indices<k_couplings - 1>(schedule_, [&](std::size_t slot) { return neighbours[slot]; });
-  moment_.assign(slot_count(), 0.0f);
-  motion_.assign(slot_count(), 0.0f);
+  rho_.assign(groups_.size() * k_lanes, 0.0);
+  moment_ = rho_;
+  motion_.assign(rho_.size(), 0.0f);
   root_.assign(damping_time_.size(), 0.0);
 }
 
@@ -134,7 +135,7 @@ void Bending::work_out(std::span<const Vec3> x, Bends& bends) const {
   const Hash128 of = hash_bytes(std::as_bytes(x));
   if (bends.of == of && !bends.phi.empty()) return;
   bends.of = of;
-  bends.phi.resize(slot_count());
+  bends.phi.resize(rho_.size());
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     Vertices v;
     HingeEdges h;
@@ -159,8 +160,8 @@ void Bending::begin_step(const StepContext& context) {
   if (history) work_out(context.x_tm1, start_);  // the start of the last step is mostly where this one came from
   work_out(context.x_t0, last_);                 // and its end where this one starts
   start_.of = last_.of;
-  start_.phi.resize(slot_count());
-  parallel_for(slot_count(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
+  start_.phi.resize(rho_.size());
+  parallel_for(rho_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const double before = start_.phi[s];
       start_.phi[s] = last_.phi[s];
@@ -169,16 +170,15 @@ void Bending::begin_step(const StepContext& context) {
   });
 }
 
-/// Fills last_, moment_ and energy_.
+/// Fills last_, rho_, moment_ and energy_.
 void Bending::measure(std::span<const Vec3> x) const {
   if (measured_ && last_.of == hash_bytes(std::as_bytes(x))) return;
   measured_ = true;
   work_out(x, last_);
-  std::vector<double> rho_of(slot_count());
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = i * k_lanes;
-      double* rho = rho_of.data() + first;
+      double* rho = rho_.data() + first;
       if (!damps_) {
         std::fill_n(rho, k_lanes, 0.0);
         continue;
@@ -197,13 +197,13 @@ void Bending::measure(std::span<const Vec3> x) const {
       neighbours_.get(i, neighbours);
       for (std::size_t l = 0; l < k_lanes; ++l) {
         const std::size_t slot = i * k_lanes + l;
-        double elastic = g.coupling[0][l] * last_.phi[slot], viscous = g.coupling[0][l] * rho_of[slot];
+        double elastic = g.coupling[0][l] * last_.phi[slot], viscous = g.coupling[0][l] * rho_[slot];
         for (int k = 0; k + 1 < k_couplings; ++k) {
           const std::size_t n = at(neighbours.column[k][l]);
-          elastic += g.coupling[k + 1][l] * last_.phi[n], viscous += g.coupling[k + 1][l] * rho_of[n];
+          elastic += g.coupling[k + 1][l] * last_.phi[n], viscous += g.coupling[k + 1][l] * rho_[n];
         }
-        moment_[slot] = static_cast<float>(elastic + (damps_ ? root_[g.piece[l]] : 0) * viscous);
-        total += 0.5 * (elastic * last_.phi[slot] + viscous * rho_of[slot]);
+        moment_[slot] = elastic + (damps_ ? root_[g.piece[l]] : 0) * viscous;
+        total += 0.5 * (elastic * last_.phi[slot] + viscous * rho_[slot]);
       }
     }
     return total;
@@ -269,7 +269,7 @@ void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient,
 
 void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const {
   const HingeGradients& d = shape.d;
-  const float* moment = moment_.data() + group * k_lanes;
+  const double* moment = moment_.data() + group * k_lanes;
   alignas(32) HingeLane g0[3], g1[3], g2[3], g3[3];
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < k_lanes; ++l) {

@@ -50,7 +50,6 @@ class Bending final : public Energy {
     Hash128 of;               ///< of the positions
     std::vector<double> phi;  ///< per hinge slot [rad]
   };
-  std::size_t slot_count() const { return groups_.size() * k_lanes; }
   void work_out(std::span<const Vec3> x, Bends& bends) const;
   void measure(std::span<const Vec3> x) const;
   void add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const;
@@ -70,11 +69,10 @@ class Bending final : public Energy {
   mutable BlockPositions<4> positions_;
   // Of the last x that was measured: the next question is mostly about the same one, and the next step starts there.
   mutable Bends last_;
-  mutable bool measured_ = false;  ///< in this step, what follows
-  /// Per hinge slot: dU / d theta [N m]; gathering it anew while the matrix is filled is slow. What is rounded off it
-  /// moves no hinge as a whole.
-  mutable std::vector<float> moment_;
-  mutable double energy_ = 0;  ///< J
+  mutable bool measured_ = false;       ///< in this step, what follows
+  mutable std::vector<double> rho_;     ///< per hinge slot
+  mutable std::vector<double> moment_;  ///< dU / d theta [N m]; gathering it anew while the matrix is filled is slow
+  mutable double energy_ = 0;           ///< J
 };
 
 }  // namespace ft
