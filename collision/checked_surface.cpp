@@ -5,7 +5,7 @@
 namespace ft {
 
 CheckedSurface::CheckedSurface(std::span<const Triangle> triangles)
-    : triangles_(triangles.begin(), triangles.end()), owned_(triangles.size(), 0) {
+    : triangles_(triangles), owned_(triangles.size(), 0) {
   std::vector<std::pair<Edge, int>> all;
   all.reserve(3 * triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i)

@@ -11,9 +11,12 @@ namespace ft {
 
 class CheckedSurface {
  public:
+  /// Of triangles that stay where they are.
   explicit CheckedSurface(std::span<const Triangle> triangles);
   /// Takes the surface to positions [m], which have to stay alive until the next move.
   void move(std::span<const Vec3> positions);
+  /// Frees what move() makes anew.
+  void forget_boxes() { tree_.forget_boxes(); }
 
   bool empty() const { return triangles_.empty(); }
   /// Whether every edge is passed once in either direction: it has an inside, and none gets there without a crossing.
@@ -25,7 +28,7 @@ class CheckedSurface {
   unsigned char owned_edges(int triangle) const { return owned_[static_cast<std::size_t>(triangle)]; }
 
  private:
-  std::vector<Triangle> triangles_;
+  std::span<const Triangle> triangles_;
   std::vector<unsigned char> owned_;
   bool closed_ = true;
   std::span<const Vec3> positions_;

@@ -38,11 +38,10 @@ inline float dot(const float* a, const std::array<float, 3>& b) {
 }  // namespace
 
 FlatPatches::FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> triangles, double reach)
-    : triangles_(triangles.begin(), triangles.end()) {
-  measure(rest);
-  rest_sides_.swap(sides_);
+    : rest_(rest), triangles_(triangles) {
   by_sides_.reserve(triangles.size());
-  for (const Sides& s : rest_sides_) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Sides s = sides(rest, t);
     const Vec3f a(s.a.data()), b(s.b.data());
     // Of the sides' matrix on a plane that faces the triangle by k_facing at least: its norm by its determinant.
     const float area = PatchBuilder::k_facing * a.cross(b).norm();
@@ -56,15 +55,20 @@ FlatPatches::FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> t
   });
   std::erase_if(patches, [](const SpreadPatch& p) { return p.members.size() < 2; });
   const auto rows_of = [&](Adjacency& rows, std::vector<int> SpreadPatch::*list) {
+    std::size_t count = 0;
+    for (const SpreadPatch& p : patches) count += (p.*list).size();
     rows.start.assign(1, 0);
+    rows.start.reserve(patches.size() + 1);
+    rows.items.reserve(count);
     for (const SpreadPatch& p : patches) {
       rows.items.insert(rows.items.end(), (p.*list).begin(), (p.*list).end());
       rows.start.push_back(static_cast<int>(rows.items.size()));
     }
-    rows.items.shrink_to_fit();
   };
   rows_of(members_, &SpreadPatch::members);
   rows_of(cover_, &SpreadPatch::cover);
+  plane_.reserve(patches.size());
+  least_.reserve(patches.size());
   for (const SpreadPatch& p : patches) {
     plane_.push_back({});
     for (std::size_t k = 0; k < 6; ++k) plane_.back()[k] = static_cast<float>(p.axes[k / 3][static_cast<int>(k % 3)]);
@@ -75,26 +79,22 @@ FlatPatches::FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> t
   flat_.assign(patches.size(), 0);
 }
 
-void FlatPatches::measure(std::span<const Vec3> x) {
-  sides_.resize(triangles_.size());
-  parallel_for(triangles_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Triangle& t = triangles_[k];
-      const Vec3f a = (x[at(t[1])] - x[at(t[0])]).cast<float>(), b = (x[at(t[2])] - x[at(t[0])]).cast<float>();
-      sides_[k] = {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}};
-    }
-  });
+FlatPatches::Sides FlatPatches::sides(std::span<const Vec3> x, std::size_t triangle) const {
+  const Triangle& t = triangles_[triangle];
+  const Vec3f a = (x[at(t[1])] - x[at(t[0])]).cast<float>(), b = (x[at(t[2])] - x[at(t[0])]).cast<float>();
+  return {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}};
 }
 
-/// m of a patch. With D = the sides at rest on the plane and Q = R^T times those now it is the smallest eigenvalue of
-/// sym(Q adj D) / det D.
-float FlatPatches::flatness(std::size_t patch) const {
+/// m of a patch, from the sides of its triangles. With D = those at rest on the plane and Q = R^T times those now it is
+/// the smallest eigenvalue of sym(Q adj D) / det D.
+template <class RestOf, class NowOf>
+float FlatPatches::flatness(std::size_t patch, RestOf&& rest_of, NowOf&& now_of) const {
   const float* axes = plane_[patch].data();
   const float* r = frame_[patch].data();
   float least = k_infinity;
   bool finite = true;
   for (const int t : cover_.row(static_cast<int>(patch))) {
-    const Sides &rest = rest_sides_[at(t)], &now = sides_[at(t)];
+    const Sides &rest = rest_of(at(t)), &now = now_of(at(t));
     const float d00 = dot(axes, rest.a), d01 = dot(axes, rest.b), d10 = dot(axes + 3, rest.a),
                 d11 = dot(axes + 3, rest.b);
     const float q00 = dot(r, now.a), q01 = dot(r, now.b), q10 = dot(r + 3, now.a), q11 = dot(r + 3, now.b);
@@ -109,13 +109,20 @@ float FlatPatches::flatness(std::size_t patch) const {
 }
 
 void FlatPatches::begin(std::span<const Vec3> x) {
-  measure(x);
+  first_ = x;
+  // Patches overlap: measured once, and forgotten.
+  std::vector<Sides> rest_sides(triangles_.size()), now_sides(triangles_.size());
+  parallel_for(triangles_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) rest_sides[t] = sides(rest_, t), now_sides[t] = sides(x, t);
+  });
+  const auto rest_of = [&](std::size_t t) -> const Sides& { return rest_sides[t]; };
+  const auto now_of = [&](std::size_t t) -> const Sides& { return now_sides[t]; };
   parallel_for(flat_.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const Eigen::Map<const Eigen::Matrix<float, 3, 2>> plane(plane_[p].data());
       Eigen::Matrix<double, 3, 2> sum = Eigen::Matrix<double, 3, 2>::Zero();
       for (const int t : members(static_cast<int>(p))) {
-        const Sides &rest = rest_sides_[at(t)], &now = sides_[at(t)];
+        const Sides &rest = rest_of(at(t)), &now = now_of(at(t));
         Eigen::Matrix2d d;
         d << dot(plane_[p].data(), rest.a), dot(plane_[p].data(), rest.b), dot(plane_[p].data() + 3, rest.a),
             dot(plane_[p].data() + 3, rest.b);
@@ -126,41 +133,42 @@ void FlatPatches::begin(std::span<const Vec3> x) {
         sum += sides * adjugate;  // weighted by area
       }
       frame_[p] = nearest_frame(sum);
-      first_flatness_[p] = flatness(p);
+      first_flatness_[p] = flatness(p, rest_of, now_of);
       flat_[p] = first_flatness_[p] >= least_[p] + k_spare ? 1 : 0;
     }
   });
-  first_sides_ = sides_;
 }
 
 bool FlatPatches::keep(std::span<const Vec3> x, bool to_spare, std::vector<int>& lost) {
-  measure(x);
-  change_.resize(triangles_.size());
+  std::vector<float> changes(triangles_.size());  // per triangle: how much its m can have changed, at most
   parallel_for(triangles_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
+      const Sides first = sides(first_, t), now = sides(x, t);
       float squared = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const float a = sides_[t].a[k] - first_sides_[t].a[k], b = sides_[t].b[k] - first_sides_[t].b[k];
+        const float a = now.a[k] - first.a[k], b = now.b[k] - first.b[k];
         squared += a * a + b * b;
       }
-      change_[t] = squared < k_infinity ? by_sides_[t] * std::sqrt(squared) : k_infinity;
+      changes[t] = squared < k_infinity ? by_sides_[t] * std::sqrt(squared) : k_infinity;
     }
   });
-  still_.assign(flat_.size(), 0);
+  std::vector<char> still(flat_.size(), 0);
+  const auto rest_of = [&](std::size_t t) { return sides(rest_, t); };
+  const auto now_of = [&](std::size_t t) { return sides(x, t); };
   parallel_for(flat_.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (flat_[p] == 0) continue;
       const float least = least_[p] + (to_spare ? k_spare : 0.f);
       float change = 0;
-      for (const int t : cover_.row(static_cast<int>(p))) change = std::max(change, change_[at(t)]);
+      for (const int t : cover_.row(static_cast<int>(p))) change = std::max(change, changes[at(t)]);
       // m is a Lipschitz function of the gradient, with constant 1: most patches are known to be flat by that.
-      still_[p] = first_flatness_[p] - change >= least || flatness(p) >= least ? 1 : 0;
+      still[p] = first_flatness_[p] - change >= least || flatness(p, rest_of, now_of) >= least ? 1 : 0;
     }
   });
   const std::size_t before = lost.size();
   for (std::size_t p = 0; p < flat_.size(); ++p)
-    if (flat_[p] != still_[p]) lost.push_back(static_cast<int>(p));
-  flat_.swap(still_);
+    if (flat_[p] != still[p]) lost.push_back(static_cast<int>(p));
+  flat_.swap(still);
   return lost.size() == before;
 }
 

@@ -28,7 +28,7 @@ namespace ft {
 class FlatPatches {
  public:
   /// Of triangles over `rest` [m]; cords ({a, b, b}) and slivers are in none. Patches reach as far beyond the middle of
-  /// what they are made for as pairs are looked for: `reach` [m], >= 0.
+  /// what they are made for as pairs are looked for: `reach` [m], >= 0. Keeps the spans.
   FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> triangles, double reach);
 
   /// Per patch: its triangles, ascending.
@@ -38,7 +38,7 @@ class FlatPatches {
   std::span<const char> flat() const { return flat_; }
 
   /// Sets the frames for a motion that starts at x (per vertex [m]), and takes every patch for flat that is so at x,
-  /// with something to spare.
+  /// with something to spare. x has to stay as it is until the last keep().
   void begin(std::span<const Vec3> x);
   /// Only what is flat at x, too, stays so. Returns whether all did, and appends those that did not to `lost`.
   /// to_spare: by as much as in begin(), not only just.
@@ -48,22 +48,22 @@ class FlatPatches {
   struct Sides {
     std::array<float, 3> a, b;  ///< from the first corner to the others [m]
   };
-  void measure(std::span<const Vec3> x);
-  float flatness(std::size_t patch) const;
+  Sides sides(std::span<const Vec3> x, std::size_t triangle) const;
+  template <class RestOf, class NowOf>
+  float flatness(std::size_t patch, RestOf&& rest_of, NowOf&& now_of) const;
 
-  std::vector<Triangle> triangles_;
+  std::span<const Vec3> rest_;
+  std::span<const Triangle> triangles_;
   Adjacency members_, cover_;                ///< per patch: triangles; cover_ holds members_
   std::vector<std::array<float, 6>> plane_;  ///< per patch: the axes of its plane, in the space of the rest shape
   std::vector<float> least_;                 ///< per patch: what m has to be at least
-  std::vector<Sides> rest_sides_, sides_;    ///< per triangle
   std::vector<float> by_sides_;              ///< per triangle: how much m can change, by that of the sides [1/m]
-  std::vector<char> flat_, still_;
+  std::vector<char> flat_;
 
   // Of the motion that begin() was told of.
   std::vector<std::array<float, 6>> frame_;  ///< per patch: R
   std::vector<float> first_flatness_;        ///< per patch: m at its start
-  std::vector<Sides> first_sides_;           ///< there
-  std::vector<float> change_;                ///< per triangle: how much its m can have changed since, at most
+  std::span<const Vec3> first_;              ///< places there [m]
 };
 
 }  // namespace ft

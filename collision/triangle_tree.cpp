@@ -18,6 +18,16 @@ constexpr double k_sliver = 1e-12;   ///< squared sine of an angle below which a
 /// [1].
 constexpr double k_edge = 1e-9;
 
+int middle_of(int begin, int end) {
+  return begin + (end - begin) / 2;
+}
+
+/// Of a tree of so many triangles.
+std::size_t node_count(std::size_t triangles) {
+  if (triangles <= k_leaf_size) return 1;
+  return 1 + node_count(triangles / 2) + node_count(triangles - triangles / 2);
+}
+
 float round_down(double v) {
   const auto f = static_cast<float>(v);
   return f - std::abs(f) * 1.2e-7f - std::numeric_limits<float>::min();
@@ -95,9 +105,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Tria
                                            positions[static_cast<std::size_t>(t[1])] +
                                            positions[static_cast<std::size_t>(t[2])];
   }
-  nodes_.reserve(order_.size());
-  next_.reserve(order_.size());
-  build(centres, 0, static_cast<int>(order_.size()));
+  arrange(centres, 0, static_cast<int>(order_.size()));
   refit(positions, triangles);
 }
 
@@ -134,25 +142,33 @@ std::vector<TriangleTree::PairTask> TriangleTree::pair_tasks(const TriangleTree&
   return tasks;
 }
 
-int TriangleTree::build(std::span<const Vec3> centres, int begin, int end) {
+/// Sorts the order of triangles by the halves that lay_out() makes nodes of.
+void TriangleTree::arrange(std::span<const Vec3> centres, int begin, int end) {
+  if (end - begin <= k_leaf_size) return;
+  Box box;
+  for (int i = begin; i < end; ++i) box.include(centres[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
+  int axis = 0;
+  (box.hi - box.lo).maxCoeff(&axis);
+  const int middle = middle_of(begin, end);
+  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int i, int j) {
+    const double u = centres[static_cast<std::size_t>(i)][axis], v = centres[static_cast<std::size_t>(j)][axis];
+    return u < v || (u == v && i < j);
+  });
+  arrange(centres, begin, middle);
+  arrange(centres, middle, end);
+}
+
+/// Nodes follow from how many triangles there are alone.
+int TriangleTree::lay_out(int begin, int end) {
   const auto self = nodes_.size();
   nodes_.push_back({});
   next_.push_back(0);
   if (end - begin <= k_leaf_size) {
     nodes_[self].first = begin, nodes_[self].count = end - begin;
   } else {
-    Box box;
-    for (int i = begin; i < end; ++i)
-      box.include(centres[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
-    int axis = 0;
-    (box.hi - box.lo).maxCoeff(&axis);
-    const int middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int i, int j) {
-      const double u = centres[static_cast<std::size_t>(i)][axis], v = centres[static_cast<std::size_t>(j)][axis];
-      return u < v || (u == v && i < j);
-    });
-    build(centres, begin, middle);
-    const int right = build(centres, middle, end);
+    const int middle = middle_of(begin, end);
+    lay_out(begin, middle);
+    const int right = lay_out(middle, end);
     nodes_[self].first = right;
   }
   next_[self] = static_cast<int>(nodes_.size());
@@ -160,6 +176,12 @@ int TriangleTree::build(std::span<const Vec3> centres, int begin, int end) {
 }
 
 void TriangleTree::refit(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  if (nodes_.empty() && !order_.empty()) {
+    const std::size_t count = node_count(order_.size());
+    nodes_.reserve(count);
+    next_.reserve(count);
+    lay_out(0, static_cast<int>(order_.size()));
+  }
   // Children lie behind their parents, and what is below a node side by side: limbs, and the trunk that bears them.
   std::vector<std::size_t> trunk, limbs;
   for (std::size_t n = 0; n < nodes_.size();) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/give_back.h"
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 
@@ -60,11 +61,13 @@ class TriangleTree {
   TriangleTree(std::span<const Vec3> positions, std::span<const Triangle> triangles);
   TriangleTree(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::vector<int> subset);
 
-  bool empty() const { return nodes_.empty(); }
+  bool empty() const { return order_.empty(); }
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const int> order() const { return order_; }
   const TreeBox& box() const { return nodes_.front().box; }
   void refit(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+  /// Frees what a refit() makes anew: until then the tree may be asked for nothing but its order().
+  void forget_boxes() { give_back(nodes_, next_); }
 
   /// Calls visit(triangle index) for the triangles of every leaf that the box overlaps.
   template <class Visit>
@@ -141,7 +144,8 @@ class TriangleTree {
  private:
   void refit_node(std::size_t n, std::span<const Vec3> positions, std::span<const Triangle> triangles);
   static bool meets(const TreeBox& box, const Vec3& origin, const Vec3& direction, double length);
-  int build(std::span<const Vec3> centres, int begin, int end);
+  void arrange(std::span<const Vec3> centres, int begin, int end);
+  int lay_out(int begin, int end);
   template <class Visit>
   void walk(int a, const TriangleTree& other, int b, Visit& visit) const {
     const Node& m = nodes_[static_cast<std::size_t>(a)];

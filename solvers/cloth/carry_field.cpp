@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/pair_geometry.h"
 
@@ -60,8 +61,14 @@ std::vector<Pull> find_pulls(const CarryInput& in) {
         *same = pull;
     }
   });
+  std::size_t count = 0;
+  for (const auto& block : blocks) count += block.size();
   std::vector<Pull> pulls;
-  for (const auto& block : blocks) pulls.insert(pulls.end(), block.begin(), block.end());
+  pulls.reserve(count);
+  for (auto& block : blocks) {
+    pulls.insert(pulls.end(), block.begin(), block.end());
+    give_back(block);  // so that there are hardly ever two of them
+  }
   return pulls;
 }
 

@@ -196,6 +196,7 @@ int Certificate::certify(std::span<const Vec3> body, ClothMotion& m, FrameReport
   if (model_.collider) avoidable += certify_body(model_, with_body, m, touched, report);
   avoidable += certify_cloths(model_, own, m, report);
   if (model_.collider) hold_again(model_, body, touched, m, report);
+  cloth_.forget_boxes();
   return avoidable;
 }
 
@@ -209,6 +210,7 @@ void Certificate::describe(double time, std::span<const Vec3> drawn, const Cloth
     cloth_.move(m.x);
     drawn_.move(drawn);
     describe_drawn(model_, cloth_, drawn_, collider_, m, report);
+    for (CheckedSurface* surface : {&cloth_, &drawn_, &collider_}) surface->forget_boxes();
   }
   describe_seams(model_, time, m, report);
   std::stable_sort(report.incidents.begin(), report.incidents.end(),

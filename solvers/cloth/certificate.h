@@ -27,7 +27,7 @@ class Certificate {
 
  private:
   const ClothModel& model_;
-  // Scratch: box trees, refitted from frame to frame.
+  // Scratch: box trees, of which the order of triangles is kept from frame to frame.
   CheckedSurface cloth_, collider_, drawn_;
 };
 

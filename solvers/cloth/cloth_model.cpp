@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "baker/core/give_back.h"
 #include "collision/carve_plan.h"
 #include "solvers/cloth/attach.h"
 #include "solvers/cloth/sewing.h"
@@ -110,6 +111,7 @@ void weigh(ClothModel& model) {
   for (std::size_t i = 0; i < n; ++i)
     if (!(model.mass[i] > 0)) model.unused[i] = 1;
   model.rest_edges = rest_edges(model.contact.rest, model.triangles);
+  model.rest_edges.edges.shrink_to_fit();
   lengths_from_pattern(*model.topology, model.rest_edges);
   model.typical_edge = median_edges(model);
   std::vector<double> clump_size(n);
@@ -235,8 +237,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   model->topology.reset();
   for (ClothGarment& garment : model->setup.garments) {
     Mesh& mesh = garment.mesh;
-    mesh.uvs = {}, mesh.face_uvs = {}, mesh.groups = {}, mesh.stitches = {};
-    garment.maps = {};
+    give_back(mesh.uvs, mesh.face_uvs, mesh.groups, mesh.stitches, garment.maps);
   }
   if (s.primary) {
     CHECK(s.poses == nullptr || &s.poses->body() == s.primary.get());

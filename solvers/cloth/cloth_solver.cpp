@@ -12,6 +12,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "baker/core/give_back.h"
 #include "baker/core/volume.h"
 #include "solvers/cloth/body_advance.h"
 #include "solvers/cloth/body_ahead.h"
@@ -43,6 +44,7 @@ class ClothSolver final : public Solver {
       : model_(std::move(model)), advance_(*model_), certificate_(*model_), body_(model_->collider.get()) {
     mark_tangled(*model_, own_crossings(*model_, crossings_within(model_->start, model_->triangles)),
                  tangled_at_start_);
+    if (!any_tangled(tangled_at_start_)) give_back(tangled_at_start_);
   }
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
@@ -85,7 +87,7 @@ class ClothSolver final : public Solver {
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
 
   std::unique_ptr<ClothModel> model_;
-  std::vector<double> tangled_at_start_;  ///< as ClothMotion has it
+  std::vector<double> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
   // Scratch only: forgotten between frames, one frame at a time.
   mutable BodyAdvance advance_;
   mutable Certificate certificate_;
@@ -109,6 +111,7 @@ State ClothSolver::initial_state() const {
   m.v.assign(m.x.size(), Vec3::Zero());
   m.released.assign(m.x.size(), -1.0);
   m.tangled = tangled_at_start_;
+  m.tangled.resize(m.x.size(), 0.0);
   // A history of constant acceleration makes the integrator exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
   m.x_previous = m.x_older = m.x;

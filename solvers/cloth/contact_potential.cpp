@@ -147,8 +147,12 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, st
       out.push_back(c);
     }
   });
+  std::size_t found = contacts_.size();
+  for (std::size_t b = 0; b < blocks; ++b) found += block_contacts_[b].size();
+  contacts_.reserve(found);
   for (std::size_t b = 0; b < blocks; ++b)
     contacts_.insert(contacts_.end(), block_contacts_[b].begin(), block_contacts_[b].end());
+  block_contacts_.clear();
 }
 
 void ContactPotential::update(std::span<const Vec3> x) {
@@ -182,6 +186,7 @@ void ContactPotential::lag_friction() {
 }
 
 void ContactPotential::lag_friction_from(std::size_t first) {
+  lagged_.reserve(lagged_.size() + contacts_.size() - first);
   for (const Contact& c : std::span(contacts_).subspan(first)) {
     const double friction = friction_share_ * c.friction;
     if (friction <= 0) continue;
@@ -268,18 +273,24 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
     term.stiffness = stiffness.cast<float>();
     terms.push_back(term);
   };
-  terms.reserve(terms.size() + contacts_.size() + lagged_.size());
-  for (const Contact& c : contacts_) {
-    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
-    add(c.vertex, c.geometry.weight, law.stiffness * c.geometry.normal * c.geometry.normal.transpose());
-  }
   const double eps = model_.sliding_speed * h_;
-  for (const Lagged& f : lagged_) {
+  const auto of_friction = [&](const Lagged& f) -> Mat3 {
     Vec3 u = slip(f.vertex, f.weight, x, x_start_);
     u -= f.normal * f.normal.dot(u);
     const double k = f.friction * f.normal_force / std::max(u.norm(), eps);
-    add(f.vertex, f.weight, k * (Mat3::Identity() - f.normal * f.normal.transpose()));
+    return k * (Mat3::Identity() - f.normal * f.normal.transpose());
+  };
+  // Friction that was lagged at these contacts comes in their order, on the same weights: one term for both.
+  terms.reserve(terms.size() + std::max(contacts_.size(), lagged_.size()));
+  auto lagged = lagged_.begin();
+  for (const Contact& c : contacts_) {
+    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
+    Mat3 stiffness = law.stiffness * c.geometry.normal * c.geometry.normal.transpose();
+    if (lagged != lagged_.end() && lagged->vertex == c.vertex && lagged->weight == c.geometry.weight)
+      stiffness += of_friction(*lagged++);
+    add(c.vertex, c.geometry.weight, stiffness);
   }
+  for (; lagged != lagged_.end(); ++lagged) add(lagged->vertex, lagged->weight, of_friction(*lagged));
 }
 
 void ContactPotential::near_pairs(std::span<const double> lengths, double floor, ContactPairs& out) {

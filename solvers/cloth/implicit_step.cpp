@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "baker/core/stopwatch.h"
 #include "solvers/cloth/pin_pull.h"
@@ -78,16 +80,21 @@ double largest_drift(const ClothModel& model, std::span<const char> held, std::s
 
 struct ImplicitStep::Scratch {
   Scratch(const ClothModel& model, const LinearSettings& settings)
-      : system(model.pattern, model.contact.rest, settings), contact(model.contact), truncation(model) {}
+      : system(model.pattern, model.contact.rest, settings), truncation(model) {}
   LinearSystem system;
-  ContactPotential contact;
   StepTruncation truncation;
-  std::vector<Vec3> y, gradient, direction, cut, trial;
-  std::vector<double> missing;
   std::vector<PinPull> pins;
-  std::vector<char> held;     ///< per vertex: not solved for
   std::vector<char> touches;  ///< per garment: whether the body has had a hold on it in this solve
-  std::vector<PairTerm> terms;
+  // Of a solve, and free while pairs are looked for.
+  std::optional<ContactPotential> contact;
+  std::vector<Vec3> gradient, direction, cut, trial;
+  std::vector<char> held;  ///< per vertex: not solved for
+  std::span<Vec3> y;       ///< where no force would bring the cloth [m]; velocities come in its place
+
+  void forget_solve() {
+    contact.reset();
+    give_back(gradient, direction, cut, trial, held, y);
+  }
 };
 
 ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
@@ -121,7 +128,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   for (const auto& energy : model_.energies) energy->begin_step(context);
 
   const auto past = [&](std::size_t i) -> Vec3 { return w.a * in.x_t0[i] - w.b * in.x_tm1[i] + w.c * in.x_tm2[i]; };
-  s.y.resize(n);
+  s.y = v_out;
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       s.y[i] =
@@ -133,7 +140,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   s.gradient.resize(n);
   s.direction.resize(n);
   s.cut.resize(n);
-  s.missing.resize(n);
 
   s.pins.clear();
   for (std::size_t p = 0; p < model_.pins.size(); ++p) {
@@ -161,8 +167,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
 
   double smallest_radius = 1e-3;
   for (const double r : model_.contact.radius) smallest_radius = std::min(smallest_radius, r);
-  s.contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
-  s.contact.update(all);
+  ContactPotential& contact = s.contact.emplace(model_.contact);
+  contact.begin(*in.pairs, in.all_start, in.h, in.friction_share);
+  contact.update(all);
   result.seconds_contact += watch.lap();
 
   /// What the potential loses along a displacement, to the first order; s.gradient is that of a descent [J].
@@ -180,8 +187,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
-    s.contact.lag_friction();
-    s.contact.mark_touching(s.touches);
+    contact.lag_friction();
+    contact.mark_touching(s.touches);
     const std::span<const Vec3> x = all.first(n);
     BlockMatrix& hessian = s.system.begin();
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
@@ -192,7 +199,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       }
     });
     for (const auto& energy : model_.energies) energy->add_derivatives(x, s.gradient, hessian);
-    s.terms.clear();
+    std::vector<PairTerm> terms;
     for (std::size_t p = 0; p < model_.pins.size(); ++p) {
       const PinPoint& pin = model_.pins[p];
       if (!s.pins[p].holds()) continue;
@@ -202,13 +209,14 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       term.vertex[0] = pin.vertex;
       term.weight[0] = 1;
       term.stiffness = Mat3f::Identity() * static_cast<float>(s.pins[p].stiffness(place));
-      s.terms.push_back(term);
+      terms.push_back(term);
     }
-    s.contact.add_gradient(all, s.gradient);
-    s.contact.add_terms(all, s.terms);
-    s.system.add_pair_terms(s.terms);
+    contact.add_gradient(all, s.gradient);
+    contact.add_terms(all, terms);
+    s.system.add_pair_terms(terms);
+    give_back(terms);
     for (Vec3& g : s.gradient) g = -g;
-    const double before = of_cloth + s.contact.value(all);
+    const double before = of_cloth + contact.value(all);
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
     const auto find_direction = [&](std::span<const char> held) {
@@ -220,29 +228,31 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     };
     find_direction(model_.unused);
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
+    const auto missing_of = [&](std::size_t i) {
+      return std::max(0.0, (all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
+    };
     const double most_missing = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
       double most = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        s.missing[i] = std::max(0.0, (all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
-        most = std::max(most, s.missing[i]);
-      }
+      for (std::size_t i = begin; i < end; ++i) most = std::max(most, missing_of(i));
       return most;
     });
     if (in.more_room && most_missing > in.enough_room) {
+      std::vector<double> missing(n);
+      for (std::size_t i = 0; i < n; ++i) missing[i] = missing_of(i);
       result.seconds_contact += watch.lap();
-      in.more_room(s.missing, x, s.direction);
+      in.more_room(missing, x, s.direction);
       watch.lap();
-      s.contact.extend(all);
+      contact.extend(all);
     }
     const StepTruncation::PairsSuffice pairs_suffice = [&](std::span<const Vec3> to) {
       result.seconds_contact += watch.lap();
       const bool complete = in.pairs_suffice(to);
       watch.lap();
-      if (!complete) s.contact.extend(all);
+      if (!complete) contact.extend(all);
       return complete;
     };
     const auto truncate = [&] {
-      s.truncation.truncate(s.contact, all, {in.centre, in.slack},
+      s.truncation.truncate(contact, all, {in.centre, in.slack},
                             in.pairs_suffice ? pairs_suffice : StepTruncation::PairsSuffice(), s.direction, s.cut,
                             s.trial);
     };
@@ -272,9 +282,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
         }
         return most;
       });
-      s.contact.update(s.trial);
+      contact.update(s.trial);
       of_trial = potential_of_cloth(cloth(s.trial));
-      const double after = of_trial + s.contact.value(s.trial);
+      const double after = of_trial + contact.value(s.trial);
       finite = std::isfinite(after);
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
       if (!accepted) whole = false;
@@ -288,15 +298,16 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       std::copy_n(s.trial.begin(), n, all.begin());
       of_cloth = of_trial;
     } else {
-      s.contact.update(all);
+      contact.update(all);
       result.last_move = 0;
     }
     result.seconds_contact += watch.lap();
   }
-  result.smallest_gap = s.contact.smallest_gap();
+  result.smallest_gap = contact.smallest_gap();
   measure_on_body(all, inertia, result);
   measure_lost(all, inertia, result);
   for (std::size_t i = 0; i < n; ++i) v_out[i] = (all[i] - past(i)) / bh;
+  s.forget_solve();
   result.finite = result.finite && all_finite(all.first(n));
   return result;
 }
@@ -323,7 +334,7 @@ void ImplicitStep::measure_on_body(std::span<const Vec3> all, double inertia, St
   std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
-  if (garments > 1) s.contact.add_gradient_between_garments(all, s.gradient);
+  if (garments > 1) s.contact->add_gradient_between_garments(all, s.gradient);
   add_pin_gradient(all, true);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t g = at(model_.contact.garment[i]);
@@ -340,7 +351,7 @@ void ImplicitStep::measure_lost(std::span<const Vec3> all, double inertia, StepR
   std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
-  s.contact.add_gradient(all, s.gradient);
+  s.contact->add_gradient(all, s.gradient);
   add_pin_gradient(all, false);
   std::vector<char> attached(model_.setup.garments.size(), 0);
   for (const AttachPoint& point : model_.attachments) attached[at(model_.garment_of(point.vertex))] = 1;

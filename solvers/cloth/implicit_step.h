@@ -59,7 +59,8 @@ class ImplicitStep {
   explicit ImplicitStep(const ClothModel& model);
   ~ImplicitStep();
   /// all: carried cloth and body at the end of the step; the solve puts the cloth where it goes, and fills v with its
-  /// velocities then, which may be where input.v_tm2 is: that is looked at in the beginning only.
+  /// velocities then, which may be where input.v_tm2 is: that is looked at in the beginning only, and written over in
+  /// the meantime.
   StepResult solve(const StepInput& input, std::span<Vec3> all, std::span<Vec3> v);
 
  private:

@@ -67,7 +67,6 @@ void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> a
                               const PairsSuffice& pairs_suffice, std::span<Vec3> direction, std::span<Vec3> cut,
                               std::span<Vec3> trial) {
   const std::size_t n = direction.size();
-  common_.resize(n);
   share_.resize(n);
   length_.resize(n);
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
@@ -84,12 +83,13 @@ void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> a
   model_.clumps.take_most(length_);
   do {
     contact.near_pairs(length_, k_floor, near_);
-    common_motion_.find(all, direction, model_.vertex_count(), near_, k_floor, balls, model_.clumps, common_);
-    truncate_displacements(all, direction, common_, model_.vertex_count(), near_, k_floor, share_);
+    const std::span<Vec3> common = cut;  // until the rest is added
+    common_motion_.find(all, direction, model_.vertex_count(), near_, k_floor, balls, model_.clumps, common);
+    truncate_displacements(all, direction, common, model_.vertex_count(), near_, k_floor, share_);
     model_.clumps.take_least(share_);
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        cut[i] = common_[i] + share_[i] * (direction[i] - common_[i]);
+        cut[i] = common[i] + share_[i] * (direction[i] - common[i]);
         trial[i] = all[i] + cut[i];
       }
     });

@@ -37,7 +37,6 @@ class StepTruncation {
   const ClothModel& model_;
   std::vector<Cap> caps_;
   CommonMotion common_motion_;
-  std::vector<Vec3> common_;
   std::vector<double> share_, length_;
   ContactPairs near_;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "baker/core/give_back.h"
+
 namespace ft {
 namespace {
 
@@ -41,7 +43,7 @@ ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t
   out.count = count;
   element_of_slot.resize(count);
   for (std::size_t i = 0; i < count; ++i) element_of_slot[i] = keys[i].second;
-  keys = {};
+  give_back(keys);
 
   // Greedy colours. A chunk that finds all 64 taken gets a colour of its own.
   std::vector<std::uint64_t> taken(rest.size(), 0);

@@ -169,6 +169,27 @@ TEST(TriangleTree, Closest_point_agrees_with_all_triangles_after_a_refit) {
   }
 }
 
+TEST(TriangleTree, A_refit_makes_the_same_boxes_again_after_they_were_forgotten) {
+  test::Shape s = test::capsule({-0.2, 0, 0}, {0.2, 0.05, 0}, 0.1);
+  TriangleTree kept(s.positions, s.triangles), forgetful(s.positions, s.triangles);
+  for (Vec3& p : s.positions) p = Vec3(p.x() + 0.3 * p.y() * p.y(), 1.4 * p.y(), p.z() - 0.2 * p.x());
+  forgetful.forget_boxes();
+  EXPECT_TRUE(forgetful.nodes().empty());
+  EXPECT_FALSE(forgetful.empty());
+  for (TriangleTree* tree : {&kept, &forgetful}) tree->refit(s.positions, s.triangles);
+  ASSERT_EQ(kept.nodes().size(), forgetful.nodes().size());
+  for (std::size_t n = 0; n < kept.nodes().size(); ++n) {
+    const TriangleTree::Node &a = kept.nodes()[n], &b = forgetful.nodes()[n];
+    EXPECT_TRUE(a.first == b.first && a.count == b.count);
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(a.box.lo[k] == b.box.lo[k] && a.box.hi[k] == b.box.hi[k]);
+  }
+  for (const Vec3& p : cloud(8, 100, 0.5)) {
+    TriangleTree::Hit hit;
+    forgetful.closest(p, s.positions, s.triangles, hit);
+    EXPECT_EQ(std::sqrt(hit.closest.squared_distance), slow_distance(p, s.positions, s.triangles));
+  }
+}
+
 TEST(TriangleTree, Closest_on_a_triangle_agrees_with_sampling_even_when_it_has_no_area) {
   const auto x = cloud(9, 900, 1.0);
   for (std::size_t i = 0; i + 3 < x.size(); i += 4) {

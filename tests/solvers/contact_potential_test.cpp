@@ -101,6 +101,41 @@ TEST(ContactPotential, takes_up_pairs_that_come_late_as_if_they_had_been_there) 
   }
 }
 
+/// What the terms make of the matrix [N/m].
+Eigen::MatrixXd matrix_of(const ContactPotential& contact, std::span<const Vec3> x, std::size_t* count = nullptr) {
+  std::vector<PairTerm> terms;
+  contact.add_terms(x, terms);
+  if (count != nullptr) *count = terms.size();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * k_cloth, 3 * k_cloth);
+  for (const PairTerm& t : terms)
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b)
+        if (t.vertex[a] >= 0 && t.vertex[b] >= 0)
+          out.block<3, 3>(3 * t.vertex[a], 3 * t.vertex[b]) += (t.weight[a] * t.weight[b] * t.stiffness).cast<double>();
+  return out;
+}
+
+TEST(ContactPotential, Has_one_term_for_a_contact_and_the_friction_lagged_there_and_none_is_lost_elsewhere) {
+  const Heap heap;
+  std::vector<Vec3> next = heap.moved;
+  for (std::size_t i = 0; i < k_cloth; ++i) next[i] += heap.displacement[i];
+  ContactPotential rough(heap.model), smooth(heap.model);
+  for (ContactPotential* contact : {&rough, &smooth}) {
+    contact->begin(heap.pairs, heap.start, 0.01);
+    contact->update(heap.moved);
+  }
+  rough.lag_friction();
+  std::size_t count = 0;
+  const Eigen::MatrixXd there = matrix_of(rough, next, &count) - matrix_of(smooth, next);
+  EXPECT_EQ(count, rough.contacts().size());
+  for (ContactPotential* contact : {&rough, &smooth}) contact->update(next);
+  const Eigen::MatrixXd normal = matrix_of(smooth, next), elsewhere = matrix_of(rough, next, &count) - normal;
+  EXPECT_GT(count, rough.contacts().size());
+  EXPECT_GT(there.norm(), 0);
+  // Terms are single precision: of the whole matrix that is left of them.
+  EXPECT_LT((there - elsewhere).norm(), 1e-5 * (there.norm() + normal.norm()));
+}
+
 TEST(ContactLaw, Force_and_stiffness_are_its_slopes_and_do_not_jump) {
   constexpr double r = 2e-3, k = 5e5;
   for (double d = 1e-6; d < 1.2 * r; d *= 1.07) {
