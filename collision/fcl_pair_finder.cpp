@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "baker/core/check.h"
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_walk.h"
@@ -271,7 +272,7 @@ void PairFinder::build_trees(Place&& place_of) {
   Impl& m = *impl_;
   if (!m.features.cloth.empty()) m.cloth.build(m.features.cloth, place_of, m.patches_of);
   if (!m.features.collider.empty()) m.collider.build(m.features.collider, place_of, {});
-  m.features.cloth = m.features.collider = {};  // the trees have them
+  give_back(m.features.cloth, m.features.collider);  // the trees have them
 }
 
 void PairFinder::arrange(std::span<const Vec3> x) {
@@ -334,7 +335,7 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
 
   const auto write = [&](PairSorter& sorter, auto stencil_of, std::vector<Stencil>& pairs) {
     const std::span<const std::uint64_t> keys = sorter.sorted();
-    if (pairs.capacity() < keys.size()) pairs = {};  // so that there are never two of them
+    if (pairs.capacity() < keys.size()) give_back(pairs);  // so that there are never two of them
     pairs.resize(keys.size());
     parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) pairs[i] = stencil_of(key_first(keys[i]), key_second(keys[i]));

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 
 namespace ft {
@@ -38,7 +39,7 @@ class PairSorter {
   /// All keys in ascending order, once they are sorted; valid until the next begin() or give_back().
   std::span<const std::uint64_t> sorted() const { return sorted_; }
   /// Frees them.
-  void give_back() { sorted_ = {}; }
+  void give_back() { ft::give_back(sorted_); }
   void sort() {
     if (count_ < first_count_ / k_few) {
       sorted_.clear();
