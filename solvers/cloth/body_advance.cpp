@@ -102,8 +102,8 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     s.requests.clear();
     for (std::size_t i = 0; i < missing.size(); ++i) {
       if (!(missing[i] > 0)) continue;
-      const double length = move[i].norm();
-      s.requests.push_back({static_cast<int>(i), x[i], x[i] + (1 + k_ahead * missing[i] / length) * move[i], k_spare});
+      const Vec3 ahead = k_ahead * missing[i] * move[i].normalized();  // none of what does not move
+      s.requests.push_back({static_cast<int>(i), x[i], x[i] + move[i] + ahead, k_spare});
     }
     s.candidates.give_room(cloth, s.requests, s.piece);
     for (const RoomRequest& r : s.requests)

@@ -10,7 +10,8 @@ namespace ft {
 
 class PinPull {
  public:
-  /// What has slipped off comes back no faster than this by the pin's pull alone [m/s].
+  /// What has slipped off comes back no faster than this by the pin's pull alone [m/s]: what falls by 0.2 m. 0.1 creeps
+  /// back, 20 is slung as without a drag.
   static constexpr double k_return_speed = 2;
 
   /// x_t0, v_t0: of the vertex at the start [m, m/s]; target: of the pin at the end, which it has gone to by
