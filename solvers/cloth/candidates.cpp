@@ -27,8 +27,6 @@ constexpr double k_slack_least = 3e-4;  ///< m
 /// All but the share of the way is at most so many typical edges of the garment: pairs of fine cloth in folds grow with
 /// the cube of it, and whoever needs more asks for it.
 constexpr double k_slack_edges = 0.1;
-/// Pairs that keep this distance on their carried way need no CCD [m].
-constexpr double k_clear = 1e-4;
 /// How far pairs are looked for, typically, in contact radii: patches of flat cloth are cut for that.
 constexpr double k_patch_reach = 1;
 
@@ -219,109 +217,6 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
   const double t = filter(PairKind::k_vertex_face, cloth, piece, pairs_.vertex_face, &blocked_.vertex_face);
   return std::min(t, filter(PairKind::k_edge_edge, cloth, piece, pairs_.edge_edge, &blocked_.edge_edge));
-}
-
-/// The pairs of changed_ vertices anew, behind all others; of these, whether they touch on the way is asked again where
-/// a vertex is in moved_.
-double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
-  const auto any_of = [](const std::vector<char>& marks, const Stencil& s) {
-    return (marks[at(s.v[0])] | marks[at(s.v[1])] | marks[at(s.v[2])] | marks[at(s.v[3])]) != 0;
-  };
-  const auto is_changed = [&](const Stencil& s) { return any_of(changed_, s); };
-  const bool search = std::any_of(changed_.begin(), changed_.end(), [](char c) { return c != 0; });
-  if (search) finder_.find_changed(boxes_, any_self_, changed_, found_, patches_.flat());
-  double t = 1;
-  const auto renew_kind = [&](PairKind kind, std::vector<Stencil>& found, PairRuns& runs, std::vector<Stencil>& pairs,
-                              std::vector<Stencil>& blocked) {
-    std::erase_if(blocked, [&](const Stencil& s) { return any_of(changed_, s) || any_of(moved_, s); });
-    for (const Stencil& s : blocked) t = std::min(t, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
-    std::vector<Stencil> others = touching_on_way(kind, piece, pairs, t);
-    if (search) {
-      std::vector<Stencil> fresh;
-      t = std::min(t, filter(kind, cloth, piece, found, &fresh));
-      others.insert(others.end(), fresh.begin(), fresh.end());
-      runs.erase_if(pairs, is_changed);
-      runs.add(found, {}, pairs);
-    }
-    blocked.insert(blocked.end(), others.begin(), others.end());
-    std::sort(blocked.begin(), blocked.end());
-  };
-  renew_kind(PairKind::k_vertex_face, found_.vertex_face, runs_vertex_face_, pairs_.vertex_face, blocked_.vertex_face);
-  renew_kind(PairKind::k_edge_edge, found_.edge_edge, runs_edge_edge_, pairs_.edge_edge, blocked_.edge_edge);
-  return t;
-}
-
-/// Of the pairs with a vertex in moved_ and none in changed_, those that touch; t is brought up to them.
-std::vector<Stencil> Candidates::touching_on_way(PairKind kind, const PieceMotion& piece,
-                                                 std::span<const Stencil> pairs, double& t) {
-  const VertexWays ways{piece.start, piece.all, piece.centre, piece.slack};
-  const std::size_t blocks = block_count(pairs.size(), k_block);
-  std::vector<std::vector<Stencil>> touching(blocks);
-  earliest_.assign(blocks, 1.0);
-  parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    double first = 1;
-    for (std::size_t p = begin; p < end; ++p) {
-      char moved = 0, changed = 0;
-      for (const int v : pairs[p].v) moved |= moved_[at(v)], changed |= changed_[at(v)];
-      if (moved == 0 || changed != 0) continue;
-      const PairWay way(kind, pairs[p], ways, 0, k_clear);
-      if (way.judge(way.between_centres()) != PairWay::Verdict::k_open ||
-          way.judge(way.flat()) != PairWay::Verdict::k_open)
-        continue;
-      const double touch = ccd_time(kind, gather(piece.start, pairs[p]), gather(piece.all, pairs[p]));
-      if (touch < 1) touching[begin / k_block].push_back(pairs[p]);
-      first = std::min(first, touch);
-    }
-    earliest_[begin / k_block] = first;
-  });
-  std::vector<Stencil> out;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    out.insert(out.end(), touching[b].begin(), touching[b].end());
-    t = std::min(t, earliest_[b]);
-  }
-  return out;
-}
-
-void Candidates::join_zones(const PieceMotion& piece) {
-  const auto join = [&](PairKind kind, const std::vector<Stencil>& pairs) {
-    for (const Stencil& s : pairs) zones_.join(kind, s, gather(piece.start, s), gather(piece.all, s));
-  };
-  join(PairKind::k_vertex_face, blocked_.vertex_face);
-  join(PairKind::k_edge_edge, blocked_.edge_edge);
-}
-
-double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
-  join_zones(piece);
-  zones_.apply(piece.carry);
-  return renew_carried(cloth, piece);
-}
-
-double Candidates::part_blocked(const ClothMotion& cloth, PieceMotion& piece) {
-  limits_.add(blocked_, piece.start, piece.all);
-  limits_.apply(piece.carry, piece.body_motion, model_.clumps);
-  return renew_carried(cloth, piece);
-}
-
-/// Brings pairs() and piece up to piece.carry, where it differs from the motion that they are of. A vertex whose
-/// carried place stays in its ball keeps the ball, and needs no other pairs: the planes that part the dropped ones from
-/// it where it starts and in all of its ball do so on the way between, too.
-double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
-  changed_.assign(boxes_.size(), 0);
-  moved_.assign(boxes_.size(), 0);
-  for (std::size_t i = 0; i < piece.carry.size(); ++i) {
-    if (piece.carry[i] == piece.all[i]) continue;
-    moved_[i] = 1;
-    piece.all[i] = piece.carry[i];
-    if ((piece.carry[i] - piece.centre[i]).norm() <= piece.slack[i]) continue;
-    changed_[i] = 1;
-    place(i, cloth, piece);
-  }
-  if (any_self_) {
-    lost_.clear();
-    for (std::size_t i = 0; i < carried_.size(); ++i) carried_[i] = cloth.x[i] + piece.carry[i];
-    if (!patches_.keep(carried_, false, lost_)) mark_lost();
-  }
-  return renew(cloth, piece);
 }
 
 /// Keeps what can come nearer than the contact radius. With `blocked` it finds what touches on its way there, and the

@@ -36,6 +36,9 @@ struct RoomRequest {
 
 class Candidates {
  public:
+  /// Pairs that keep this distance on their carried way need no CCD [m].
+  static constexpr double k_clear = 1e-4;
+
   explicit Candidates(const ClothModel& model);
 
   /// Finds the surfaces near the cloth for carry(), and how fast they come.
