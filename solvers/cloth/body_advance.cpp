@@ -13,6 +13,10 @@ constexpr std::size_t k_block = 2048;  ///< of a loop over vertices
 /// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
+/// Before cloth is let through for lack of room, some pieces of a substep may be shorter than SubstepInput::shortest,
+/// down to this share of it: one is mostly enough for the cloth to find its way.
+constexpr double k_last_shortest = 1.0 / 16;
+constexpr int k_most_short = 12;
 /// What follows a shortened piece is at most so many times as long: what blocked it is mostly still there, looking for
 /// pairs over the whole rest is dear, and the integrator keeps its history (blended_weights()).
 constexpr double k_regrowth = 1.5;
@@ -51,15 +55,17 @@ BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Sc
 BodyAdvance::~BodyAdvance() = default;
 
 /// Carries the cloth and collects candidates; cloth that would touch is carried at a distance, and where that does not
-/// do, as one, which costs candidates and not time. Returns the share of the motion that is free then.
+/// do, as one, which costs candidates and not time. Returns the share of the motion that is free then; where that is
+/// not all of it, the larger one that either has found, for a shorter piece is carried anew.
 double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   Scratch& s = *scratch_;
   s.candidates.find_near(cloth, h, s.piece);
   s.candidates.carry(cloth, h, s.piece);
   double t = s.candidates.collect(cloth, h, s.piece);
   for (int round = 0; t < 1 && round < k_parting_rounds; ++round) t = s.candidates.part_blocked(cloth, s.piece);
+  const double parted = t;
   for (int round = 0; t < 1 && round < k_joining_rounds; ++round) t = s.candidates.join_blocked(cloth, s.piece);
-  return t;
+  return std::max(t, parted);
 }
 
 /// Solves for the cloth at the end of a piece and moves its history on.
@@ -152,6 +158,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   report.smallest_gap = std::numeric_limits<double>::infinity();
   report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
+  int short_pieces = 0;
   while (done < 1) {
     const auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
@@ -176,7 +183,9 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
         continue;
       }
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
-      if (shorter * (1 - done) * in.h >= in.shortest) {
+      const double length = shorter * (1 - done) * in.h;
+      if (length >= in.shortest || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short)) {
+        if (length < in.shortest) ++short_pieces;
         share = shorter;
         continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
       }

@@ -21,7 +21,7 @@ struct SubstepInput {
   double friction_share = 1;               ///< as StepInput's [1]
   double h = 0;                            ///< s
   double time_t0 = 0;                      ///< s
-  double shortest = 0;                     ///< pieces shorter than this [s] make the walk release
+  double shortest = 0;  ///< pieces shorter than this [s] make the walk release, but for some, see k_last_shortest
 };
 
 /// What the pieces of a substep add up to.
