@@ -17,26 +17,17 @@ void BodyAhead::fill(double time, BodyPose& pose) const {
   collider_->feasible(time, pose.drawn, pose.feasible);
 }
 
-void BodyAhead::begin(double t0, double t1, int expected_substeps) {
+void BodyAhead::begin(double t0, double t1) {
   if (!collider_) return;
   const bool goes_on = t1_ == t0;
   if (goes_on) std::swap(start_, end_);
   t0_ = t0;
   t1_ = t1;
   cut_ = false;
-  first_ = 0;
-  substeps_ = expected_substeps;
-  count_ = std::min(substeps_ - 1, k_at_once);
+  count_ = 0;
   ahead_.resize(k_at_once);
-  parallel_tasks(static_cast<std::size_t>(count_) + 2, [&](std::size_t i) {
-    if (i == 0) {
-      fill(t1, end_);
-    } else if (i == 1) {
-      if (!goes_on) fill(t0, start_);
-    } else {
-      fill(t0 + static_cast<double>(i - 1) * ((t1 - t0) / substeps_), ahead_[i - 2]);
-    }
-  });
+  if (!goes_on) fill(t0, start_);
+  fill(t1, end_);
 }
 
 void BodyAhead::cut(const Teleport& teleport) {

@@ -20,8 +20,8 @@ class BodyAhead {
  public:
   explicit BodyAhead(const MovingCollider* collider) : collider_(collider) {}
 
-  /// Takes up a frame [s]; expected_substeps only decides what is worked out ahead. Without a collider nothing happens.
-  void begin(double t0, double t1, int expected_substeps);
+  /// Takes up a frame [s]. Without a collider nothing happens.
+  void begin(double t0, double t1);
   /// Carries what stands at the frame's start to where the primary is cut to: between its ends the drawn surface runs
   /// straight then.
   void cut(const Teleport& teleport);

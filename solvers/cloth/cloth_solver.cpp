@@ -92,7 +92,6 @@ class ClothSolver final : public Solver {
   mutable BodyAdvance advance_;
   mutable Certificate certificate_;
   mutable BodyAhead body_;
-  mutable int expected_substeps_ = 1;  ///< those of the last frame; of no effect on any result
   mutable std::mutex one_at_a_time_;
 };
 
@@ -225,7 +224,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   frame.t0 = (state.frame - setup.first_frame) / setup.fps;
   frame.t1 = (frame.number - setup.first_frame) / setup.fps;
   const auto body_clock = std::chrono::steady_clock::now();
-  body_.begin(frame.t0, frame.t1, expected_substeps_);
+  body_.begin(frame.t0, frame.t1);
   const Teleport* teleport = teleport_into(setup.teleports, frame.number);
   if (teleport) body_.cut(*teleport);
   const auto start = [&] {
@@ -235,7 +234,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   };
   FrameReport report, best_report;
   ClothMotion motion = start(), best;
-  const int substeps = expected_substeps_ =
+  const int substeps =
       substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible);
   bool moved = false;
   int fewest = -1;
