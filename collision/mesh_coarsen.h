@@ -12,6 +12,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
+#include "collision/mesh_collapse.h"
 
 namespace ft {
 
@@ -30,18 +31,6 @@ struct CoarsenInput {
   /// off the triangles that take its place [m]. What was drawn into their other corners is not looked at again.
   double deviation = std::numeric_limits<double>::infinity();
   bool cut = false;  ///< the uvs are a pattern: no triangle turns over or gets thin there either
-};
-
-struct CoarsenedMesh {
-  /// A point of the coarser surface: corners in its numbering, weights that sum to 1.
-  struct Place {
-    std::array<int, 3> vertex{};
-    std::array<double, 3> weight{1, 0, 0};
-  };
-  std::vector<int> kept;                 ///< finer vertex of each coarser one, ascending
-  std::vector<Triangle> triangles;       ///< coarser numbering
-  std::vector<std::array<Vec2, 3>> uvs;  ///< as the input's
-  std::vector<Place> places;             ///< of each finer vertex: the nearest point at rest
 };
 
 /// Depends on the input alone. Where nothing may be collapsed (degenerate or branching surfaces) the mesh stays as it
