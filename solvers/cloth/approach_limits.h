@@ -10,6 +10,7 @@
 #include "collision/contact_pairs.h"
 #include "collision/pair_room.h"
 #include "collision/vertex_clumps.h"
+#include "solvers/cloth/carry_smooth.h"
 
 namespace ft {
 
@@ -21,7 +22,8 @@ class ApproachLimits {
   void add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3> d);
   /// Changes the cloth's motion by what the limits ask; body_motion is that of the vertices behind it [m]. Depends on
   /// the order of adding.
-  void apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion, const VertexClumps& clumps) const;
+  void apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion, const VertexClumps& clumps,
+             const CarrySmooth& smooth) const;
 
  private:
   struct Limit {

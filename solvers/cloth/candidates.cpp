@@ -148,6 +148,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   input.inertia = inertia_;
   input.neighbours = &neighbours_;
   input.clumps = &model_.clumps;
+  input.smooth = &model_.carry_smooth;
   input.pairs = &near_body_;
   input.part_of_body_vertex = model_.collider->part_of_vertex();
   input.range = range_;

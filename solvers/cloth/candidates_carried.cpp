@@ -91,7 +91,7 @@ double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
 
 double Candidates::part_blocked(const ClothMotion& cloth, PieceMotion& piece) {
   limits_.add(blocked_, piece.start, piece.all);
-  limits_.apply(piece.carry, piece.body_motion, model_.clumps);
+  limits_.apply(piece.carry, piece.body_motion, model_.clumps, model_.carry_smooth);
   return renew_carried(cloth, piece);
 }
 

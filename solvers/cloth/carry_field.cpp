@@ -168,6 +168,7 @@ void carry_field(const CarryInput& in, std::span<Vec3> carry) {
     });
     std::swap(now, next);
   }
+  if (in.smooth != nullptr) in.smooth->smooth(now);
   if (in.clumps != nullptr) in.clumps->take_mean(now);
   double fastest = 0;
   for (const Pull& p : pulls) fastest = std::max(fastest, p.body_motion);

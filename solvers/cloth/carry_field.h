@@ -12,6 +12,7 @@
 #include "baker/core/mesh.h"
 #include "collision/contact_pairs.h"
 #include "collision/vertex_clumps.h"
+#include "solvers/cloth/carry_smooth.h"
 
 namespace ft {
 
@@ -24,6 +25,7 @@ struct CarryInput {
   const ContactPairs* pairs = nullptr;       ///< cloth-body pairs at least within `range`
   std::span<const int> part_of_body_vertex;  ///< of each body vertex: the nearest face of each part pulls
   double range = 0;                          ///< R: 2 r + largest body motion [m]
+  const CarrySmooth* smooth = nullptr;       ///< what has short edges; null: nothing has
   const VertexClumps* clumps = nullptr;      ///< are carried as one; null: none
   int sweeps = 10;
 };

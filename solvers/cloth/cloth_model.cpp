@@ -114,9 +114,13 @@ void weigh(ClothModel& model) {
   model.rest_edges.edges.shrink_to_fit();
   lengths_from_pattern(*model.topology, model.rest_edges);
   model.typical_edge = median_edges(model);
-  std::vector<double> clump_size(n);
-  for (std::size_t i = 0; i < n; ++i) clump_size[i] = k_very_near * model.typical_edge[at(model.contact.garment[i])];
+  std::vector<double> typical(n), clump_size(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    typical[i] = model.typical_edge[at(model.contact.garment[i])];
+    clump_size[i] = k_very_near * typical[i];
+  }
   model.clumps = VertexClumps(model.rest_edges, clump_size);
+  model.carry_smooth = CarrySmooth(model.contact.rest, model.rest_edges, typical, k_very_near, model.clumps);
 }
 
 void place_and_pin(ClothModel& model) {

@@ -11,6 +11,7 @@
 #include "baker/core/result.h"
 #include "collision/sewn_pairs.h"
 #include "collision/vertex_clumps.h"
+#include "solvers/cloth/carry_smooth.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
 #include "solvers/cloth/let_through.h"
@@ -46,6 +47,7 @@ struct ClothModel {
   RestEdges rest_edges;
   std::vector<double> typical_edge;  ///< per garment: median of its edges at rest; infinite without any [m]
   VertexClumps clumps;               ///< vertices that are very near each other for their garment
+  CarrySmooth carry_smooth;          ///< what has such short edges
   std::vector<char> self_collides;   ///< per vertex
   std::vector<char> unused;          ///< vertices of no face: carried along, never solved for
   ContactModel contact;
@@ -78,6 +80,9 @@ Status check(const ClothSetup& setup);
 std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles);
 
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup);
+
+/// Orthonormal frame of a triangle: first edge, in-plane, normal. Identity for a degenerate one.
+Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without
 /// a body.

@@ -3,9 +3,7 @@
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
-namespace {
 
-/// Orthonormal frame of a triangle: first edge, in-plane, normal. Identity for a degenerate one.
 Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 e = b - a, n = e.cross(c - a);
   if (e.norm() < 1e-12 || n.norm() < 1e-18) return Mat3::Identity();
@@ -15,8 +13,6 @@ Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
   frame.col(1) = frame.col(2).cross(frame.col(0));
   return frame;
 }
-
-}  // namespace
 
 PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles) {
   PinPoint pin;

@@ -42,7 +42,7 @@ TEST(ApproachLimits, An_edge_of_the_body_pushes_an_edge_of_the_cloth_before_it) 
   ASSERT_LT(edges.time_of(pairs.edge_edge[0]), 1);
   ApproachLimits limits;
   limits.add(pairs, edges.x, edges.all());
-  limits.apply(edges.cloth_motion, edges.body_motion, {});
+  limits.apply(edges.cloth_motion, edges.body_motion, {}, {});
   EXPECT_EQ(edges.time_of(pairs.edge_edge[0]), 1);
   for (const Vec3& d : edges.cloth_motion) {
     EXPECT_GT(d.y(), k_way - k_gap);
@@ -63,7 +63,7 @@ TEST(ApproachLimits, Layers_pass_on_what_they_are_given) {
     return std::all_of(pairs.edge_edge.begin(), pairs.edge_edge.end(),
                        [&](const Stencil& s) { return edges.time_of(s) >= 1; });
   };
-  for (; rounds < 8 && !free(); ++rounds) limits.apply(edges.cloth_motion, edges.body_motion, {});
+  for (; rounds < 8 && !free(); ++rounds) limits.apply(edges.cloth_motion, edges.body_motion, {}, {});
   EXPECT_TRUE(free());
   EXPECT_GT(rounds, 0);
 }
@@ -75,7 +75,7 @@ TEST(ApproachLimits, What_has_room_keeps_its_motion) {
   const std::vector<Vec3> before = edges.cloth_motion;
   ApproachLimits limits;
   limits.add({{}, {Edges::pair(0, 1)}}, edges.x, edges.all());
-  limits.apply(edges.cloth_motion, edges.body_motion, {});
+  limits.apply(edges.cloth_motion, edges.body_motion, {}, {});
   EXPECT_EQ(edges.cloth_motion, before);
 }
 
@@ -87,7 +87,7 @@ TEST(ApproachLimits, What_no_plane_separates_is_left_as_it_is) {
   const std::vector<Vec3> before = edges.cloth_motion;
   ApproachLimits limits;
   limits.add({{}, {Edges::pair(0, 1)}}, edges.x, edges.all());
-  limits.apply(edges.cloth_motion, edges.body_motion, {});
+  limits.apply(edges.cloth_motion, edges.body_motion, {}, {});
   EXPECT_EQ(edges.cloth_motion, before);
 }
 
