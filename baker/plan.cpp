@@ -12,6 +12,7 @@
 #include "baker/vertex_maps.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
+#include "solvers/cloth/coarse_garment.h"
 
 namespace ft {
 namespace {
@@ -231,6 +232,16 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
   return {};
 }
 
+void note_riding(const ClothGarment& garment, std::vector<std::string>& notes) {
+  const std::optional<CoarseGarment> moves = without_short_edges(garment);
+  if (!moves) return;
+  const std::size_t all = garment.mesh.positions.size();
+  notes.push_back(
+      fmt::format("cloth \"{}\": {} of {} vertices ride on the others: their edges are shorter than {:.2g} mm, where "
+                  "nobody sees them move",
+                  garment.name, all - moves->kept.size(), all, 1e3 * shortest_edge(garment)));
+}
+
 ClothSetup common_setup(const Shot& shot) {
   ClothSetup setup;
   setup.first_frame = shot.first_frame;
@@ -347,6 +358,7 @@ Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
   for (std::size_t g = 0; g < worn.size(); ++g)
     if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added) return added;
   if (group.setup.garments.empty()) return {};
+  for (const ClothGarment& garment : group.setup.garments) note_riding(garment, plan.notes);
   apply_quality(shot, group.setup);
   group.setup.poses = std::make_shared<FeasiblePoses>(group.setup.primary, group.setup.feasible);
   plan.groups.push_back(std::move(group));

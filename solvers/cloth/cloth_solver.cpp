@@ -19,6 +19,7 @@
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/coarse_solver.h"
+#include "solvers/cloth/riding_solver.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/substep_count.h"
 #include "solvers/cloth/tangles.h"
@@ -289,6 +290,8 @@ FrameReport ClothSolver::advance_frame(State& state) const {
 }  // namespace
 
 Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup) {
+  if (!setup.keep_short_edges)
+    if (auto riding = make_riding_solver(setup); !riding || *riding) return riding;
   if (setup.coarsen > 1) return make_coarse_solver(std::move(setup));
   auto model = build_cloth_model(std::move(setup));
   if (!model) return model.error();

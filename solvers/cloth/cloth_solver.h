@@ -63,6 +63,8 @@ struct ClothSetup {
   double linear_tolerance = 3e-2;
   /// What moves has edges this many times as long as the garments', 1..4; their vertices ride on it. For previews.
   double coarsen = 1;
+  /// Edges that are absurdly short (coarse_garment.h) move like all others, and often blow up. For tests.
+  bool keep_short_edges = false;
   bool bdf2 = true;  ///< with a quarter of BDF3; false: implicit Euler
   FeasibleSettings feasible;
   std::shared_ptr<FeasiblePoses> poses;  ///< of `primary` and `feasible`; null: the solver's own

@@ -32,8 +32,7 @@ std::span<const Scene> scenes() {
       {"tiny_triangles", "a tenth of the triangles are 1000 times smaller", tiny_triangles, 48, 0.1, 6, true, ""},
       {"cut_edges", "some edges are cut in two, a two hundredth from one end", cut_edges, 48, 0.1, 6, true, ""},
       {"caps", "some triangles are 300 times longer than they are high", caps, 48, 0.1, 6, true, ""},
-      {"tiny_edges", "a tenth of the triangles have 1000 times shorter edges", tiny_edges, 48, 0.1, 6, true,
-       "p99 strain is over 1000 % from frame 4 on"},
+      {"tiny_edges", "a tenth of the triangles have 1000 times shorter edges", tiny_edges, 48, 0.1, 6, true, ""},
   };
   return list;
 }

@@ -1,0 +1,141 @@
+#include "solvers/cloth/riding_solver.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "baker/core/edge_strain.h"
+#include "collision/crossings.h"
+#include "collision/sewn_pairs.h"
+#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/coarse_garment.h"
+#include "solvers/cloth/riders.h"
+
+namespace ft {
+namespace {
+
+/// Which riders are drawn in: 1, or 0.
+constexpr std::string_view k_block = "drawn_in";
+/// At most so many crossings with what rides are told of in a frame.
+constexpr std::size_t k_told = 4;
+
+class RidingSolver final : public Solver {
+ public:
+  RidingSolver(std::unique_ptr<Solver> inner, AllRiders riders, bool certified)
+      : inner_(std::move(inner)),
+        riders_(std::move(riders)),
+        collider_(inner_->collider_triangles()),
+        certified_(certified) {}
+
+  int system_count() const override { return inner_->system_count(); }
+  const Mesh& system_mesh(int system) const override { return riders_.garment(system).mesh; }
+  void system_positions(const State& state, int system, std::span<Vec3> out) const override {
+    const Riders& garment = riders_.garment(system);
+    std::vector<Vec3> moved(garment.kept.size());
+    inner_->system_positions(state, system, moved);
+    const auto* drawn_in = state.find(k_block);
+    CHECK(drawn_in);
+    garment.place(moved, std::span(*drawn_in).subspan(garment.first_group, garment.group_count()), out);
+  }
+  std::span<const Triangle> collider_triangles() const override { return inner_->collider_triangles(); }
+  void collider_positions(const State& state, std::vector<Vec3>& out) const override {
+    inner_->collider_positions(state, out);
+  }
+  State initial_state() const override {
+    State state = inner_->initial_state();
+    state.set(k_block, std::vector<double>(riders_.group_count(), 0.0));
+    return state;
+  }
+  FrameReport advance_frame(State& state) const override;
+
+ private:
+  void certify(State& state, FrameReport& report) const;
+  void tell(std::span<const Crossing> crossings, std::span<const Vec3> x, const char* text, FrameReport& report) const;
+
+  std::unique_ptr<Solver> inner_;
+  AllRiders riders_;
+  mutable CheckedSurface collider_;  // scratch: its box tree is kept from frame to frame
+  mutable std::mutex one_at_a_time_;
+  bool certified_;
+};
+
+FrameReport RidingSolver::advance_frame(State& state) const {
+  const std::lock_guard lock(one_at_a_time_);
+  FrameReport report = inner_->advance_frame(state);
+  for (Incident& incident : report.incidents) riders_.to_given(incident);
+  state.set(k_block, std::vector<double>(riders_.group_count(), 0.0));
+  if (certified_) certify(state, report);
+  return report;
+}
+
+/// Draws in what crosses, then counts what crosses nevertheless.
+void RidingSolver::certify(State& state, FrameReport& report) const {
+  std::vector<Vec3> x(riders_.vertex_count()), body;
+  inner_->collider_positions(state, body);
+  collider_.move(body);
+  const auto place = [&] {
+    for (int s = 0; s < system_count(); ++s)
+      system_positions(state, s, std::span(x).subspan(riders_.first_vertex(s), riders_.garment(s).places.size()));
+  };
+  place();
+  RidingCrossings found = riders_.crossings(x, collider_);
+  if (!found.empty()) {
+    riders_.draw_in(found, state.block(k_block));
+    place();
+    found = riders_.crossings(x, collider_);
+  }
+  if (report.crossings_body + report.crossings_self > 0) {  // some are of triangles that only what moves has
+    const RidingCrossings all = riders_.all_crossings(x, collider_);
+    report.crossings_body = static_cast<int>(all.with_body.size());
+    report.crossings_self = static_cast<int>(all.own.size());
+  } else {
+    report.crossings_body = static_cast<int>(found.with_body.size());
+    report.crossings_self = static_cast<int>(found.own.size());
+  }
+  collider_.forget_boxes();
+  tell(found.with_body, x, "a vertex that rides on the cloth crosses the collider", report);
+  tell(found.own, x, "a vertex that rides on the cloth crosses cloth", report);
+  const StrainSummary strain = summary(edge_strains(riders_.rest_edges(), x));
+  report.strain_mean = strain.mean;
+  report.strain_p99 = strain.p99;
+  report.strain_max = strain.max;
+}
+
+void RidingSolver::tell(std::span<const Crossing> crossings, std::span<const Vec3> x, const char* text,
+                        FrameReport& report) const {
+  for (std::size_t k = 0; k < std::min(k_told, crossings.size()); ++k) {
+    const int v = crossings[k].edge_of_first ? crossings[k].edge[0] : crossings[k].triangle[0];
+    Incident incident;
+    incident.kind = Incident::Kind::k_crossing;
+    incident.frame = report.frame;
+    incident.system = riders_.garment(riders_.garment_of(v)).name;
+    incident.vertex = v - static_cast<int>(riders_.first_vertex(riders_.garment_of(v)));
+    incident.place = x[at(v)];
+    incident.text = text;
+    report.incidents.push_back(std::move(incident));
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& given) {
+  // What is wrong with a garment is said of the garment as it was given.
+  if (Status status = check(given); !status) return status.error();
+  std::vector<std::optional<CoarseGarment>> coarse;
+  for (const ClothGarment& garment : given.garments) coarse.push_back(without_short_edges(garment));
+  if (std::none_of(coarse.begin(), coarse.end(), [](const auto& c) { return c.has_value(); }))
+    return std::unique_ptr<Solver>();
+  ClothSetup setup = given;
+  setup.keep_short_edges = true;
+  AllRiders riders;
+  for (std::size_t g = 0; g < coarse.size(); ++g) {
+    riders.add(given.garments[g], coarse[g] ? &*coarse[g] : nullptr);
+    if (coarse[g]) setup.garments[g] = std::move(coarse[g]->garment);
+  }
+  riders.finish();
+  auto inner = make_cloth_solver(std::move(setup));
+  if (!inner) return inner.error();
+  return std::unique_ptr<Solver>(
+      std::make_unique<RidingSolver>(std::move(*inner), std::move(riders), !(given.coarsen > 1)));
+}
+
+}  // namespace ft
