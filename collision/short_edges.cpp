@@ -11,6 +11,8 @@ namespace {
 constexpr double k_turn = 0.5;  ///< cosine of the most that a triangle turns in a collapse
 /// A collapse leaves triangles at least this good (shape_of), or so much of what they were [1].
 constexpr double k_least_shape = 0.2, k_share_of_shape = 0.7;
+/// Of two ways whose worst triangles differ by less than this factor, the number of triangles decides [1].
+constexpr double k_as_good = 1.1;
 /// Triangles whose edges are no longer than this many times the shortest will go or matter to nobody [1].
 constexpr double k_small = 3;
 /// A triangle that is lower than this share of its longest edge does not know which way it faces [1].
@@ -41,8 +43,20 @@ class ShortEdges : public CollapsingMesh {
     int a, b;
     auto operator<=>(const Collapse&) const = default;
   };
+  struct Worth {
+    bool keeps_held;
+    double worst;           ///< shape of the worst triangle
+    std::size_t triangles;  ///< of what is drawn
+    /// What a cut has put on an edge has few triangles: without it the mesh is what it was, and where that folds, the
+    /// vertex is on the edge.
+    bool operator>=(const Worth& other) const {
+      if (keeps_held != other.keeps_held) return keeps_held;
+      if (worst > k_as_good * other.worst || other.worst > k_as_good * worst) return worst > other.worst;
+      return triangles != other.triangles ? triangles < other.triangles : worst >= other.worst;
+    }
+  };
   std::vector<Collapse> short_edges() const;
-  std::optional<double> worth(int b, int a) const;
+  std::optional<Worth> worth(int b, int a) const;
   bool leaves_all_something(int b, int a, std::span<const int> gone) const;
   bool short_in_pattern(int b, int a, std::span<const int> gone) const;
   bool keeps_faces(int b, int a, std::span<const int> gone, double& worst) const;
@@ -127,15 +141,15 @@ bool ShortEdges::keeps_faces(int b, int a, std::span<const int> gone, double& wo
   return true;
 }
 
-/// How well b may be drawn into its neighbour a, more is better; none: it may not be.
-std::optional<double> ShortEdges::worth(int b, int a) const {
+/// How well b may be drawn into its neighbour a; none: it may not be.
+std::optional<ShortEdges::Worth> ShortEdges::worth(int b, int a) const {
   const std::vector<int> gone = shared(a, b);
   if (branches(b) || !keeps_topology(b, a, gone) || !leaves_all_something(b, a, gone)) return {};
   if (in_.pattern_scale > 0 && !short_in_pattern(b, a, gone)) return {};
   double worst = 1;
   if (!keeps_faces(b, a, gone, worst)) return {};
   const bool lost = !in_.held.empty() && in_.held[at(b)] > in_.held[at(a)];
-  return worst - (lost ? 1 : 0);
+  return Worth{!lost, worst, around_[at(b)].size()};
 }
 
 /// Collapses edges that do not touch each other; false when there was none to collapse.
@@ -144,7 +158,7 @@ bool ShortEdges::round() {
   bool any = false;
   for (const Collapse& c : short_edges()) {
     if (touched[at(c.a)] || touched[at(c.b)]) continue;
-    const std::optional<double> into_a = worth(c.b, c.a), into_b = worth(c.a, c.b);
+    const std::optional<Worth> into_a = worth(c.b, c.a), into_b = worth(c.a, c.b);
     if (!into_a && !into_b) continue;
     const bool to_a = into_a && (!into_b || *into_a >= *into_b);
     const int from = to_a ? c.b : c.a, to = to_a ? c.a : c.b;
