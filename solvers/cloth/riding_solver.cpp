@@ -5,7 +5,6 @@
 
 #include "baker/core/edge_strain.h"
 #include "collision/crossings.h"
-#include "collision/sewn_pairs.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/coarse_garment.h"
 #include "solvers/cloth/riders.h"
