@@ -4,12 +4,14 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
+#include "collision/pair_geometry.h"
 #include "collision/vertex_box.h"
 
 namespace ft {
@@ -30,6 +32,10 @@ struct ContactPairs {
   std::vector<Stencil> vertex_face;
   std::vector<Stencil> edge_edge;
 };
+
+/// Whether a pair is wanted. A search asks once for every pair that it comes upon, from several threads and in any
+/// order, so that lists never hold what nobody wants. May be empty: all are.
+using PairSieve = std::function<bool(PairKind, const Stencil&)>;
 
 class PairFinder {
  public:
@@ -56,20 +62,21 @@ class PairFinder {
   /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
   /// the list. Pairs that share a vertex are left out. Vertices that are VertexBox::nowhere() take part in nothing.
   /// skipped (per patch; empty: none): where it is not 0, pairs of features of two triangles in the patch are left out.
-  void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped = {});
+  void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped = {},
+            const PairSieve& sieve = {});
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
-  void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out);
+  void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out, const PairSieve& sieve = {});
   /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when
   /// only their boxes have grown or moved. All other boxes must be those of the last search. Costs little where few
   /// have changed.
   void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out,
-                    std::span<const char> skipped = {});
+                    std::span<const char> skipped = {}, const PairSieve& sieve = {});
 
  private:
   template <class Place>
   void build_trees(Place&& place_of);
   void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
-              std::span<const char> skipped, ContactPairs& out);
+              std::span<const char> skipped, const PairSieve& sieve, ContactPairs& out);
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

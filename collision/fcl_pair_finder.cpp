@@ -23,7 +23,7 @@ using FclBox = fcl::AABB<float>;
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
-constexpr std::size_t k_limb = 1024;  ///< most nodes of a sub-tree that is refitted as one
+constexpr std::size_t k_limb = 1024;  ///< most nodes of a limb, which is refitted as one
 
 /// The tree of one surface; leaves are its elements.
 class Tree {
@@ -88,12 +88,14 @@ class Tree {
         std::any_of(elements_.begin(), elements_.end(), [&](const PairElement& e) { return is_changed(e, changed); });
     if (was_marked) marks_.assign(nodes_.size(), 0);
   }
-  std::size_t limb_count() const { return limbs_.empty() ? 0 : limbs_.size() - 1; }
+  std::size_t limb_count() const { return limbs_.size(); }
   void refit_below(std::size_t limb, const PairFeatures& features, std::span<const char> changed) {
-    if (any_mark_now_) refit(at(limbs_[limb]), at(limbs_[limb + 1]), features, changed);
+    if (!any_mark_now_) return;
+    for (std::size_t k = limbs_[limb].end; k-- > limbs_[limb].begin;) refit(k, features, changed);
   }
   void end_refit(const PairFeatures& features, std::span<const char> changed) {
-    if (any_mark_now_ && !nodes_.empty()) refit(0, at(limbs_[0]), features, changed);
+    if (!any_mark_now_) return;
+    for (std::size_t i = trunk_.size(); i-- > 0;) refit(trunk_[i], features, changed);
   }
 
  private:
@@ -101,50 +103,52 @@ class Tree {
     return (changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]) != 0;
   }
 
-  /// Nodes in_order_[begin, end), backwards: children come behind their parents there.
-  void refit(std::size_t begin, std::size_t end, const PairFeatures& features, std::span<const char> changed) {
-    const bool some = !changed.empty();
-    for (std::size_t i = end; i-- > begin;) {
-      const std::size_t k = at(in_order_[i]);
-      PairNode& node = nodes_[k];
-      const bool leaf = node.is_leaf();
-      const std::size_t below = leaf ? node.element() : at(node.first_child());
-      if (some) {
-        marks_[k] = leaf ? static_cast<char>(is_changed(elements_[below], changed))
-                         : static_cast<char>(marks_[below] | marks_[below + 1]);
-        if (marks_[k] == 0) continue;
-      }
-      node.set_box(leaf ? features.box(elements_[below]) : nodes_[below].box().join(nodes_[below + 1].box()));
+  /// Node k, after its children.
+  void refit(std::size_t k, const PairFeatures& features, std::span<const char> changed) {
+    PairNode& node = nodes_[k];
+    const bool leaf = node.is_leaf();
+    const std::size_t below = leaf ? node.element() : at(node.first_child());
+    if (!changed.empty()) {
+      marks_[k] = leaf ? static_cast<char>(is_changed(elements_[below], changed))
+                       : static_cast<char>(marks_[below] | marks_[below + 1]);
+      if (marks_[k] == 0) return;
     }
+    node.set_box(leaf ? features.box(elements_[below]) : nodes_[below].box().join(nodes_[below + 1].box()));
   }
 
-  /// The trunk, nodes with many below them, comes first in in_order_; then the limbs, which have no node in common.
+  /// Limbs are all that is below a node, if that is not too much; the rest is the trunk. FCL puts what is below a node
+  /// in one place, behind it.
   void share_out() {
-    std::vector<std::size_t> below(nodes_.size(), 1);
-    for (std::size_t k = nodes_.size(); k-- > 0;)
-      if (!nodes_[k].is_leaf()) below[k] += below[at(nodes_[k].first_child())] + below[at(nodes_[k].first_child()) + 1];
-    std::vector<int> limb(nodes_.size(), 0);  // 0: trunk
-    int count = 1;
-    for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      if (limb[k] == 0 && (below[k] <= k_limb || nodes_[k].is_leaf())) limb[k] = count++;
-      if (nodes_[k].is_leaf() || limb[k] == 0) continue;
-      limb[at(nodes_[k].first_child())] = limb[at(nodes_[k].first_child()) + 1] = limb[k];
+    std::vector<std::size_t> below(nodes_.size(), 0), end(nodes_.size(), 0);
+    for (std::size_t k = nodes_.size(); k-- > 0;) {
+      if (nodes_[k].is_leaf()) continue;
+      const std::size_t child = at(nodes_[k].first_child());
+      below[k] = 2 + below[child] + below[child + 1];
+      end[k] = std::max({child + 2, end[child], end[child + 1]});
     }
-    limbs_.assign(at(count) + 1, 0);
-    for (const int l : limb) ++limbs_[at(l) + 1];
-    for (std::size_t l = 1; l < limbs_.size(); ++l) limbs_[l] += limbs_[l - 1];
-    in_order_.resize(nodes_.size());
-    std::vector<int> next(limbs_.begin(), limbs_.end() - 1);
-    for (std::size_t k = 0; k < nodes_.size(); ++k) in_order_[at(next[at(limb[k])]++)] = static_cast<int>(k);
-    limbs_.erase(limbs_.begin());  // the trunk begins at 0
+    std::vector<char> in_limb(nodes_.size(), 0);
+    trunk_.clear();
+    limbs_.clear();
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      if (in_limb[k] != 0) continue;
+      trunk_.push_back(k);
+      if (nodes_[k].is_leaf() || below[k] > k_limb) continue;
+      const std::size_t begin = at(nodes_[k].first_child());
+      CHECK(end[k] - begin == below[k]);
+      limbs_.push_back({begin, end[k]});
+      std::fill_n(&in_limb[begin], below[k], 1);
+    }
   }
 
   std::vector<PairNode> nodes_;
   std::vector<PairElement> elements_;  ///< in the order of their leaves
   std::vector<char> marks_;
   NodePatches patches_;
-  std::vector<int> in_order_;  ///< nodes, as refit() takes them
-  std::vector<int> limbs_;     ///< where each limb begins in in_order_, and the end
+  struct Limb {
+    std::size_t begin, end;
+  };
+  std::vector<Limb> limbs_;
+  std::vector<std::size_t> trunk_;  ///< all other nodes, ascending
   bool any_mark_ = false;
   bool any_mark_now_ = true;               ///< in the refit at hand, or all
   int first_vertex_ = 0, end_vertex_ = 0;  ///< all vertices of the elements are in here
@@ -162,7 +166,7 @@ struct PairFinder::Impl {
   explicit Impl(PairFeatures f) : features(std::move(f)) {}
 
   PairFeatures features;
-  Adjacency patches_of;  ///< per cloth triangle
+  Adjacency patches_of;  ///< per cloth triangle, until there is a tree over them
   bool want_edges = true;
   std::span<const char> skipped;  ///< of the search at hand
   BoxMargin self_margin{};
@@ -170,13 +174,21 @@ struct PairFinder::Impl {
 
   // Scratch, kept from search to search.
   std::vector<Task> tasks, next_tasks;
-  std::vector<FoundPairs> found;
   PairSorter sort_vertex_face, sort_edge_edge;
 
   void refit(std::span<const char> changed);
   void split_tasks(bool self);
   template <bool k_some>
   void run_task(const Task& task, const char* changed, FoundPairs& out) const;
+  Stencil vertex_face(std::uint64_t key) const {
+    const Triangle& f = features.faces[at(key_second(key))];
+    return {{key_first(key), f[0], f[1], f[2]}};
+  }
+  Stencil edge_edge(std::uint64_t key) const {
+    const Edge &a = features.edges[at(key_first(key))], &b = features.edges[at(key_second(key))];
+    return {{a[0], a[1], b[0], b[1]}};
+  }
+  void sift(const PairSieve& sieve, FoundPairs& pairs) const;
 };
 
 void PairFinder::Impl::refit(std::span<const char> changed) {
@@ -244,6 +256,16 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, FoundPair
   task.self ? run.template operator()<true>() : run.template operator()<false>();
 }
 
+/// Leaves what is wanted, in no more room than it needs.
+void PairFinder::Impl::sift(const PairSieve& sieve, FoundPairs& pairs) const {
+  const auto is_unwanted_face = [&](std::uint64_t k) { return !sieve(PairKind::k_vertex_face, vertex_face(k)); };
+  const auto is_unwanted_edge = [&](std::uint64_t k) { return !sieve(PairKind::k_edge_edge, edge_edge(k)); };
+  std::erase_if(pairs.vertex_face, is_unwanted_face);
+  std::erase_if(pairs.edge_edge, is_unwanted_edge);
+  pairs.vertex_face.shrink_to_fit();
+  pairs.edge_edge.shrink_to_fit();
+}
+
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                        std::span<const Triangle> collider_triangles)
     : impl_(new Impl(PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles))) {}
@@ -272,7 +294,7 @@ void PairFinder::build_trees(Place&& place_of) {
   Impl& m = *impl_;
   if (!m.features.cloth.empty()) m.cloth.build(m.features.cloth, place_of, m.patches_of);
   if (!m.features.collider.empty()) m.collider.build(m.features.collider, place_of, {});
-  give_back(m.features.cloth, m.features.collider);  // the trees have them
+  give_back(m.features.cloth, m.features.collider, m.patches_of);  // the trees have them
 }
 
 void PairFinder::arrange(std::span<const Vec3> x) {
@@ -280,23 +302,25 @@ void PairFinder::arrange(std::span<const Vec3> x) {
   build_trees([&](int v) -> fcl::Vector3<float> { return x[at(v)].cast<float>(); });
 }
 
-void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped) {
-  search(boxes, self, true, {}, skipped, out);
+void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped,
+                      const PairSieve& sieve) {
+  search(boxes, self, true, {}, skipped, sieve, out);
 }
 
-void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
-  search(boxes, self, false, {}, {}, out);
+void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out,
+                                  const PairSieve& sieve) {
+  search(boxes, self, false, {}, {}, sieve, out);
 }
 
 void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed,
-                              ContactPairs& out, std::span<const char> skipped) {
+                              ContactPairs& out, std::span<const char> skipped, const PairSieve& sieve) {
   CHECK(changed.size() == boxes.size());
-  search(boxes, self, true, changed, skipped, out);
+  search(boxes, self, true, changed, skipped, sieve, out);
 }
 
 /// changed empty: all pairs. Not empty: the boxes of all others are those of the last search.
 void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
-                        std::span<const char> skipped, ContactPairs& out) {
+                        std::span<const char> skipped, const PairSieve& sieve, ContactPairs& out) {
   Impl& m = *impl_;
   m.want_edges = edges;
   m.skipped = skipped;
@@ -312,13 +336,12 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.refit(changed);
 
   m.split_tasks(self);
-  if (m.found.size() < m.tasks.size()) m.found.resize(m.tasks.size());
-  if (changed.empty()) {
-    parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<false>(m.tasks[i], nullptr, m.found[i]); });
-  } else {
-    parallel_tasks(m.tasks.size(), [&](std::size_t i) { m.run_task<true>(m.tasks[i], changed.data(), m.found[i]); });
-  }
-  const std::span<const FoundPairs> found(m.found.data(), m.tasks.size());
+  std::vector<FoundPairs> found(m.tasks.size());
+  parallel_tasks(found.size(), [&](std::size_t i) {
+    changed.empty() ? m.run_task<false>(m.tasks[i], nullptr, found[i])
+                    : m.run_task<true>(m.tasks[i], changed.data(), found[i]);
+    if (sieve) m.sift(sieve, found[i]);
+  });
 
   const auto sort = [&](PairSorter& sorter, std::size_t first_count, auto keys_of) {
     sorter.begin(static_cast<int>(first_count));
@@ -331,27 +354,21 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
     else
       sort(m.sort_edge_edge, features.edges.size(), &FoundPairs::edge_edge);
   });
-  if (edges && changed.empty()) m.found.clear();  // the others find far less
+  give_back(found);
 
   const auto write = [&](PairSorter& sorter, auto stencil_of, std::vector<Stencil>& pairs) {
     const std::span<const std::uint64_t> keys = sorter.sorted();
     if (pairs.capacity() < keys.size()) give_back(pairs);  // so that there are never two of them
     pairs.resize(keys.size());
     parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) pairs[i] = stencil_of(key_first(keys[i]), key_second(keys[i]));
+      for (std::size_t i = begin; i < end; ++i) pairs[i] = stencil_of(keys[i]);
     });
-    if (edges && changed.empty()) sorter.give_back();
+    sorter.give_back();
   };
-  const auto vertex_face = [&](int v, int face) {
-    const Triangle& f = features.faces[at(face)];
-    return Stencil{{v, f[0], f[1], f[2]}};
-  };
-  const auto edge_edge = [&](int first, int second) {
-    const Edge &a = features.edges[at(first)], &b = features.edges[at(second)];
-    return Stencil{{a[0], a[1], b[0], b[1]}};
-  };
-  write(m.sort_vertex_face, vertex_face, out.vertex_face);
-  write(m.sort_edge_edge, edge_edge, out.edge_edge);
+  write(
+      m.sort_vertex_face, [&](std::uint64_t key) { return m.vertex_face(key); }, out.vertex_face);
+  write(
+      m.sort_edge_edge, [&](std::uint64_t key) { return m.edge_edge(key); }, out.edge_edge);
 }
 
 }  // namespace ft

@@ -54,6 +54,8 @@ FlatPatches::FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> t
     for (std::size_t k = begin; k < end; ++k) patches[k] = builder.spread(seeds[k]);
   });
   std::erase_if(patches, [](const SpreadPatch& p) { return p.members.size() < 2; });
+  for (SpreadPatch& p : patches)
+    std::erase_if(p.cover, [&](int t) { return std::binary_search(p.members.begin(), p.members.end(), t); });
   const auto rows_of = [&](Adjacency& rows, std::vector<int> SpreadPatch::*list) {
     std::size_t count = 0;
     for (const SpreadPatch& p : patches) count += (p.*list).size();
@@ -66,7 +68,7 @@ FlatPatches::FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> t
     }
   };
   rows_of(members_, &SpreadPatch::members);
-  rows_of(cover_, &SpreadPatch::cover);
+  rows_of(beside_, &SpreadPatch::cover);
   plane_.reserve(patches.size());
   least_.reserve(patches.size());
   for (const SpreadPatch& p : patches) {
@@ -93,7 +95,7 @@ float FlatPatches::flatness(std::size_t patch, RestOf&& rest_of, NowOf&& now_of)
   const float* r = frame_[patch].data();
   float least = k_infinity;
   bool finite = true;
-  for (const int t : cover_.row(static_cast<int>(patch))) {
+  const auto look = [&](int t) {
     const Sides &rest = rest_of(at(t)), &now = now_of(at(t));
     const float d00 = dot(axes, rest.a), d01 = dot(axes, rest.b), d10 = dot(axes + 3, rest.a),
                 d11 = dot(axes + 3, rest.b);
@@ -104,7 +106,9 @@ float FlatPatches::flatness(std::size_t patch, RestOf&& rest_of, NowOf&& now_of)
     const float m = 0.5f * (first + second - root) / (d00 * d11 - d01 * d10);
     finite = finite && m > -k_infinity;
     least = std::min(least, m);
-  }
+  };
+  for (const int t : members_.row(static_cast<int>(patch))) look(t);
+  for (const int t : beside_.row(static_cast<int>(patch))) look(t);
   return finite ? least : -k_infinity;
 }
 
@@ -160,7 +164,8 @@ bool FlatPatches::keep(std::span<const Vec3> x, bool to_spare, std::vector<int>&
       if (flat_[p] == 0) continue;
       const float least = least_[p] + (to_spare ? k_spare : 0.f);
       float change = 0;
-      for (const int t : cover_.row(static_cast<int>(p))) change = std::max(change, changes[at(t)]);
+      for (const Adjacency* rows : {&members_, &beside_})
+        for (const int t : rows->row(static_cast<int>(p))) change = std::max(change, changes[at(t)]);
       // m is a Lipschitz function of the gradient, with constant 1: most patches are known to be flat by that.
       still[p] = first_flatness_[p] - change >= least || flatness(p, rest_of, now_of) >= least ? 1 : 0;
     }

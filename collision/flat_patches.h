@@ -54,7 +54,7 @@ class FlatPatches {
 
   std::span<const Vec3> rest_;
   std::span<const Triangle> triangles_;
-  Adjacency members_, cover_;                ///< per patch: triangles; cover_ holds members_
+  Adjacency members_, beside_;               ///< per patch: triangles; both together cover it
   std::vector<std::array<float, 6>> plane_;  ///< per patch: the axes of its plane, in the space of the rest shape
   std::vector<float> least_;                 ///< per patch: what m has to be at least
   std::vector<float> by_sides_;              ///< per triangle: how much m can change, by that of the sides [1/m]

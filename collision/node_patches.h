@@ -34,6 +34,7 @@ class NodePatches {
       sum += lists[k].size();
     }
     start_.assign(1, 0);
+    start_.reserve(nodes + 1);
     items_.clear();
     items_.reserve(sum);
     for (const std::vector<int>& list : lists) {

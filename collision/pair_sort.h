@@ -1,13 +1,15 @@
 // Sorting of feature pairs that come up in any order: a pair is one 64-bit key, first feature in the high half. One
 // counting pass over first features, then a short sort within each: three times as fast as std::sort at half a million
-// pairs; few pairs are sorted as they are. For fcl_pair_finder.cpp; buffers are kept from call to call.
+// pairs; few pairs are sorted as they are. For fcl_pair_finder.cpp.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "baker/core/check.h"
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 
@@ -38,8 +40,8 @@ class PairSorter {
   }
   /// All keys in ascending order, once they are sorted; valid until the next begin() or give_back().
   std::span<const std::uint64_t> sorted() const { return sorted_; }
-  /// Frees them.
-  void give_back() { ft::give_back(sorted_); }
+  /// Frees all that there is.
+  void give_back() { ft::give_back(sorted_, start_, place_, parts_); }
   void sort() {
     if (count_ < first_count_ / k_few) {
       sorted_.clear();
@@ -47,6 +49,7 @@ class PairSorter {
       std::sort(sorted_.begin(), sorted_.end());
       return;
     }
+    CHECK(count_ <= std::numeric_limits<std::uint32_t>::max());
     start_.assign(first_count_ + 1, 0);
     for (const auto& keys : parts_)
       for (const std::uint64_t key : keys) ++start_[(key >> 32) + 1];
@@ -68,7 +71,7 @@ class PairSorter {
   static constexpr std::size_t k_few = 16;  ///< fewer keys than one for so many first features
 
   std::size_t first_count_ = 0, count_ = 0;
-  std::vector<std::size_t> start_, place_;
+  std::vector<std::uint32_t> start_, place_;
   std::vector<std::span<const std::uint64_t>> parts_;
   std::vector<std::uint64_t> sorted_;
 };

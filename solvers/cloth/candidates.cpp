@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/ccd_li2021.h"
 #include "collision/pair_way.h"
+#include "solvers/cloth/candidates_touching.h"
 #include "solvers/cloth/carry_field.h"
 
 namespace ft {
@@ -124,14 +126,9 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
       boxes_[i] = box_frame_.swept(piece.start[i], piece.start[i], radius_ + way);
     }
   });
-  finder_.find_vertex_face(boxes_, false, found_);
-  const std::vector<Stencil>& found = found_.vertex_face;  // cloth with the body only, either way round
-  counted_.resize(found.size());
-  parallel_for(found.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) counted_[i] = counts(cloth, PairKind::k_vertex_face, found[i]) ? 1 : 0;
-  });
-  for (std::size_t i = 0; i < found.size(); ++i)
-    if (counted_[i] != 0) near_body_.vertex_face.push_back(found[i]);
+  // Cloth with the body only, either way round.
+  finder_.find_vertex_face(boxes_, false, near_body_,
+                           [&](PairKind kind, const Stencil& stencil) { return counts(cloth, kind, stencil); });
 }
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
@@ -153,6 +150,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   input.part_of_body_vertex = model_.collider->part_of_vertex();
   input.range = range_;
   carry_field(input, piece.carry);
+  give_back(near_body_.vertex_face);
 }
 
 /// Where the solve may put a vertex, and the box of where it is in the meantime.
@@ -173,7 +171,7 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
 
 void Candidates::set_box(std::size_t i, const ClothMotion& cloth, const PieceMotion& piece) {
   const Vec3 centre = cloth.x[i] + piece.centre[i] - frame_;
-  boxes_[i] = box_frame_.swept(cloth.x[i], cloth.x[i] + piece.carry[i] - frame_, 0.5 * radius_);
+  boxes_[i] = box_frame_.swept(cloth.x[i], cloth.x[i] + piece.all[i] - frame_, 0.5 * radius_);
   boxes_[i].include(box_frame_.swept(centre, centre, piece.slack[i] + 0.5 * radius_));
 }
 
@@ -181,23 +179,27 @@ void Candidates::set_box(std::size_t i, const ClothMotion& cloth, const PieceMot
 void Candidates::begin_flat(const ClothMotion& cloth, const PieceMotion& piece) {
   patches_.begin(cloth.x);
   lost_.clear();
-  carried_.resize(cloth.x.size());
+  std::vector<Vec3> carried(cloth.x.size());
   for (const std::vector<Vec3>* way : {&piece.carry, &piece.centre}) {
-    parallel_for(carried_.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) carried_[i] = cloth.x[i] + (*way)[i];
+    parallel_for(carried.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) carried[i] = cloth.x[i] + (*way)[i];
     });
-    patches_.keep(carried_, true, lost_);
+    patches_.keep(carried, true, lost_);
   }
 }
 
 double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   h_ = h;
+  piece.all.reserve(nc + nb);
+  piece.all.assign(piece.carry.begin(), piece.carry.end());
+  piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
   frame_ = mean_of(piece.carry);
   piece.slack.resize(nc);
   piece.centre.resize(nc + nb);
   boxes_.resize(nc + nb);
   box_frame_ = frame_around(cloth.x, inertia_, radius_);
+  give_back(inertia_);
   finder_.set_self_margin(box_frame_.margin(std::max(0.0, radius_ - self_radius_)));
   parallel_for(nc, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) place(i, cloth, piece);
@@ -210,59 +212,37 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
     }
   });
   if (any_self_) begin_flat(cloth, piece);
-  pairs_ = {};  // their memory is needed for the search
-  finder_.find(boxes_, any_self_, pairs_, patches_.flat());
+  give_back(pairs_.vertex_face, pairs_.edge_edge);  // their memory is needed for the search
+  Touching touching;
+  finder_.find(boxes_, any_self_, pairs_, patches_.flat(), sieve(cloth, piece, &touching));
   runs_vertex_face_.begin();
   runs_edge_edge_.begin();
-  piece.all = piece.carry;
-  piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
-  const double t = filter(PairKind::k_vertex_face, cloth, piece, pairs_.vertex_face, &blocked_.vertex_face);
-  return std::min(t, filter(PairKind::k_edge_edge, cloth, piece, pairs_.edge_edge, &blocked_.edge_edge));
+  touching.sort();
+  blocked_ = std::move(touching.pairs);
+  return touching.earliest;
 }
 
-/// Keeps what can come nearer than the contact radius. With `blocked` it finds what touches on its way there, and the
-/// first time of contact.
-double Candidates::filter(PairKind kind, const ClothMotion& cloth, const PieceMotion& piece,
-                          std::vector<Stencil>& pairs, std::vector<Stencil>* blocked) {
+/// Keeps what can come nearer than the contact radius. With `touching` it finds what touches on its way there, too.
+PairSieve Candidates::sieve(const ClothMotion& cloth, const PieceMotion& piece, Touching* touching) const {
   const VertexWays ways{piece.start, piece.all, piece.centre, piece.slack};
-  fates_.assign(pairs.size(), Fate::k_dropped);
-  earliest_.assign(block_count(pairs.size(), k_block), 1.0);
-  parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    double first = 1;
-    for (std::size_t p = begin; p < end; ++p) {
-      const Stencil& pair = pairs[p];
-      const bool self = pair.v[0] < model_.vertex_count() && pair.v[3] < model_.vertex_count();
-      const PairWay way(kind, pair, ways, self ? self_radius_ : radius_, k_clear);
-      auto verdict = PairWay::Verdict::k_open;
-      const auto is_apart = [&](const Vec3& normal) {
-        verdict = std::max(verdict, way.judge(normal));
-        return verdict == PairWay::Verdict::k_apart;
-      };
-      if (is_apart(way.between_centres()) || is_apart(way.flat()) || is_apart(way.between_last_centres()) ||
-          !counts(cloth, kind, pair))
-        continue;
-      const std::array<Vec3, 4> x = gather(piece.start, pair), d = gather(piece.all, pair);
-      std::array<Vec3, 4> carried;
-      for (std::size_t k = 0; k < 4; ++k) carried[k] = x[k] + d[k];
-      if (is_apart(pair_geometry(kind, carried).normal)) continue;
-      fates_[p] = Fate::k_kept;
-      if (blocked == nullptr || verdict == PairWay::Verdict::k_clear) continue;
-      const double touch = ccd_time(kind, x, d);
-      if (touch < 1) fates_[p] = Fate::k_kept_and_blocked;
-      first = std::min(first, touch);
-    }
-    earliest_[begin / k_block] = first;
-  });
-  if (blocked != nullptr) blocked->clear();
-  std::size_t kept = 0;
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    if (fates_[p] == Fate::k_kept_and_blocked) blocked->push_back(pairs[p]);
-    if (fates_[p] != Fate::k_dropped) pairs[kept++] = pairs[p];
-  }
-  pairs.resize(kept);
-  double t = 1;
-  for (const double first : earliest_) t = std::min(t, first);
-  return t;
+  return [this, &cloth, ways, touching](PairKind kind, const Stencil& pair) {
+    const bool self = pair.v[0] < model_.vertex_count() && pair.v[3] < model_.vertex_count();
+    const PairWay way(kind, pair, ways, self ? self_radius_ : radius_, k_clear);
+    auto verdict = PairWay::Verdict::k_open;
+    const auto is_apart = [&](const Vec3& normal) {
+      verdict = std::max(verdict, way.judge(normal));
+      return verdict == PairWay::Verdict::k_apart;
+    };
+    if (is_apart(way.between_centres()) || is_apart(way.flat()) || is_apart(way.between_last_centres()) ||
+        !counts(cloth, kind, pair))
+      return false;
+    const std::array<Vec3, 4> x = gather(ways.x, pair), d = gather(ways.d, pair);
+    std::array<Vec3, 4> carried;
+    for (std::size_t k = 0; k < 4; ++k) carried[k] = x[k] + d[k];
+    if (is_apart(pair_geometry(kind, carried).normal)) return false;
+    if (touching != nullptr && verdict == PairWay::Verdict::k_open) touching->take(kind, pair, ccd_time(kind, x, d));
+    return true;
+  };
 }
 
 bool Candidates::cloth_blocks_cloth() const {

@@ -20,7 +20,7 @@ namespace ft {
 struct PieceMotion {
   std::vector<Vec3> start;        ///< m
   std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
-  std::vector<Vec3> carry;        ///< per cloth vertex [m]
+  std::vector<Vec3> carry;        ///< per cloth vertex, while it is planned [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
   /// Per vertex: from the start to the middle of where the solve may put it; of the body its motion [m].
   std::vector<Vec3> centre;
@@ -75,22 +75,22 @@ class Candidates {
   const ContactPairs& pairs() const { return pairs_; }
 
  private:
+  struct Touching;
+
   bool counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const;
   int part_of(const Stencil& stencil) const;
   void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);
   void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
   double renew_carried(const ClothMotion& cloth, PieceMotion& piece);
-  std::vector<Stencil> touching_on_way(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs,
-                                       double& t);
+  void add_touching(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs, Touching& touching) const;
   void begin_flat(const ClothMotion& cloth, const PieceMotion& piece);
   void mark_lost();
   void add_missing(const ClothMotion& cloth, const PieceMotion& piece);
   void drop_blocked();
   void join_zones(const PieceMotion& piece);
   std::vector<int> pinched_through() const;
-  double filter(PairKind kind, const ClothMotion& cloth, const PieceMotion& piece, std::vector<Stencil>& pairs,
-                std::vector<Stencil>* blocked);
+  PairSieve sieve(const ClothMotion& cloth, const PieceMotion& piece, Touching* touching) const;
 
   const ClothModel& model_;
   PairFinder finder_;
@@ -109,17 +109,12 @@ class Candidates {
   std::vector<char> moved_;    ///< per vertex: whose carried way has changed
   BoxFrame box_frame_;
   std::vector<VertexBox> boxes_;
-  ContactPairs found_, near_body_, pairs_;
+  ContactPairs near_body_, pairs_;
   PairRuns runs_vertex_face_, runs_edge_edge_;  ///< of pairs_
-  std::vector<Vec3> inertia_;
-  std::vector<char> counted_;
-  std::vector<double> earliest_;
-  enum class Fate : char { k_dropped, k_kept, k_kept_and_blocked };
-  std::vector<Fate> fates_;  ///< per pair that filter() looks at
+  std::vector<Vec3> inertia_;                   ///< h v, from carry() to collect() [m]
   ContactPairs blocked_;
   ApproachLimits limits_;
   MotionZones zones_;
-  std::vector<Vec3> carried_;
   std::vector<int> lost_;  ///< patches that are flat no longer
 };
 

@@ -5,7 +5,7 @@
 #include "baker/core/parallel.h"
 #include "collision/ccd_li2021.h"
 #include "collision/pair_way.h"
-#include "solvers/cloth/candidates.h"
+#include "solvers/cloth/candidates_touching.h"
 
 namespace ft {
 namespace {
@@ -21,38 +21,33 @@ double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
     return (marks[at(s.v[0])] | marks[at(s.v[1])] | marks[at(s.v[2])] | marks[at(s.v[3])]) != 0;
   };
   const auto is_changed = [&](const Stencil& s) { return any_of(changed_, s); };
-  const bool search = std::any_of(changed_.begin(), changed_.end(), [](char c) { return c != 0; });
-  if (search) finder_.find_changed(boxes_, any_self_, changed_, found_, patches_.flat());
-  double t = 1;
-  const auto renew_kind = [&](PairKind kind, std::vector<Stencil>& found, PairRuns& runs, std::vector<Stencil>& pairs,
-                              std::vector<Stencil>& blocked) {
-    std::erase_if(blocked, [&](const Stencil& s) { return any_of(changed_, s) || any_of(moved_, s); });
-    for (const Stencil& s : blocked) t = std::min(t, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
-    std::vector<Stencil> others = touching_on_way(kind, piece, pairs, t);
-    if (search) {
-      std::vector<Stencil> fresh;
-      t = std::min(t, filter(kind, cloth, piece, found, &fresh));
-      others.insert(others.end(), fresh.begin(), fresh.end());
-      runs.erase_if(pairs, is_changed);
-      runs.add(found, {}, pairs);
-    }
-    blocked.insert(blocked.end(), others.begin(), others.end());
-    std::sort(blocked.begin(), blocked.end());
+  Touching touching;
+  const auto look_again = [&](PairKind kind, std::span<const Stencil> pairs, std::span<const Stencil> blocked) {
+    for (const Stencil& s : blocked)
+      if (!is_changed(s) && !any_of(moved_, s))
+        touching.take(kind, s, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
+    add_touching(kind, piece, pairs, touching);
   };
-  renew_kind(PairKind::k_vertex_face, found_.vertex_face, runs_vertex_face_, pairs_.vertex_face, blocked_.vertex_face);
-  renew_kind(PairKind::k_edge_edge, found_.edge_edge, runs_edge_edge_, pairs_.edge_edge, blocked_.edge_edge);
-  return t;
+  look_again(PairKind::k_vertex_face, pairs_.vertex_face, blocked_.vertex_face);
+  look_again(PairKind::k_edge_edge, pairs_.edge_edge, blocked_.edge_edge);
+  if (std::any_of(changed_.begin(), changed_.end(), [](char c) { return c != 0; })) {
+    ContactPairs found;
+    finder_.find_changed(boxes_, any_self_, changed_, found, patches_.flat(), sieve(cloth, piece, &touching));
+    runs_vertex_face_.erase_if(pairs_.vertex_face, is_changed);
+    runs_edge_edge_.erase_if(pairs_.edge_edge, is_changed);
+    runs_vertex_face_.add(found.vertex_face, {}, pairs_.vertex_face);
+    runs_edge_edge_.add(found.edge_edge, {}, pairs_.edge_edge);
+  }
+  touching.sort();
+  blocked_ = std::move(touching.pairs);
+  return touching.earliest;
 }
 
-/// Of the pairs with a vertex in moved_ and none in changed_, those that touch; t is brought up to them.
-std::vector<Stencil> Candidates::touching_on_way(PairKind kind, const PieceMotion& piece,
-                                                 std::span<const Stencil> pairs, double& t) {
+/// Those of the pairs with a vertex in moved_ and none in changed_ that touch.
+void Candidates::add_touching(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs,
+                              Touching& touching) const {
   const VertexWays ways{piece.start, piece.all, piece.centre, piece.slack};
-  const std::size_t blocks = block_count(pairs.size(), k_block);
-  std::vector<std::vector<Stencil>> touching(blocks);
-  earliest_.assign(blocks, 1.0);
   parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    double first = 1;
     for (std::size_t p = begin; p < end; ++p) {
       char moved = 0, changed = 0;
       for (const int v : pairs[p].v) moved |= moved_[at(v)], changed |= changed_[at(v)];
@@ -61,18 +56,9 @@ std::vector<Stencil> Candidates::touching_on_way(PairKind kind, const PieceMotio
       if (way.judge(way.between_centres()) != PairWay::Verdict::k_open ||
           way.judge(way.flat()) != PairWay::Verdict::k_open)
         continue;
-      const double touch = ccd_time(kind, gather(piece.start, pairs[p]), gather(piece.all, pairs[p]));
-      if (touch < 1) touching[begin / k_block].push_back(pairs[p]);
-      first = std::min(first, touch);
+      touching.take(kind, pairs[p], ccd_time(kind, gather(piece.start, pairs[p]), gather(piece.all, pairs[p])));
     }
-    earliest_[begin / k_block] = first;
   });
-  std::vector<Stencil> out;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    out.insert(out.end(), touching[b].begin(), touching[b].end());
-    t = std::min(t, earliest_[b]);
-  }
-  return out;
 }
 
 void Candidates::join_zones(const PieceMotion& piece) {
@@ -111,8 +97,9 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
   }
   if (any_self_) {
     lost_.clear();
-    for (std::size_t i = 0; i < carried_.size(); ++i) carried_[i] = cloth.x[i] + piece.carry[i];
-    if (!patches_.keep(carried_, false, lost_)) mark_lost();
+    std::vector<Vec3> carried(cloth.x.size());
+    for (std::size_t i = 0; i < carried.size(); ++i) carried[i] = cloth.x[i] + piece.carry[i];
+    if (!patches_.keep(carried, false, lost_)) mark_lost();
   }
   return renew(cloth, piece);
 }

@@ -35,11 +35,10 @@ bool Candidates::keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, co
 
 /// The pairs of changed_ vertices that pairs_ lacks. What was let pass stays out.
 void Candidates::add_missing(const ClothMotion& cloth, const PieceMotion& piece) {
-  finder_.find_changed(boxes_, any_self_, changed_, found_, patches_.flat());
-  filter(PairKind::k_vertex_face, cloth, piece, found_.vertex_face, nullptr);
-  runs_vertex_face_.add(found_.vertex_face, blocked_.vertex_face, pairs_.vertex_face);
-  filter(PairKind::k_edge_edge, cloth, piece, found_.edge_edge, nullptr);
-  runs_edge_edge_.add(found_.edge_edge, blocked_.edge_edge, pairs_.edge_edge);
+  ContactPairs found;
+  finder_.find_changed(boxes_, any_self_, changed_, found, patches_.flat(), sieve(cloth, piece, nullptr));
+  runs_vertex_face_.add(found.vertex_face, blocked_.vertex_face, pairs_.vertex_face);
+  runs_edge_edge_.add(found.edge_edge, blocked_.edge_edge, pairs_.edge_edge);
 }
 
 }  // namespace ft
