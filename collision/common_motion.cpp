@@ -134,7 +134,8 @@ void CommonMotion::stay_inside(const Problem& problem, const MotionBounds& bound
     for (const int i : together) {
       const Vec3& own = problem.common[at(i)];
       if (!bounds.radius.empty())
-        share = std::min(share, share_inside_ball(problem.x[at(i)] - bounds.centre[at(i)], own, bounds.radius[at(i)]));
+        share =
+            std::min(share, share_inside_ball(problem.x[at(i)] - bounds.centre_of(at(i)), own, bounds.radius[at(i)]));
     }
     for (const int i : together) problem.common[at(i)] *= share;
   }
@@ -158,8 +159,8 @@ void CommonMotion::join(const Problem& problem, const MotionBounds& bounds) {
     const double length = common[at(v)].norm(), wanted = problem.dx[at(v)].norm();
     if (length > wanted) least = std::min(least, wanted / length);
     if (!bounds.radius.empty())
-      least = std::min(least,
-                       share_inside_ball(problem.x[at(v)] - bounds.centre[at(v)], common[at(v)], bounds.radius[at(v)]));
+      least = std::min(
+          least, share_inside_ball(problem.x[at(v)] - bounds.centre_of(at(v)), common[at(v)], bounds.radius[at(v)]));
   }
   for (int v = 0; problem.movable(v); ++v) {
     common[at(v)] *= share[at(zones_.root(v))];

@@ -22,6 +22,9 @@ namespace ft {
 struct MotionBounds {
   std::span<const Vec3> centre;    ///< m
   std::span<const double> radius;  ///< m
+  std::span<const Vec3> from{};    ///< what centres are counted from [m]; empty: the origin
+
+  Vec3 centre_of(std::size_t i) const { return from.empty() ? centre[i] : (from[i] + centre[i]).eval(); }
 };
 
 /// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it.

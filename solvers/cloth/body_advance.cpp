@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "solvers/cloth/candidates.h"
 
@@ -47,7 +48,7 @@ struct BodyAdvance::Scratch {
   Candidates candidates;
   ImplicitStep step;
   PieceMotion piece;
-  std::vector<Vec3> end, centre, pins, pin_motion;  ///< end: of cloth and body
+  std::vector<Vec3> end, pins, pin_motion;  ///< end: of cloth and body
   std::vector<RoomRequest> requests;
 };
 
@@ -94,11 +95,8 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.pin_target = s.pins;
   step.pin_motion = s.pin_motion;
   step.push = in.push;
-  s.centre.resize(cloth.x.size());
-  for (std::size_t i = 0; i < s.centre.size(); ++i) s.centre[i] = cloth.x[i] + s.piece.centre[i];
-  step.centre = s.centre;
+  step.balls = {s.piece.centre, s.piece.slack, cloth.x};
   step.friction_share = in.friction_share;
-  step.slack = s.piece.slack;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations;
   if (shortened) step.settled_strain = k_shortened_settled;
@@ -112,8 +110,6 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
       s.requests.push_back({static_cast<int>(i), x[i], x[i] + move[i] + ahead, k_spare});
     }
     s.candidates.give_room(cloth, s.requests, s.piece);
-    for (const RoomRequest& r : s.requests)
-      s.centre[at(r.vertex)] = cloth.x[at(r.vertex)] + s.piece.centre[at(r.vertex)];
     report.seconds_candidates += seconds_since(clock);
   };
   step.pairs_suffice = [&](std::span<const Vec3> x) {
@@ -123,6 +119,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     return all;
   };
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
+  give_back(s.piece.carry);  // piece.all has it
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
   report.lost_weight += h / in.h * result.lost_weight;

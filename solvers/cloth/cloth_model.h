@@ -41,7 +41,7 @@ inline constexpr double k_very_near = 1.0 / 16;
 struct ClothModel {
   ClothSetup setup;
   std::vector<int> first_vertex;  ///< of each garment; one more at the end
-  std::vector<Vec3> start;        ///< placed at the start of the pre-roll [m]
+  std::vector<Vec3> start;        ///< placed at the start of the pre-roll [m]; a solver frees what is the rest shape
   std::vector<double> mass;       ///< lumped [kg]
   std::vector<Triangle> triangles;
   RestEdges rest_edges;

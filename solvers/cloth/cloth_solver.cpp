@@ -46,6 +46,7 @@ class ClothSolver final : public Solver {
     mark_tangled(*model_, own_crossings(*model_, crossings_within(model_->start, model_->triangles)),
                  tangled_at_start_);
     if (!any_tangled(tangled_at_start_)) give_back(tangled_at_start_);
+    if (model_->start == model_->contact.rest) give_back(model_->start);
   }
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
@@ -107,7 +108,7 @@ State ClothSolver::initial_state() const {
   state.frame = setup.first_frame - setup.preroll_frames;
   state.time = -setup.preroll_frames / setup.fps;
   ClothMotion m;
-  m.x = model_->start;
+  m.x = model_->start.empty() ? model_->contact.rest : model_->start;
   m.v.assign(m.x.size(), Vec3::Zero());
   m.released.assign(m.x.size(), -1.0);
   m.tangled = tangled_at_start_;

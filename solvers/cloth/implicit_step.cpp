@@ -93,6 +93,7 @@ struct ImplicitStep::Scratch {
 
   void forget_solve() {
     contact.reset();
+    system.give_back();
     give_back(gradient, direction, cut, trial, held, y);
   }
 };
@@ -136,10 +137,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       if (!in.push.empty()) s.y[i] += bh * bh * in.push[i];
     }
   });
-  s.trial.assign(all.begin(), all.end());
   s.gradient.resize(n);
   s.direction.resize(n);
-  s.cut.resize(n);
 
   s.pins.clear();
   for (std::size_t p = 0; p < model_.pins.size(); ++p) {
@@ -214,7 +213,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     contact.add_gradient(all, s.gradient);
     contact.add_terms(all, terms);
     s.system.add_pair_terms(terms);
-    give_back(terms);
+    give_back(terms, s.trial, s.cut);  // not for the linear solve
     for (Vec3& g : s.gradient) g = -g;
     const double before = of_cloth + contact.value(all);
     result.seconds_assembly += watch.lap();
@@ -229,7 +228,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     find_direction(model_.unused);
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
     const auto missing_of = [&](std::size_t i) {
-      return std::max(0.0, (all[i] + s.direction[i] - in.centre[i]).norm() - in.slack[i]);
+      return std::max(0.0, (all[i] + s.direction[i] - in.balls.centre_of(i)).norm() - in.balls.radius[i]);
     };
     const double most_missing = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
       double most = 0;
@@ -251,10 +250,11 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       if (!complete) contact.extend(all);
       return complete;
     };
+    s.trial.assign(all.begin(), all.end());
+    s.cut.resize(n);
     const auto truncate = [&] {
-      s.truncation.truncate(contact, all, {in.centre, in.slack},
-                            in.pairs_suffice ? pairs_suffice : StepTruncation::PairsSuffice(), s.direction, s.cut,
-                            s.trial);
+      s.truncation.truncate(contact, all, in.balls, in.pairs_suffice ? pairs_suffice : StepTruncation::PairsSuffice(),
+                            s.direction, s.cut, s.trial);
     };
     truncate();
     s.held.assign(model_.unused.begin(), model_.unused.end());

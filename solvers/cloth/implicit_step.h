@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "baker/core/wrench.h"
+#include "collision/common_motion.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/integrator.h"
 #include "solvers/linear/linear_system.h"
@@ -23,8 +24,7 @@ struct StepInput {
   std::span<const Vec3> all_start;      ///< cloth and body at the start: slip is measured from here
   std::span<const Vec3> pin_target;     ///< per pin, at the end of the step
   std::span<const Vec3> pin_motion;     ///< per pin: how far its target moves in the step [m]
-  std::span<const Vec3> centre;         ///< of the ball that each cloth vertex has to stay in; it starts inside
-  std::span<const double> slack;        ///< its radius [m]
+  MotionBounds balls;                   ///< what each cloth vertex has to stay in; it starts inside
   std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
   double friction_share = 1;            ///< of all friction [1]
   const ContactPairs* pairs = nullptr;  ///< complete within the slack, but for what pairs_suffice adds

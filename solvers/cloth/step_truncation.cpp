@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/truncate_dat.h"
 
@@ -71,7 +72,7 @@ void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> a
   length_.resize(n);
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      share_[i] = share_inside_ball(all[i] - balls.centre[i], direction[i], balls.radius[i]);
+      share_[i] = share_inside_ball(all[i] - balls.centre_of(i), direction[i], balls.radius[i]);
   });
   model_.clumps.take_least(share_);
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
@@ -94,6 +95,7 @@ void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> a
       }
     });
   } while (pairs_suffice && !pairs_suffice(trial.first(n)));
+  give_back(share_, length_, near_.vertex_face, near_.edge_edge);
 }
 
 }  // namespace ft

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "baker/core/check.h"
+#include "baker/core/give_back.h"
 #include "solvers/energies/block_scatter.h"
 #include "solvers/energies/hinge_math.h"
 
@@ -111,9 +112,7 @@ Bending::Bending(const ClothTopology& topology) {
   for (std::size_t s = 0; s < neighbours.size(); ++s)  // unused couplings look at themselves, with no weight
     std::replace(neighbours[s].begin(), neighbours[s].end(), -1, static_cast<int>(s));
   neighbours_ = group_indices<k_couplings - 1>(schedule_, [&](std::size_t slot) { return neighbours[slot]; });
-  rho_.assign(groups_.size() * k_lanes, 0.0);
-  moment_ = rho_;
-  motion_.assign(rho_.size(), 0.0f);
+  motion_.assign(groups_.size() * k_lanes, 0.0f);
   root_.assign(damping_time_.size(), 0.0);
 }
 
@@ -135,7 +134,7 @@ void Bending::work_out(std::span<const Vec3> x, Bends& bends) const {
   const Hash128 of = hash_bytes(std::as_bytes(x));
   if (bends.of == of && !bends.phi.empty()) return;
   bends.of = of;
-  bends.phi.resize(rho_.size());
+  bends.phi.resize(motion_.size());
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     Vertices v;
     HingeEdges h;
@@ -160,8 +159,8 @@ void Bending::begin_step(const StepContext& context) {
   if (history) work_out(context.x_tm1, start_);  // the start of the last step is mostly where this one came from
   work_out(context.x_t0, last_);                 // and its end where this one starts
   start_.of = last_.of;
-  start_.phi.resize(rho_.size());
-  parallel_for(rho_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
+  start_.phi.resize(motion_.size());
+  parallel_for(motion_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const double before = start_.phi[s];
       start_.phi[s] = last_.phi[s];
@@ -175,6 +174,8 @@ void Bending::measure(std::span<const Vec3> x) const {
   if (measured_ && last_.of == hash_bytes(std::as_bytes(x))) return;
   measured_ = true;
   work_out(x, last_);
+  rho_.resize(motion_.size());
+  moment_.resize(motion_.size());
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = i * k_lanes;
@@ -265,6 +266,8 @@ void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient,
       add_group_hessian(i, shape, hessian);
     }
   });
+  measured_ = false;  // the next question is about another place
+  give_back(rho_, moment_);
 }
 
 void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const {

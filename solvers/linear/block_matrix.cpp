@@ -20,9 +20,13 @@ int BlockPattern::find(int row, int col) const {
   return it != end && *it == col ? static_cast<int>(it - column.begin()) : -1;
 }
 
-void BlockMatrix::reset(const BlockPattern& p) {
+void BlockMatrix::make_room(const BlockPattern& p) {
   pattern = &p;
   blocks.resize(p.block_count() + 1);
+}
+
+void BlockMatrix::reset(const BlockPattern& p) {
+  make_room(p);
   parallel_for(blocks.size(), k_block,
                [&](std::size_t begin, std::size_t end) { std::fill_n(&blocks[begin], end - begin, Mat3f::Zero()); });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 
@@ -31,16 +32,15 @@ SymmetricBlock inverse_of(const Mat3f& block) {
 
 }  // namespace
 
-void Level::build() {
+void Level::make_room() {
+  if (pattern == &own_pattern) matrix.make_room(own_pattern);
   const std::size_t n = at(size());
-  matrix.reset(*pattern);
   inverse.resize(n);
-  for (auto* v : {&x, &r, &b}) v->assign(n, Vec4f::Zero());
-  if (pattern != &own_pattern) return;
-  probe.assign(n, Vec4f::Zero());
-  for (std::size_t i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c)
-      probe[i][c] = static_cast<float>(2 * random_uniform({.element = i}, static_cast<std::uint64_t>(c)) - 1);
+  for (auto* v : {&x, &r, &b}) v->resize(n);
+}
+
+void Level::give_back() {
+  ft::give_back(inverse, x, r, b);
 }
 
 bool link_levels(Level& fine, Level& coarse, std::vector<Vec3>& rest) {
@@ -54,7 +54,10 @@ bool link_levels(Level& fine, Level& coarse, std::vector<Vec3>& rest) {
   rest.resize(at(p.coarse_count()));
   coarse.own_pattern = fine.plan.build(*fine.pattern, p);
   coarse.pattern = &coarse.own_pattern;
-  coarse.build();
+  coarse.probe.assign(at(coarse.size()), Vec4f::Zero());
+  for (std::size_t i = 0; i < coarse.probe.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      coarse.probe[i][c] = static_cast<float>(2 * random_uniform({.element = i}, static_cast<std::uint64_t>(c)) - 1);
   return true;
 }
 

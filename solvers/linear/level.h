@@ -35,20 +35,25 @@ struct SymmetricBlock {
 struct Level {
   const BlockPattern* pattern = nullptr;
   BlockPattern own_pattern;  ///< of coarse levels
-  BlockMatrix matrix;
-  ExtraRows extra;                      ///< of the finest: what contacts couple besides
-  std::vector<SymmetricBlock> inverse;  ///< of the diagonal blocks; zero for rows that are held
-  float damping = 0.45f;                ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
-  std::vector<Vec4f> x, r, b;
+  float damping = 0.45f;     ///< of the smoother: below 2 / largest eigenvalue of D^-1 A
   std::vector<Vec4f> probe;  ///< where estimate_damping() starts; not of the finest, whose damping is given
+
+  BlockMatrix matrix;
+  ExtraRows extra;  ///< of the finest: what contacts couple besides
+
+  // Of a solve.
+  std::vector<SymmetricBlock> inverse;  ///< of the diagonal blocks; zero for rows that are held
+  std::vector<Vec4f> x, r, b;
 
   // Towards the next level (absent on the coarsest).
   Interpolation interpolation;
   GalerkinPlan plan;
 
   int size() const { return pattern->vertex_count(); }
-  /// Places for everything above, once the pattern is known.
-  void build();
+  /// For the vectors of a solve, and of coarse levels the matrix; what is in them is not defined.
+  void make_room();
+  /// Frees the vectors.
+  void give_back();
   /// Row times v, with what is extra.
   Vec4f product(std::size_t row, std::span<const Vec4f> v) const;
 };

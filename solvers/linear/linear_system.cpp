@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "solvers/linear/extra_rows.h"
 #include "solvers/linear/level.h"
@@ -61,7 +62,6 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
   impl_->settings = settings;
   auto first = std::make_unique<Level>();
   first->pattern = &pattern;
-  first->build();
   impl_->levels.push_back(std::move(first));
   if (settings.preconditioner != LinearSettings::Preconditioner::k_multigrid) return;
   std::vector<Vec3> rest(rest_positions.begin(), rest_positions.end());
@@ -73,6 +73,11 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
 }
 
 LinearSystem::~LinearSystem() = default;
+
+void LinearSystem::give_back() {
+  for (const auto& level : impl_->levels) ft::give_back(level->matrix.blocks, level->extra);
+  ft::give_back(impl_->added);
+}
 
 BlockMatrix& LinearSystem::begin() {
   Level& level = impl_->fine();
@@ -153,7 +158,7 @@ void LinearSystem::Impl::solve_coarsest(Level& level) {
   Eigen::VectorXd b(3 * level.size());
   for (int i = 0; i < level.size(); ++i) b.segment<3>(3 * i) = level.b[at(i)].head<3>().cast<double>();
   coarse_factor.solveInPlace(b);
-  for (int i = 0; i < level.size(); ++i) level.x[at(i)].head<3>() = b.segment<3>(3 * i).cast<float>();
+  for (int i = 0; i < level.size(); ++i) level.x[at(i)] << b.segment<3>(3 * i).cast<float>(), 0;
 }
 
 /// A V(1,1) cycle from this level on, of the finest V(0,1) unless symmetric, but for its last smoothing step. What the
@@ -271,6 +276,7 @@ void LinearSystem::Impl::advance(std::span<Vec3> solution, float beta) {
 
 LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> out) {
   Impl& s = *impl_;
+  for (const auto& level : s.levels) level->make_room();
   s.hold(fixed);
   s.refresh_hierarchy();
   const bool sound = s.start(right_side);
@@ -302,6 +308,8 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   }
   report.residual = best_residual;
   if (!is_best) std::copy(s.best.begin(), s.best.end(), out.begin());
+  for (const auto& level : s.levels) level->give_back();
+  ft::give_back(s.held, s.direction, s.product, s.best);
   return report;
 }
 

@@ -42,6 +42,8 @@ class LinearSystem {
   /// Rows of fixed[i] != 0 are held at zero, and leave the matrix for good: what is solved before it is filled anew may
   /// hold more of them, but not less.
   LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> solution);
+  /// Frees the matrices until the next begin(). What else a solve needs is there only while it runs.
+  void give_back();
 
  private:
   struct Impl;
