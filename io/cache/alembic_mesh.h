@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/give_back.h"
 #include "io/cache/alembic_archive.h"
 #include "io/cache/alembic_transform.h"
 #include "io/cache/cache.h"
@@ -29,6 +30,8 @@ class MeshTree {
 
   /// Data of all that never changes; stands in the file from offset k_header_size on.
   const Bytes& static_bytes() const { return static_bytes_; }
+  /// Frees them, once they are in the file.
+  void forget_static_bytes() { give_back(static_bytes_); }
   /// The archive after the first count frames.
   Archive archive(const FrameSamples& frames, std::uint32_t count) const;
   /// More than any tail of at most capacity frames takes [bytes], in whole sectors.

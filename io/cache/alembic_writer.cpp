@@ -85,6 +85,7 @@ class AlembicWriter final : public CacheWriter {
     auto file = OutputFile::open_existing(path_);
     if (!file) return file.error();
     file_.push_back(std::move(*file));
+    tree_.forget_static_bytes();
     return {};
   }
 
