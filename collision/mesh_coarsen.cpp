@@ -52,6 +52,7 @@ class Coarsener : public CollapsingMesh {
   std::vector<int> group_;
   std::vector<double> deviation_;  ///< sum of the distances that CoarsenInput::deviation limits [m]
   std::vector<double> size_;       ///< mean length of the edges around a vertex at the start [m]
+  std::vector<char> fresh_;        ///< per vertex: what is around it is not as it was before the last round
 };
 
 Coarsener::Coarsener(const CoarsenInput& in)
@@ -59,7 +60,8 @@ Coarsener::Coarsener(const CoarsenInput& in)
       in_(in),
       group_(in.group.begin(), in.group.end()),
       deviation_(in.rest.size(), 0.0),
-      size_(in.rest.size(), 0.0) {
+      size_(in.rest.size(), 0.0),
+      fresh_(in.rest.size(), 1) {
   CHECK(!uvs_.empty() || !in.cut || triangles_.empty());
   CHECK(group_.empty() || group_.size() == in.rest.size());
   group_.resize(in.rest.size(), 0);
@@ -161,7 +163,8 @@ double Coarsener::deviation(int b, int a) const {
   return deviation_[at(b)] + nearest;
 }
 
-/// Collapses edges that do not touch each other; false when there was none to collapse.
+/// Collapses edges that do not touch each other; false when there was none to collapse. An edge that could not be
+/// collapsed still cannot where nothing around its ends has changed.
 bool Coarsener::round() {
   std::vector<Triangle> alive;
   for (const Triangle& t : triangles_)
@@ -169,7 +172,7 @@ bool Coarsener::round() {
   std::vector<Collapse> collapses;
   for (const Edge& e : unique_edges(alive)) {
     const double length = (in_.rest[at(e[0])] - in_.rest[at(e[1])]).norm() / wanted(e[0], e[1]);
-    if (length < k_short) collapses.push_back({length, e[0], e[1]});
+    if (length < k_short && (fresh_[at(e[0])] | fresh_[at(e[1])]) != 0) collapses.push_back({length, e[0], e[1]});
   }
   std::sort(collapses.begin(), collapses.end());
   std::vector<char> touched(in_.rest.size(), 0);
@@ -185,6 +188,7 @@ bool Coarsener::round() {
     draw(from, to);
     any = true;
   }
+  fresh_.swap(touched);
   return any;
 }
 
