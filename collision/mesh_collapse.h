@@ -18,6 +18,11 @@ struct CoarsenedMesh {
   struct Place {
     std::array<int, 3> vertex{};
     std::array<double, 3> weight{1, 0, 0};
+
+    Vec3 of(std::span<const Vec3> coarser) const {
+      return weight[0] * coarser[at(vertex[0])] + weight[1] * coarser[at(vertex[1])] +
+             weight[2] * coarser[at(vertex[2])];
+    }
   };
   std::vector<int> kept;                 ///< finer vertex of each coarser one, ascending
   std::vector<Triangle> triangles;       ///< coarser numbering

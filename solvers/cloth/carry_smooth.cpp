@@ -8,9 +8,12 @@
 namespace ft {
 namespace {
 
-/// How strongly, and within what share of a typical edge others come along [1]. Tuned on the scene tiny_edges: with 1
-/// it holds its bars for stiffnesses from 0.5 to 16, with 0.5 for all but one, with 0.25 for half of them.
+/// How strongly, and within what share of a typical edge others come along [1]. Sheets with spots of short edges of
+/// many sizes (dense_spots) tell stiffnesses from 2 to 16 apart no better than chance does, and a reach from 0.5 to 2.
 constexpr double k_stiffness = 4, k_reach = 1;
+/// What has a short edge is linked along edges up to so many times as long: the spokes of a spot whose rim is short
+/// [1].
+constexpr double k_linked = 4;
 /// Edges that are shorter than this share of the typical one are taken to be as long [1].
 constexpr double k_shortest = 1.0 / 64;
 /// Conjugate gradients stop at this share of the residual at the start, after about 17 iterations there [1].
@@ -28,22 +31,30 @@ double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
 CarrySmooth::CarrySmooth(std::span<const Vec3> rest, const RestEdges& edges, std::span<const double> typical_edge,
                          double short_edge, const VertexClumps& clumps) {
   CHECK(rest.size() == typical_edge.size());
-  const auto is_short = [&](std::size_t k) {
-    return edges.lengths[k] <= short_edge * typical_edge[at(edges.edges[k][0])];
+  const auto up_to = [&](std::size_t k, double share) {
+    return edges.lengths[k] <= share * typical_edge[at(edges.edges[k][0])];
   };
+  const auto add_ends_of = [&](const std::vector<std::size_t>& added) {
+    for (const std::size_t k : added) vertices_.insert(vertices_.end(), edges.edges[k].begin(), edges.edges[k].end());
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  };
+  std::vector<std::size_t> short_ones, linked;
   for (std::size_t k = 0; k < edges.edges.size(); ++k)
-    if (is_short(k)) vertices_.insert(vertices_.end(), edges.edges[k].begin(), edges.edges[k].end());
-  if (vertices_.empty()) return;
-  std::sort(vertices_.begin(), vertices_.end());
-  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    if (up_to(k, short_edge)) short_ones.push_back(k);
+  if (short_ones.empty()) return;
+  add_ends_of(short_ones);
+  for (std::size_t k = 0; k < edges.edges.size(); ++k)
+    if (up_to(k, k_linked * short_edge) && (number_of(edges.edges[k][0]) >= 0 || number_of(edges.edges[k][1]) >= 0))
+      linked.push_back(k);
+  add_ends_of(linked);
   for (const int v : vertices_) {
     place_.push_back(clumps.of(v) < 0 ? rest[at(v)] : clumps.mean(clumps.of(v), rest));
     reach_.push_back(k_reach * typical_edge[at(v)]);
   }
   diagonal_.assign(vertices_.size(), 1.0);
   std::vector<Edge> directed;
-  for (std::size_t k = 0; k < edges.edges.size(); ++k) {
-    if (!is_short(k)) continue;
+  for (const std::size_t k : linked) {
     const double share = std::max(edges.lengths[k] / typical_edge[at(edges.edges[k][0])], k_shortest);
     const Link link{number_of(edges.edges[k][0]), number_of(edges.edges[k][1]), k_stiffness / (share * share)};
     diagonal_[at(link.a)] += link.weight;
@@ -61,7 +72,7 @@ CarrySmooth::CarrySmooth(std::span<const Vec3> rest, const RestEdges& edges, std
   for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
 }
 
-/// Among vertices_; -1: it has no short edges.
+/// Among vertices_; -1: it is not linked.
 int CarrySmooth::number_of(int vertex) const {
   const auto found = std::lower_bound(vertices_.begin(), vertices_.end(), vertex);
   return found == vertices_.end() || *found != vertex ? -1 : static_cast<int>(found - vertices_.begin());

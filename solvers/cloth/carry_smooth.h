@@ -19,8 +19,8 @@ namespace ft {
 class CarrySmooth {
  public:
   CarrySmooth() = default;
-  /// Edges up to `short_edge` of the typical one, which has one entry per vertex [m], are short. Vertices of a clump
-  /// are at one place for this.
+  /// Edges up to `short_edge` of the typical one, which has one entry per vertex [m], are short; what has one is linked
+  /// along others that are not long. Vertices of a clump are at one place for this.
   CarrySmooth(std::span<const Vec3> rest, const RestEdges& edges, std::span<const double> typical_edge,
               double short_edge, const VertexClumps& clumps);
 
@@ -37,8 +37,8 @@ class CarrySmooth {
     std::vector<char> seen;
     std::vector<int> reached;
   };
-  /// Who comes along, and by how much, when a vertex is moved: what is near it along short edges, its clump all the
-  /// way. Empty when it has no short edges.
+  /// Who comes along, and by how much, when a vertex is moved: what is near it along links, its clump all the way.
+  /// Empty when it has none.
   std::span<const Share> along_with(int vertex, Walk& walk) const;
 
  private:
@@ -49,12 +49,12 @@ class CarrySmooth {
   int number_of(int vertex) const;
   void multiply(std::span<const Vec3> x, std::span<Vec3> out) const;
 
-  std::vector<int> vertices_;  ///< with short edges, ascending
+  std::vector<int> vertices_;  ///< that are linked, ascending
   std::vector<Vec3> place_;    ///< of each at rest, of its clump where it is in one [m]
   std::vector<double> reach_;  ///< of each: what is nearer comes along [m]
   std::vector<Link> links_;
   std::vector<double> diagonal_;
-  std::vector<int> start_, next_;  ///< short edges of each: from start_ on into next_
+  std::vector<int> start_, next_;  ///< links of each: from start_ on into next_
 };
 
 }  // namespace ft

@@ -31,11 +31,7 @@ class CoarseSolver final : public Solver {
     std::vector<Vec3> coarse(garment.kept.size());
     inner_->system_positions(state, system, coarse);
     parallel_for(out.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const CoarsenedMesh::Place& place = garment.places[i];
-        out[i] = place.weight[0] * coarse[at(place.vertex[0])] + place.weight[1] * coarse[at(place.vertex[1])] +
-                 place.weight[2] * coarse[at(place.vertex[2])];
-      }
+      for (std::size_t i = begin; i < end; ++i) out[i] = garment.places[i].of(coarse);
     });
   }
   std::span<const Triangle> collider_triangles() const override { return inner_->collider_triangles(); }

@@ -4,6 +4,7 @@
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
+#include "baker/core/rigid.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/sewing.h"
 
@@ -14,17 +15,23 @@ constexpr std::size_t k_block = 4096;
 /// What is drawn in lies so many times nearer. Much more is lost in the single precision of a cache.
 constexpr double k_nearer = 1.0 / 8;
 
-Vec3 point_of(const CoarsenedMesh::Place& place, std::span<const Vec3> x) {
-  return place.weight[0] * x[at(place.vertex[0])] + place.weight[1] * x[at(place.vertex[1])] +
-         place.weight[2] * x[at(place.vertex[2])];
-}
-
 Mat3 frame_of(const std::array<int, 3>& t, std::span<const Vec3> x) {
   return triangle_frame(x[at(t[0])], x[at(t[1])], x[at(t[2])]);
 }
 
+std::vector<std::vector<Riders::Spoke>> spokes_of(const Riders& riders, const Mesh& moves) {
+  std::vector<int> group_at(moves.positions.size(), -1);
+  for (std::size_t g = 0; g < riders.into.size(); ++g) group_at[at(riders.into[g])] = static_cast<int>(g);
+  std::vector<std::vector<Riders::Spoke>> out(riders.into.size());
+  for (const Edge& e : unique_edges(triangulate(moves)))
+    for (const auto& [from, to] : {std::pair(e[0], e[1]), std::pair(e[1], e[0])})
+      if (const int g = group_at[at(from)]; g >= 0)
+        out[at(g)].push_back({to, (moves.positions[at(to)] - moves.positions[at(from)]).normalized()});
+  return out;
+}
+
 Riders riders_of(const ClothGarment& given, const CoarseGarment& coarse) {
-  Riders out{given.name, given.mesh, coarse.kept, coarse.places, {}, {}, {}, {}, {}};
+  Riders out{given.name, given.mesh, coarse.kept, coarse.places, {}, {}, {}, {}, {}, {}};
   const std::vector<Vec3>& x = given.mesh.positions;
   const std::vector<Vec3>& moved = coarse.garment.mesh.positions;
   std::vector<int> group_at(moved.size(), -1);
@@ -38,12 +45,17 @@ Riders riders_of(const ClothGarment& given, const CoarseGarment& coarse) {
     if (group < 0) {
       group = static_cast<int>(out.into.size());
       out.into.push_back(into);
-      out.turns_with.push_back(coarse.places[v].vertex);
     }
     out.group.back() = group;
     const CoarsenedMesh::Place& place = coarse.places[v];
-    out.offset.back() = frame_of(place.vertex, moved).transpose() * (x[v] - point_of(place, moved));
-    out.around.back() = frame_of(out.turns_with[at(group)], moved).transpose() * (x[v] - moved[at(into)]);
+    out.offset.back() = frame_of(place.vertex, moved).transpose() * (x[v] - place.of(moved));
+    out.around.back() = x[v] - moved[at(into)];
+  }
+  out.spokes = spokes_of(out, coarse.garment.mesh);
+  out.alone.assign(out.group_count(), 1);
+  for (const Edge& e : unique_edges(triangulate(given.mesh))) {
+    const int a = out.group[at(e[0])], b = out.group[at(e[1])];
+    if (a >= 0 && b >= 0 && a != b) out.alone[at(a)] = out.alone[at(b)] = 0;
   }
   return out;
 }
@@ -72,17 +84,27 @@ RestEdges rest_of(const ClothGarment& garment) {
 
 }  // namespace
 
+Mat3 Riders::turn_of(std::size_t in_group, std::span<const Vec3> moved) const {
+  Mat3 sum = Mat3::Zero();
+  for (const Spoke& spoke : spokes[in_group])
+    sum += (moved[at(spoke.end)] - moved[at(into[in_group])]).normalized() * spoke.direction.transpose();
+  return nearest_rotation(sum);
+}
+
 void Riders::place(std::span<const Vec3> moved, std::span<const double> drawn_in, std::span<Vec3> out) const {
   CHECK(moved.size() == kept.size() && drawn_in.size() == group_count() && out.size() == places.size());
+  const auto turns = [&](std::size_t g) { return alone[g] != 0 || drawn_in[g] > 0; };
+  std::vector<Mat3> turn(group_count());
+  for (std::size_t g = 0; g < turn.size(); ++g)
+    if (turns(g)) turn[g] = turn_of(g, moved);
   parallel_for(out.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (group[v] < 0) {
         out[v] = moved[at(places[v].vertex[0])];
-      } else if (drawn_in[at(group[v])] > 0) {
-        const auto g = at(group[v]);
-        out[v] = moved[at(into[g])] + k_nearer * (frame_of(turns_with[g], moved) * around[v]);
+      } else if (const auto g = at(group[v]); turns(g)) {
+        out[v] = moved[at(into[g])] + (drawn_in[g] > 0 ? k_nearer : 1) * (turn[g] * around[v]);
       } else {
-        out[v] = point_of(places[v], moved) + frame_of(places[v].vertex, moved) * offset[v];
+        out[v] = places[v].of(moved) + frame_of(places[v].vertex, moved) * offset[v];
       }
     }
   });

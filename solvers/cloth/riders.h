@@ -1,9 +1,10 @@
 // Vertices that ride on a garment with fewer vertices: where they are, and what they cross. For riding_solver.cpp.
-//
+// All that were drawn into one vertex are a group.
+//     x = that vertex + what was between, turned as the edges there have turned
+// where no edge leads from the group to another: a spot of tiny triangles is carried as it is, and does not strain.
 //     x = the point of a triangle that was nearest at rest + what was left, in the triangle's frame
-//
-// so that at rest it is exactly the given vertex, and in flat cloth a point of it. All that were drawn into one vertex
-// are a group; what is drawn in lies eight times nearer around that vertex, and turns as one.
+// elsewhere. At rest both are exactly the given vertex. What is drawn in lies eight times nearer to its group's vertex,
+// as in the first.
 #pragma once
 
 #include <span>
@@ -19,20 +20,28 @@
 namespace ft {
 
 struct Riders {
+  /// An edge of what moves, at the vertex that a group was drawn into.
+  struct Spoke {
+    int end = 0;
+    Vec3 direction = Vec3::Zero();  ///< at rest [1]
+  };
   std::string name;
   Mesh mesh;              ///< as given
   std::vector<int> kept;  ///< its vertex of each that moves
   std::vector<CoarsenedMesh::Place> places;
-  std::vector<Vec3> offset;  ///< in the frame of the place's triangle [m]; unused where the vertex moves
-  std::vector<int> group;    ///< of each vertex, from 0; -1: it moves
-  std::vector<int> into;     ///< of each group: the moving vertex
-  std::vector<std::array<int, 3>> turns_with;  ///< of each group: the triangle that says how it turns
-  std::vector<Vec3> around;  ///< per vertex: from the one it was drawn into, in the frame of that triangle [m]
+  std::vector<Vec3> offset;                ///< in the frame of the place's triangle [m]; unused where the vertex moves
+  std::vector<int> group;                  ///< of each vertex, from 0; -1: it moves
+  std::vector<int> into;                   ///< of each group: the moving vertex
+  std::vector<std::vector<Spoke>> spokes;  ///< of each group
+  std::vector<char> alone;                 ///< of each group: no edge leads to another
+  std::vector<Vec3> around;                ///< per vertex at rest: from the one it was drawn into [m]
   std::size_t first_group = 0;
 
   std::size_t group_count() const { return into.size(); }
   /// Positions of all from those of what moves; drawn_in: per group, 0 or 1.
   void place(std::span<const Vec3> moved, std::span<const double> drawn_in, std::span<Vec3> out) const;
+  /// From rest to where a group's spokes are now, by least squares.
+  Mat3 turn_of(std::size_t in_group, std::span<const Vec3> moved) const;
 };
 
 struct RidingCrossings {

@@ -201,23 +201,31 @@ TEST(RidingSolver, A_preview_of_such_a_garment_is_one_of_what_moves) {
   EXPECT_EQ(positions(**solver, state, 0).size(), setup.garments[0].mesh.positions.size());
 }
 
-TEST(RidingSolver, What_is_drawn_in_lies_nearer_around_its_vertex_as_it_did_at_rest) {
-  const ClothGarment given = garment("g", 0, true);
-  const auto moves = without_short_edges(given);
-  ASSERT_TRUE(moves);
+/// A garment, what of it moves, and what rides.
+struct SpottedSheet {
+  ClothGarment given = garment("g", 0, true);
+  CoarseGarment moves = without_short_edges(given).value();
   AllRiders riders;
-  riders.add(given, &*moves);
-  riders.finish();
+
+  SpottedSheet() {
+    riders.add(given, &moves);
+    riders.finish();
+  }
+};
+
+TEST(RidingSolver, What_is_drawn_in_lies_nearer_around_its_vertex_as_it_did_at_rest) {
+  const SpottedSheet sheet;
+  const AllRiders& riders = sheet.riders;
   const Riders& own = riders.garment(0);
   std::vector<double> drawn_in(own.group_count(), 0.0);
   drawn_in[1] = 1;
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  std::vector<Vec3> moved, x(given.mesh.positions.size());
-  for (const Vec3& p : moves->garment.mesh.positions) moved.push_back(turn * p);
+  std::vector<Vec3> moved, x(sheet.given.mesh.positions.size());
+  for (const Vec3& p : sheet.moves.garment.mesh.positions) moved.push_back(turn * p);
   own.place(moved, drawn_in, x);
   int nearer = 0;
   for (std::size_t v = 0; v < x.size(); ++v) {
-    const Vec3 centre = moved[at(moves->into[v])], given_there = turn * given.mesh.positions[v];
+    const Vec3 centre = moved[at(sheet.moves.into[v])], given_there = turn * sheet.given.mesh.positions[v];
     const double share = own.group[v] == 1 ? 1.0 / 8 : 1;
     EXPECT_LT((x[v] - (centre + share * (given_there - centre))).norm(), 1e-15);
     nearer += own.group[v] == 1;
@@ -225,14 +233,57 @@ TEST(RidingSolver, What_is_drawn_in_lies_nearer_around_its_vertex_as_it_did_at_r
   EXPECT_GE(nearer, 4);
 }
 
-TEST(RidingSolver, Of_what_rides_crossings_are_found_and_only_of_that) {
-  const ClothGarment given = garment("g", 0, true);
+TEST(RidingSolver, A_spot_turns_with_the_cloth_around_it_and_does_not_strain_with_it) {
+  const SpottedSheet sheet;
+  const Riders& own = sheet.riders.garment(0);
+  const std::vector<double> drawn_in(own.group_count(), 0.0);
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  std::vector<Vec3> moved, x(sheet.given.mesh.positions.size());
+  for (const Vec3& p : sheet.moves.garment.mesh.positions)
+    moved.push_back(turn * Vec3(1.3 * p.x(), p.y(), 1.3 * p.z()));
+  own.place(moved, drawn_in, x);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const auto centre = at(sheet.moves.into[v]);
+    const Vec3 as_given = sheet.given.mesh.positions[v] - sheet.moves.garment.mesh.positions[centre];
+    EXPECT_LT((x[v] - moved[centre] - turn * as_given).norm(), 1e-15) << v;
+  }
+}
+
+TEST(RidingSolver, What_rides_beside_what_rides_elsewhere_stays_on_the_triangles) {
+  ClothGarment given;
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 40; ++i) {  // columns of a strip, 24 of which are close together
+    const double along = 0.02 * std::min(i, 8) + 1e-4 * std::clamp(i - 8, 0, 24) + 0.02 * std::max(i - 32, 0);
+    for (int j = 0; j < 3; ++j) points.emplace_back(along, 0, 0.02 * j);
+  }
+  for (int i = 0; i < 39; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const int a = 3 * i + j;
+      triangles.insert(triangles.end(), {{a, a + 1, a + 4}, {a, a + 4, a + 3}});
+    }
+  given.mesh = make_triangle_mesh("strip", std::move(points), triangles);
   const auto moves = without_short_edges(given);
   ASSERT_TRUE(moves);
   AllRiders riders;
   riders.add(given, &*moves);
   riders.finish();
-  std::vector<Vec3> x = given.mesh.positions;
+  const Riders& own = riders.garment(0);
+  EXPECT_GT(std::count(own.alone.begin(), own.alone.end(), 0), 3);
+  const Vec3 stretch(1.2, 1, 0.9);
+  std::vector<Vec3> moved, x(given.mesh.positions.size());
+  for (const Vec3& p : moves->garment.mesh.positions) moved.push_back(stretch.cwiseProduct(p));
+  own.place(moved, std::vector<double>(own.group_count(), 0.0), x);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (own.group[v] < 0 || own.alone[at(own.group[v])] != 0) continue;
+    EXPECT_LT((x[v] - stretch.cwiseProduct(given.mesh.positions[v])).norm(), 1e-15) << v;
+  }
+}
+
+TEST(RidingSolver, Of_what_rides_crossings_are_found_and_only_of_that) {
+  const SpottedSheet sheet;
+  const AllRiders& riders = sheet.riders;
+  std::vector<Vec3> x = sheet.given.mesh.positions;
   const std::vector<Vec3> needle = {{-0.15, 0.1, -0.15}, {-0.15, -0.1, -0.15}, {-0.15, -0.1, -0.151}};
   const std::vector<Triangle> one = {{0, 1, 2}};
   CheckedSurface body(one);

@@ -217,8 +217,12 @@ ClothSetup needles() {
   return setup_of({on_a_ball(make_sheet(0.4, 32, 0.16))}, body.build());
 }
 
+ClothSetup dense_spots(double ratio) {
+  return setup_of({on_a_ball(sheet_with_dense_spots(0.7, 0.205, std::sqrt(ratio), 10))}, swinging_ball(0.2));
+}
+
 ClothSetup tiny_triangles() {  // 32 times shorter, so 1000 times smaller
-  return setup_of({on_a_ball(sheet_with_dense_spots(0.7, 0.205, std::sqrt(32.0), 10))}, swinging_ball(0.2));
+  return dense_spots(32);
 }
 
 ClothSetup cut_edges() {
@@ -230,7 +234,7 @@ ClothSetup caps() {
 }
 
 ClothSetup tiny_edges() {
-  return setup_of({on_a_ball(sheet_with_dense_spots(0.7, 0.205, std::sqrt(1000.0), 10))}, swinging_ball(0.2));
+  return dense_spots(1000);
 }
 
 }  // namespace ft::torture

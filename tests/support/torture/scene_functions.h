@@ -25,6 +25,8 @@ ClothSetup ball_20();
 ClothSetup ball_40();
 ClothSetup stack();
 ClothSetup needles();
+/// A tenth of the triangles of a sheet on a swinging ball has edges so many times shorter than the others.
+ClothSetup dense_spots(double ratio);
 ClothSetup tiny_triangles();
 ClothSetup cut_edges();
 ClothSetup caps();
