@@ -38,6 +38,14 @@ std::vector<Triangle> triangulate(const Mesh& mesh) {
   return out;
 }
 
+std::span<const Triangle> as_triangles(const Mesh& mesh) {
+  if (mesh.face_vertices.size() != 3 * mesh.face_sizes.size() ||
+      std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](int size) { return size != 3; }))
+    return {};
+  static_assert(sizeof(Triangle) == 3 * sizeof(int) && alignof(Triangle) == alignof(int));
+  return {reinterpret_cast<const Triangle*>(mesh.face_vertices.data()), mesh.face_sizes.size()};
+}
+
 std::vector<Edge> unique_edges(std::span<const Triangle> triangles) {
   std::vector<Edge> edges;
   edges.reserve(triangles.size() * 3);

@@ -49,6 +49,9 @@ Mesh make_triangle_mesh(std::string name, std::vector<Vec3> positions, std::span
 /// order.
 std::vector<Triangle> triangulate(const Mesh& mesh);
 
+/// The same where there is nothing to split, without a copy; else none. The mesh has to stay.
+std::span<const Triangle> as_triangles(const Mesh& mesh);
+
 /// Unique edges, sorted.
 std::vector<Edge> unique_edges(std::span<const Triangle> triangles);
 

@@ -87,7 +87,7 @@ std::vector<HoldSpan> hold_spans(const ClothPin& pin, std::span<const Vec3> rest
 
 void attach(ClothModel& model) {
   const std::vector<double> length = seam_lengths(*model.topology);
-  const std::vector<double>& radius = model.contact.self_radius;
+  const auto radius = [&](int v) { return ContactModel::self_radius(model.contact.radius[at(v)]); };
   const AttachSettings settings;
   for (std::size_t g = 0; g < model.setup.garments.size(); ++g)
     for (const ClothPin& pin : model.setup.garments[g].pins) {
@@ -102,12 +102,12 @@ void attach(ClothModel& model) {
         double touching = 0;
         for (std::size_t c = 0; c < 3; ++c) {
           point.triangle[c] = model.first_vertex[at(pin.to)] + held[k].triangle[c];
-          touching += held[k].weight[c] * radius[at(point.triangle[c])];
+          touching += held[k].weight[c] * radius(point.triangle[c]);
         }
         point.weight = held[k].weight;
         point.length = held[k].distance;
         // Contact keeps two garments so far apart; what is near at rest within one it leaves there.
-        if (at(pin.to) != g) point.length = std::max(point.length, std::min(touching, radius[at(point.vertex)]));
+        if (at(pin.to) != g) point.length = std::max(point.length, std::min(touching, radius(point.vertex)));
         point.stiffness = weight * settings.stiffness * length[at(point.vertex)];
         point.max_pull = weight * settings.hold * length[at(point.vertex)];
         point.hold = holds[k];

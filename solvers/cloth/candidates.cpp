@@ -61,10 +61,11 @@ Candidates::Candidates(const ClothModel& model)
     : model_(model),
       finder_(model.vertex_count(), model.triangles, model.collider ? model.collider->vertex_count() : 0,
               shifted_triangles(model)),
-      patches_(model.contact.rest, model.triangles, k_patch_reach * largest(model.contact.self_radius)),
+      patches_(model.contact.rest, model.triangles,
+               k_patch_reach * ContactModel::self_radius(largest(model.contact.radius))),
       neighbours_(vertex_neighbours(at(model.vertex_count()), model.rest_edges.edges)) {
-  for (const double r : model.contact.radius) radius_ = std::max(radius_, r);
-  self_radius_ = largest(model.contact.self_radius);
+  radius_ = std::max(radius_, largest(model.contact.radius));
+  self_radius_ = ContactModel::self_radius(largest(model.contact.radius));
   finder_.set_patches(patches_.members());
   for (const double edge : model.typical_edge) most_spare_.push_back(k_slack_edges * edge);
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
@@ -88,7 +89,7 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
     if (v >= model_.vertex_count()) continue;
     if (part >= 0 && model_.may_pass(cloth.released[at(v)], part)) return false;
     if (part < 0 && !model_.self_collides[at(v)]) return false;
-    if (cloth.tangled[at(v)] > 0) (k < split ? tangled_a : tangled_b) = true;
+    if (cloth.tangled[at(v)] != 0) (k < split ? tangled_a : tangled_b) = true;
   }
   if (tangled_a && tangled_b) return false;
   const std::span<const int> v(stencil.v);

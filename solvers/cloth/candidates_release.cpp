@@ -54,7 +54,7 @@ int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece) {
 }
 
 int Candidates::release_beside(ClothMotion& cloth, const PieceMotion& piece) {
-  if (std::all_of(cloth.released.begin(), cloth.released.end(), [](double part) { return part < 0; })) return 0;
+  if (std::all_of(cloth.released.begin(), cloth.released.end(), [](int part) { return part < 0; })) return 0;
   join_zones(piece);
   const std::vector<int> through = pinched_through();
   std::vector<char> beside(through.size(), 0);  // per zone

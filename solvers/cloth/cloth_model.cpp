@@ -57,16 +57,21 @@ void concatenate(ClothModel& model) {
     triangle_count += garment.mesh.face_vertices.size() - 2 * garment.mesh.face_sizes.size();
   }
   const auto reserve = [](std::size_t count, auto&... lists) { (lists.reserve(count), ...); };
-  reserve(vertices, contact.rest, contact.radius, contact.self_radius, contact.friction, contact.self_friction,
-          contact.garment, model.self_collides);
-  reserve(triangle_count, model.triangles, uvs);
+  const bool several = model.setup.garments.size() > 1;
+  reserve(vertices, contact.radius, contact.garment, model.self_collides);
+  if (!several) model.triangles = as_triangles(model.setup.garments[0].mesh);
+  const bool own_triangles = model.triangles.empty();
+  reserve(several ? vertices : 0, model.own_rest);
+  reserve(own_triangles ? triangle_count : 0, model.own_triangles);
+  reserve(triangle_count, uvs);
   for (std::size_t g = 0; g < model.setup.garments.size(); ++g) {
     const ClothGarment& garment = model.setup.garments[g];
-    const int first = static_cast<int>(contact.rest.size());
+    const int first = static_cast<int>(contact.radius.size());
     const std::size_t count = garment.mesh.positions.size();
     model.first_vertex.push_back(first);
     pieces.push_back({first, static_cast<int>(count), garment.fabric, garment.pattern_scale, garment.maps});
-    contact.rest.insert(contact.rest.end(), garment.mesh.positions.begin(), garment.mesh.positions.end());
+    if (several)
+      model.own_rest.insert(model.own_rest.end(), garment.mesh.positions.begin(), garment.mesh.positions.end());
     const auto triangles = triangulate(garment.mesh);
     const auto own_uvs = corner_uvs(garment.mesh, triangles);
     all_have_uvs = all_have_uvs && !own_uvs.empty();
@@ -74,18 +79,17 @@ void concatenate(ClothModel& model) {
     if (own_uvs.empty()) uvs.resize(uvs.size() + triangles.size(), {Vec2::Zero(), Vec2::Zero(), Vec2::Zero()});
     for (Triangle t : triangles) {
       for (int& v : t) v += first;
-      model.triangles.push_back(t);
+      if (own_triangles) model.own_triangles.push_back(t);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      const double thickness = garment.maps.thickness.empty() ? garment.thickness : garment.maps.thickness[i];
-      contact.radius.push_back(thickness);
-      contact.self_radius.push_back(thickness * 2 / 3);
-    }
-    contact.friction.resize(contact.friction.size() + count, garment.friction);
-    contact.self_friction.resize(contact.self_friction.size() + count, garment.self_friction);
+    for (std::size_t i = 0; i < count; ++i)
+      contact.radius.push_back(garment.maps.thickness.empty() ? garment.thickness : garment.maps.thickness[i]);
+    contact.friction.push_back(garment.friction);
+    contact.self_friction.push_back(garment.self_friction);
     contact.garment.resize(contact.garment.size() + count, static_cast<int>(g));
     model.self_collides.resize(model.self_collides.size() + count, garment.self_collision);
   }
+  if (own_triangles) model.triangles = model.own_triangles;
+  contact.rest = several ? model.own_rest : model.setup.garments[0].mesh.positions;
   model.first_vertex.push_back(static_cast<int>(contact.rest.size()));
   contact.cloth_vertex_count = static_cast<int>(contact.rest.size());
   // Degenerate uvs (all zero) fall back to the rest shape's own axes.
@@ -127,7 +131,7 @@ void place_and_pin(ClothModel& model) {
   const ClothSetup& setup = model.setup;
   std::vector<Vec3> bind;
   std::vector<Triangle> body;
-  model.start = model.contact.rest;
+  model.start.assign(model.contact.rest.begin(), model.contact.rest.end());
   if (setup.primary) {
     bind.resize(at(setup.primary->surface().vertex_count()));
     setup.primary->bind_pose(bind);

@@ -43,7 +43,9 @@ struct ClothModel {
   std::vector<int> first_vertex;  ///< of each garment; one more at the end
   std::vector<Vec3> start;        ///< placed at the start of the pre-roll [m]; a solver frees what is the rest shape
   std::vector<double> mass;       ///< lumped [kg]
-  std::vector<Triangle> triangles;
+  std::span<const Triangle> triangles;  ///< of all garments
+  std::vector<Triangle> own_triangles;  ///< what triangles sees, unless it is one garment's mesh
+  std::vector<Vec3> own_rest;           ///< what contact.rest sees, unless it is one garment's mesh [m]
   RestEdges rest_edges;
   std::vector<double> typical_edge;  ///< per garment: median of its edges at rest; infinite without any [m]
   VertexClumps clumps;               ///< vertices that are very near each other for their garment
@@ -68,7 +70,7 @@ struct ClothModel {
   int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
   /// Whether cloth that is let through the part `released` (-1: none) may pass `part`: what passes a part passes all
   /// smaller ones, so that cloth between two parts is not handed from one to the other.
-  bool may_pass(double released, int part) const {
+  bool may_pass(int released, int part) const {
     return released >= 0 && part_rank[static_cast<std::size_t>(part)] >= part_rank[static_cast<std::size_t>(released)];
   }
 };

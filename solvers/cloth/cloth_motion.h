@@ -14,8 +14,8 @@ struct ClothMotion {
   std::vector<Vec3> x_previous, v_previous;  ///< one step of h_previous before
   std::vector<Vec3> x_older, v_older;        ///< and one of h_older before that
   double h_previous = 0, h_older = 0;        ///< s; 0: no history
-  std::vector<double> released;  ///< per cloth vertex: collider part that it may pass, with all smaller ones; -1 none
-  std::vector<double> tangled;   ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
+  std::vector<int> released;  ///< per cloth vertex: collider part that it may pass, with all smaller ones; -1 none
+  std::vector<char> tangled;  ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
 };
 
 /// Position, velocity and history to the new place.
@@ -24,7 +24,23 @@ void carry(const Teleport& teleport, ClothMotion& motion);
 /// Writes the motion into blocks of a state, bit for bit.
 void store(State& state, const ClothMotion& motion);
 
-/// The motion of `count` vertices that store() wrote; a state without it is a fault of the program.
-ClothMotion load_motion(const State& state, std::size_t count);
+/// The motion of `count` vertices that store() wrote, whose blocks it leaves empty; a state without it is a fault of
+/// the program.
+ClothMotion take_motion(State& state, std::size_t count);
+
+/// A motion in half the room, from which cloth can start once more: positions to the bit, all else to seven digits.
+class KeptMotion {
+ public:
+  explicit KeptMotion(const ClothMotion& motion);
+  ClothMotion motion() const;
+
+ private:
+  std::vector<Vec3> x_;
+  std::vector<Vec3f> v_, v_previous_, v_older_;
+  std::vector<Vec3f> to_previous_, to_older_;  ///< from x [m]
+  double h_previous_, h_older_;
+  std::vector<int> released_;
+  std::vector<char> tangled_;
+};
 
 }  // namespace ft

@@ -46,7 +46,7 @@ class ClothSolver final : public Solver {
     mark_tangled(*model_, own_crossings(*model_, crossings_within(model_->start, model_->triangles)),
                  tangled_at_start_);
     if (!any_tangled(tangled_at_start_)) give_back(tangled_at_start_);
-    if (model_->start == model_->contact.rest) give_back(model_->start);
+    if (std::ranges::equal(model_->start, model_->contact.rest)) give_back(model_->start);
   }
 
   int system_count() const override { return static_cast<int>(model_->setup.garments.size()); }
@@ -89,7 +89,7 @@ class ClothSolver final : public Solver {
   bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
 
   std::unique_ptr<ClothModel> model_;
-  std::vector<double> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
+  std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
   // Scratch only: forgotten between frames, one frame at a time.
   mutable BodyAdvance advance_;
   mutable Certificate certificate_;
@@ -108,11 +108,12 @@ State ClothSolver::initial_state() const {
   state.frame = setup.first_frame - setup.preroll_frames;
   state.time = -setup.preroll_frames / setup.fps;
   ClothMotion m;
-  m.x = model_->start.empty() ? model_->contact.rest : model_->start;
+  const std::span<const Vec3> x = model_->start.empty() ? model_->contact.rest : model_->start;
+  m.x.assign(x.begin(), x.end());
   m.v.assign(m.x.size(), Vec3::Zero());
-  m.released.assign(m.x.size(), -1.0);
+  m.released.assign(m.x.size(), -1);
   m.tangled = tangled_at_start_;
-  m.tangled.resize(m.x.size(), 0.0);
+  m.tangled.resize(m.x.size(), 0);
   // A history of constant acceleration makes the integrator exact for free fall from the first step on.
   const double h = 1.0 / (setup.fps * setup.min_substeps);
   m.x_previous = m.x_older = m.x;
@@ -229,13 +230,10 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   body_.begin(frame.t0, frame.t1);
   const Teleport* teleport = teleport_into(setup.teleports, frame.number);
   if (teleport) body_.cut(*teleport);
-  const auto start = [&] {
-    ClothMotion m = load_motion(state, at(model_->vertex_count()));
-    if (teleport) carry(*teleport, m);
-    return m;
-  };
   FrameReport report, best_report;
-  ClothMotion motion = start(), best;
+  ClothMotion motion = take_motion(state, at(model_->vertex_count())), best;
+  if (teleport) carry(*teleport, motion);
+  const KeptMotion start(motion);
   const int substeps =
       substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible);
   bool moved = false;
@@ -245,7 +243,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   for (int attempt = 0; attempt <= k_rewinds; ++attempt) {
     const auto walk_anew = [&](int count) {
       if (moved) motion = {};  // so that there are never two of them
-      if (moved) motion = start();
+      if (moved) motion = start.motion();
       moved = true;
       report = {};
       report.frame = frame.number;
@@ -257,7 +255,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
       return lost;
     };
     if (walk_anew(substeps << attempt) > k_most_lost) walk_anew(k_times_lost * (substeps << attempt));
-    if (!report.finite) motion = start();  // the last finite state; the attempt counts as failed
+    if (!report.finite) motion = start.motion();  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
     const int avoidable = certificate_.certify(body_.end().feasible, motion, report);
     report.profile.certificate += elapsed(certificate);

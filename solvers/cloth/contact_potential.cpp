@@ -74,11 +74,11 @@ double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_fa
   double r = 0, mu = 0, a = 0;
   if (first_cloth && second_cloth) {
     for (const int i : v) {
-      mu = std::max(mu, model_.self_friction[at(i)]);
+      mu = std::max(mu, model_.self_friction[at(model_.garment[at(i)])]);
       a += 0.25 * model_.area[at(i)];
     }
-    r = std::min(side_radius(v, geometry, model_.self_radius, 0, split),
-                 side_radius(v, geometry, model_.self_radius, split, 4));
+    r = ContactModel::self_radius(
+        std::min(side_radius(v, geometry, model_.radius, 0, split), side_radius(v, geometry, model_.radius, split, 4)));
     if (model_.garment[at(v[0])] == model_.garment[at(v[3])]) {
       const double rest = geometry_of(vertex_face, v, model_.rest).distance;
       r = std::min(r, 0.5 * rest);
@@ -87,7 +87,7 @@ double ContactPotential::pair_radius(const std::array<int, 4>& v, bool vertex_fa
     int count = 0;
     for (const int i : v) {
       if (i >= n) continue;
-      mu = std::max(mu, model_.friction[at(i)]);
+      mu = std::max(mu, model_.friction[at(model_.garment[at(i)])]);
       a += model_.area[at(i)];
       ++count;
     }
@@ -129,7 +129,8 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, st
       const bool self = v[0] < n && v[3] < n;
       double largest = 0;
       for (const int i : v)
-        if (i < n) largest = std::max(largest, self ? model_.self_radius[at(i)] : model_.radius[at(i)]);
+        if (i < n) largest = std::max(largest, model_.radius[at(i)]);
+      if (self) largest = ContactModel::self_radius(largest);
       if (s.distance >= 0 &&
           s.distance - k_rounding * (way_of(v, vertex_face, true) - s.way) > static_cast<float>(largest) + 1e-6f)
         continue;

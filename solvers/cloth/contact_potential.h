@@ -26,13 +26,15 @@ struct ContactModel {
   /// N/m3. 1e5 soft as flesh, 1e7 hard; gravity on cotton is 1.5 Pa, so 5e5 rests 3 um deep. Much harder contacts hold
   /// cloth between two surfaces so fast that friction tears at it.
   double stiffness_per_area = 5e5;
-  double sliding_speed = 2e-5;      ///< below this speed friction is viscous [m/s]: the creep of a contact at rest
-  std::vector<double> area;         ///< lumped area of each cloth vertex [m2]
-  std::vector<double> radius;       ///< contact radius against the body of each cloth vertex [m]
-  std::vector<double> self_radius;  ///< among cloths [m]
-  std::vector<double> friction, self_friction;  ///< Coulomb coefficient [1]
-  std::vector<Vec3> rest;                       ///< rest positions of the cloth vertices [m]
-  std::vector<int> garment;                     ///< of each cloth vertex
+  double sliding_speed = 2e-5;  ///< below this speed friction is viscous [m/s]: the creep of a contact at rest
+  std::vector<double> area;     ///< lumped area of each cloth vertex [m2]
+  std::vector<double> radius;   ///< contact radius against the body of each cloth vertex [m]
+  std::vector<int> garment;     ///< of each cloth vertex
+  std::vector<double> friction, self_friction;  ///< Coulomb coefficient of each garment [1]
+  std::span<const Vec3> rest;                   ///< rest positions of the cloth vertices, which must stay [m]
+
+  /// Among cloths, where it is `radius` against the body [m].
+  static double self_radius(double radius) { return radius * 2 / 3; }
 };
 
 /// One active contact of the current linearisation.

@@ -15,11 +15,11 @@ namespace ft {
 std::vector<Crossing> own_crossings(const ClothModel& model, std::vector<Crossing> within);
 
 /// Fills `tangled` (per cloth vertex, 0 or 1) with the vertices of these crossings and of all edges within two of them.
-void mark_tangled(const ClothModel& model, std::span<const Crossing> crossings, std::vector<double>& tangled);
+void mark_tangled(const ClothModel& model, std::span<const Crossing> crossings, std::vector<char>& tangled);
 
-bool any_tangled(std::span<const double> tangled);
+bool any_tangled(std::span<const char> tangled);
 
 /// A crossing that was there when `tangled` was marked, or grew out of one.
-bool among_tangled(const Crossing& crossing, std::span<const double> tangled);
+bool among_tangled(const Crossing& crossing, std::span<const char> tangled);
 
 }  // namespace ft

@@ -1,7 +1,6 @@
 #include "solvers/energies/air_drag.h"
 
 #include <cmath>
-#include <limits>
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
@@ -20,23 +19,10 @@ AirDrag::AirDrag(const ClothTopology& topology, const AirSettings& air) : air_(a
     still_ = still_ && factors_.back().normal == 0 && factors_.back().tangential == 0;
   }
   if (still_) return;
-  CHECK(factors_.size() <= std::numeric_limits<std::uint16_t>::max());
-  std::vector<Triangle> triangles;
-  std::vector<std::size_t> element;
-  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
-    if (topology.rest_area[t] == 0) continue;
-    triangles.push_back(topology.triangles[t]);
-    element.push_back(t);
-  }
-  std::vector<int> panel_of_slot;
-  schedule_ = make_element_schedule(triangles, topology.rest, panel_of_slot);
-  corners_ = group_indices<3>(schedule_, [&](std::size_t slot) { return triangles[at(panel_of_slot[slot])]; });
-  area_.reserve(schedule_.count);
-  piece_.reserve(schedule_.count);
-  for (const int panel : panel_of_slot) {
-    area_.push_back(static_cast<float>(topology.rest_area[element[at(panel)]]));
-    piece_.push_back(static_cast<std::uint16_t>(topology.triangle_piece[element[at(panel)]]));
-  }
+  const TriangleOrder& order = triangle_order(topology);
+  slots_ = order.slots;
+  area_.reserve(order.triangle.size());
+  for (const std::size_t t : order.triangle) area_.push_back(static_cast<float>(topology.rest_area[t]));
 }
 
 AirDrag::Drag AirDrag::panel(const Triangle& t, double area, const Factors& factors, const StepContext& context) const {
@@ -97,14 +83,14 @@ void AirDrag::begin_step(const StepContext& context) {
   a_ = context.a;
   b_ = context.has_history() ? context.b : 0;
   vertices_.assign(context.x_t0.size(), Drag{});
-  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(slots_->schedule, [&](std::size_t begin, std::size_t end) {
     GroupIndices<3>::Group corners;
     for (std::size_t i = begin; i < end; ++i) {
-      corners_.get(i, corners);
-      for (std::size_t l = 0; l < schedule_.used(i); ++l) {
+      slots_->vertices.get(i, corners);
+      for (std::size_t l = 0; l < slots_->schedule.used(i); ++l) {
         const Triangle t{corners.column[0][l], corners.column[1][l], corners.column[2][l]};
         const std::size_t slot = i * k_lanes + l;
-        const Drag of_panel = panel(t, area_[slot], factors_[piece_[slot]], context);
+        const Drag of_panel = panel(t, area_[slot], factors_[slots_->piece[slot]], context);
         for (const int v : t) vertices_[at(v)] += of_panel;
       }
     }

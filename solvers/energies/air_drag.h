@@ -7,13 +7,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "solvers/energies/cloth_topology.h"
-#include "solvers/energies/element_schedule.h"
 #include "solvers/energies/energy.h"
-#include "solvers/energies/group_indices.h"
+#include "solvers/energies/triangle_slots.h"
 
 namespace ft {
 
@@ -54,10 +53,8 @@ class AirDrag final : public Energy {
   AirSettings air_;
   std::vector<Factors> factors_;  ///< of the pieces
   bool still_ = true;             ///< vacuum; then there is nothing of what follows
-  ElementSchedule schedule_;
-  GroupIndices<3> corners_;
+  std::shared_ptr<const TriangleSlots> slots_;
   std::vector<float> area_;  ///< of the panel in each slot, at rest [m2]
-  std::vector<std::uint16_t> piece_;
   // Of the step, per vertex: U = rate_time/2 v.D v - rate_time f.v with v = (x - reference) / rate_time.
   std::vector<Drag> vertices_;
   std::span<const Vec3> x_t0_, x_tm1_;

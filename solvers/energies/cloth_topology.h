@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -85,6 +86,8 @@ struct AttachPoint {
   HoldSpan hold{};                 ///< when
 };
 
+struct TriangleOrder;
+
 struct ClothTopology {
   int vertex_count = 0;
   std::vector<Vec3> rest;  ///< m
@@ -98,8 +101,9 @@ struct ClothTopology {
   std::vector<BendElement> bends;  ///< one per triangle that has a hinge and resists bending
   std::vector<double> mass;        ///< kg per vertex: a third of each triangle around it
   std::vector<ClothPiece> pieces;
-  std::vector<SeamPoint> seams;          ///< none unless something is sewn
-  std::vector<AttachPoint> attachments;  ///< none unless something is buttoned
+  std::vector<SeamPoint> seams;                        ///< none unless something is sewn
+  std::vector<AttachPoint> attachments;                ///< none unless something is buttoned
+  mutable std::shared_ptr<const TriangleOrder> order;  ///< triangle_order()'s, once it was asked
 
   const Fabric& fabric_of_triangle(std::size_t t) const {
     return pieces[static_cast<std::size_t>(triangle_piece[t])].fabric;

@@ -65,9 +65,10 @@ struct Constants {
   alignas(32) Lane stiffness[4], damping_time, limit[2], limit_stiffness;
 };
 
-void constants(const Membrane::Group& g, std::span<const Membrane::Material> materials, Constants& out) {
+void constants(const Membrane::Group& g, const std::uint16_t* material, std::span<const Membrane::Material> materials,
+               Constants& out) {
   for (int l = 0; l < k_lanes; ++l) {
-    const Membrane::Material& m = materials[at(g.material[l])];
+    const Membrane::Material& m = materials[material[l]];
     for (int k = 0; k < 4; ++k) out.stiffness[k][l] = g.area[l] * m.stiffness[k];
     out.damping_time[l] = m.damping_time;
     for (int k = 0; k < 2; ++k) out.limit[k][l] = m.limit[k];
@@ -210,25 +211,15 @@ Membrane::Membrane(const ClothTopology& topology) {
                           {green_limit(fabric.limit_weft), green_limit(fabric.limit_warp)},
                           fabric.limit_stretch});
   }
-  std::vector<Triangle> triangles;
-  std::vector<std::size_t> element;
-  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
-    if (topology.rest_area[t] == 0) continue;
-    triangles.push_back(topology.triangles[t]);
-    element.push_back(t);
-  }
-  std::vector<int> element_of_slot;
-  schedule_ = make_element_schedule(triangles, topology.rest, element_of_slot);
-  groups_.assign(schedule_.group_count(), Group{});
+  const TriangleOrder& order = triangle_order(topology);
+  slots_ = order.slots;
+  groups_.assign(slots_->schedule.group_count(), Group{});
   reference_.assign(groups_.size(), Reference{});
-  vertices_ = group_indices<3>(schedule_, [&](std::size_t slot) { return triangles[at(element_of_slot[slot])]; });
-  CHECK(materials_.size() <= std::numeric_limits<std::uint16_t>::max());
-  for (std::size_t slot = 0; slot < schedule_.count; ++slot) {
-    const std::size_t t = element[at(element_of_slot[slot])];
+  for (std::size_t slot = 0; slot < order.triangle.size(); ++slot) {
+    const std::size_t t = order.triangle[slot];
     Group& g = groups_[slot / k_lanes];
     const std::size_t l = slot % k_lanes;
     for (std::size_t k = 0; k < 4; ++k) g.rest_inverse[k][l] = topology.rest_inverse[t][k];
-    g.material[l] = static_cast<std::uint16_t>(topology.triangle_piece[t]);
     g.area[l] = topology.rest_area[t] * topology.factor(t, &VertexMaps::stretch) *
                 cap_stiffness(topology.rest_area[t], topology.rest_inverse[t]);
   }
@@ -236,15 +227,16 @@ Membrane::Membrane(const ClothTopology& topology) {
 
 std::vector<std::array<int, 4>> Membrane::stencils() const {
   std::vector<std::array<int, 4>> out;
-  out.reserve(schedule_.count);
-  for (std::size_t slot = 0; slot < schedule_.count; ++slot)
-    out.push_back({vertices_.number(slot, 0), vertices_.number(slot, 1), vertices_.number(slot, 2), -1});
+  out.reserve(slots_->schedule.count);
+  for (std::size_t slot = 0; slot < slots_->schedule.count; ++slot)
+    out.push_back(
+        {slots_->vertices.number(slot, 0), slots_->vertices.number(slot, 1), slots_->vertices.number(slot, 2), -1});
   return out;
 }
 
 void Membrane::find_places(const BlockPattern& pattern) const {
-  positions_.bind(pattern, schedule_.count,
-                  [&](std::size_t slot, std::size_t corner) { return vertices_.number(slot, corner); });
+  positions_.bind(pattern, slots_->schedule.count,
+                  [&](std::size_t slot, std::size_t corner) { return slots_->vertices.number(slot, corner); });
 }
 
 void Membrane::begin_step(const StepContext& context) {
@@ -257,7 +249,7 @@ void Membrane::begin_step(const StepContext& context) {
     Deformation d;
     alignas(32) Lane e[3];
     for (std::size_t i = begin; i < end; ++i) {
-      vertices_.get(i, v);
+      slots_->vertices.get(i, v);
       deformation(v, groups_[i], context.x_t0, d);
       strain(d, reference_[i].strain);
       if (!history) continue;
@@ -271,7 +263,7 @@ void Membrane::begin_step(const StepContext& context) {
 }
 
 double Membrane::value(std::span<const Vec3> x) const {
-  return sum_over_chunks(schedule_, [&](std::size_t begin, std::size_t end) {
+  return sum_over_chunks(slots_->schedule, [&](std::size_t begin, std::size_t end) {
     Vertices v;
     Deformation d;
     Constants c;
@@ -279,8 +271,8 @@ double Membrane::value(std::span<const Vec3> x) const {
     for (std::size_t i = begin; i < end; ++i) {
       const Group& g = groups_[i];
       const Reference& ref = reference_[i];
-      vertices_.get(i, v);
-      constants(g, materials_, c);
+      slots_->vertices.get(i, v);
+      constants(g, slots_->pieces(i), materials_, c);
       deformation(v, g, x, d);
       strain(d, e);
       for (int l = 0; l < k_lanes; ++l) {
@@ -308,15 +300,15 @@ struct Membrane::Stressed {
 };
 
 void Membrane::measure(std::size_t group, std::span<const Vec3> x, Stressed& out) const {
-  vertices_.get(group, out.vertices);
-  constants(groups_[group], materials_, out.constants);
+  slots_->vertices.get(group, out.vertices);
+  constants(groups_[group], slots_->pieces(group), materials_, out.constants);
   deformation(out.vertices, groups_[group], x, out.d);
   strain(out.d, out.e);
   stress(out.constants, reference_[group], inverse_rate_time_, out.e, out.s);
 }
 
 void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
-  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(slots_->schedule, [&](std::size_t begin, std::size_t end) {
     Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
       measure(i, x, stressed);
@@ -327,7 +319,7 @@ void Membrane::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) c
 
 void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   find_places(*hessian.pattern);
-  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(slots_->schedule, [&](std::size_t begin, std::size_t end) {
     Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
       measure(i, x, stressed);
@@ -338,7 +330,7 @@ void Membrane::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const 
 
 void Membrane::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient, BlockMatrix& hessian) const {
   find_places(*hessian.pattern);
-  for_each_chunk(schedule_, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(slots_->schedule, [&](std::size_t begin, std::size_t end) {
     Stressed stressed;
     for (std::size_t i = begin; i < end; ++i) {
       measure(i, x, stressed);
@@ -361,7 +353,7 @@ void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, s
       g2[k][l] = p1 * r[2][l] + p2 * r[3][l];
     }
   // Padding has the vertices of another element: it must not even add zero.
-  const std::size_t used = schedule_.used(group);
+  const std::size_t used = slots_->schedule.used(group);
   for (std::size_t l = 0; l < used; ++l) {
     const Vec3 a(g1[0][l], g1[1][l], g1[2][l]), b(g2[0][l], g2[1][l], g2[2][l]);
     gradient[at(stressed.vertices.column[0][l])] -= a + b;
@@ -373,7 +365,7 @@ void Membrane::add_group_gradient(std::size_t group, const Stressed& stressed, s
 void Membrane::add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const {
   ElementBlocks blocks;
   element_blocks(groups_[group], stressed.constants, stressed.d, stressed.e, stressed.s, inverse_rate_time_, blocks);
-  scatter(blocks, stressed.vertices, positions_, group, schedule_.used(group), hessian);
+  scatter(blocks, stressed.vertices, positions_, group, slots_->schedule.used(group), hessian);
 }
 
 }  // namespace ft

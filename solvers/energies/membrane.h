@@ -7,14 +7,13 @@
 // under strong compression; cloth buckles out of the plane long before.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "solvers/energies/block_positions.h"
 #include "solvers/energies/cloth_topology.h"
-#include "solvers/energies/element_schedule.h"
 #include "solvers/energies/energy.h"
-#include "solvers/energies/group_indices.h"
+#include "solvers/energies/triangle_slots.h"
 
 namespace ft {
 
@@ -52,7 +51,6 @@ class Membrane final : public Energy {
   struct Group {
     double rest_inverse[4][k_lanes];  ///< 1/m
     double area[k_lanes];             ///< at rest, times the factor of what varies over the garment [m2]
-    std::uint16_t material[k_lanes];
   };
   using Vertices = GroupIndices<3>::Group;
   struct Reference {
@@ -66,8 +64,7 @@ class Membrane final : public Energy {
   void add_group_hessian(std::size_t group, const Stressed& stressed, BlockMatrix& hessian) const;
   void find_places(const BlockPattern& pattern) const;
 
-  ElementSchedule schedule_;
-  GroupIndices<3> vertices_;
+  std::shared_ptr<const TriangleSlots> slots_;
   std::vector<Group> groups_;
   std::vector<Material> materials_;  ///< of the pieces
   // Of the step.

@@ -41,7 +41,7 @@ TEST(Attach, A_cord_is_no_shorter_than_the_distance_at_which_the_garments_touch)
   for (Vec3& x : setup.garments[1].mesh.positions) x.y() += 3.9e-3;
   setup.garments[1].thickness = 1e-3;  // the thinner one decides how near they come
   const auto model = model_of(setup);
-  EXPECT_NEAR(model->attachments[0].length, model->contact.self_radius[k_strip], 1e-15);
+  EXPECT_NEAR(model->attachments[0].length, ContactModel::self_radius(model->contact.radius[k_strip]), 1e-15);
 }
 
 /// A strip that was laid into a ring around the y axis, open by 5 mm; its columns run along the axis.
@@ -125,7 +125,7 @@ TEST(Attach, A_cord_pulls_at_both_ends_alike_and_does_not_turn_them) {
   topology.attachments = model->attachments;
   Attachments energy(topology);
   energy.begin_step({});
-  std::vector<Vec3> x = model->contact.rest, g(x.size(), Vec3::Zero());
+  std::vector<Vec3> x = model->own_rest, g(x.size(), Vec3::Zero());
   for (int i = k_strip; i < 2 * k_strip; ++i) x[at(i)] += Vec3(0.01, -0.02, 0.03);
   energy.add_gradient(x, g);
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
@@ -188,7 +188,7 @@ TEST(Attach, Two_buttoned_layers_rest_at_the_contact_distance_and_do_not_slide) 
   const auto model = model_of(setup);
   const auto states = states_of(setup, 48);
   const AttachPoint& p = model->attachments[0];
-  EXPECT_EQ(p.length, model->contact.self_radius[0]);
+  EXPECT_EQ(p.length, ContactModel::self_radius(model->contact.radius[0]));
   const Vec3 normal(-std::sin(slope), std::cos(slope), 0);
   for (int f = 12; f <= 48; ++f) {
     const auto x = as_points(*states[at(f)].find("x"));

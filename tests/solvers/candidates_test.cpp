@@ -88,7 +88,7 @@ void expect_all_new_behind(const ContactPairs& before, const ContactPairs& now) 
 /// Pairs of vertices with faces, and of edges, that touch at some of the places where the solve may put them.
 ContactPairs touching(const TwoSheets& s) {
   ContactPairs out;
-  const double radius = s.model->contact.self_radius.front();
+  const double radius = ContactModel::self_radius(s.model->contact.radius.front());
   const auto edges = unique_edges(s.model->triangles);
   for (std::uint64_t draw = 0; draw < 6; ++draw) {
     const auto x = somewhere_in_reach(s, draw);

@@ -157,15 +157,16 @@ TEST(ClothMaps, Cloth_rests_at_its_own_thickness_everywhere) {
 TEST(ClothMaps, The_radius_of_a_contact_runs_linearly_over_a_triangle_and_is_exact_where_it_is_constant) {
   ContactModel model;
   model.cloth_vertex_count = 3;
-  model.rest = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)};
+  const std::vector<Vec3> rest = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1)};
+  model.rest = rest;
   model.area.assign(3, 1.0);
-  model.radius = model.self_radius = {2e-3, 4e-3, 8e-3};
-  model.friction = model.self_friction = std::vector<double>(3, 0.0);
+  model.radius = {2e-3, 4e-3, 8e-3};
+  model.friction = model.self_friction = {0.0};
   model.garment.assign(3, 0);
   ContactPairs pairs;
   pairs.vertex_face.push_back({{3, 0, 1, 2}});  // a point of the body over a triangle of cloth
   const auto radius_at = [&](double u, double v) {
-    std::vector<Vec3> x = model.rest;
+    std::vector<Vec3> x = rest;
     x.push_back(Vec3(u, 1e-3, -v));
     ContactPotential contact(model);
     contact.begin(pairs, x, 0.01);

@@ -20,21 +20,21 @@ Vec3 somewhere(std::uint64_t draw, std::uint64_t i, double size) {
 struct Heap {
   ContactModel model;
   ContactPairs pairs;  ///< all vertices with faces, and edges, of consecutive vertices; none of the body with itself
-  std::vector<Vec3> start, moved, displacement;
+  std::vector<Vec3> rest, start, moved, displacement;
 
   Heap() {
     model.cloth_vertex_count = k_cloth;
     model.area.assign(k_cloth, 1e-4);
     model.radius.assign(k_cloth, 3e-3);
-    model.self_radius.assign(k_cloth, 2e-3);
-    model.friction = model.self_friction = std::vector<double>(k_cloth, 0.3);
+    model.friction = model.self_friction = {0.3};
     model.garment.assign(k_cloth, 0);
     for (std::uint64_t i = 0; i < k_all; ++i) {
-      if (i < k_cloth) model.rest.push_back(somewhere(0, i, 1));
+      if (i < k_cloth) rest.push_back(somewhere(0, i, 1));
       start.push_back(somewhere(1, i, 0.01));
       moved.push_back(start.back() + (i < k_cloth ? somewhere(2, i, 5e-4) : Vec3::Zero().eval()));
       if (i < k_cloth) displacement.push_back(somewhere(3, i, 5e-4));
     }
+    model.rest = rest;
     for (int v = 0; v < k_all; ++v)
       for (int f = 0; f + 2 < k_all; ++f)
         if ((v < f || v > f + 2) && (v < k_cloth || f + 2 < k_cloth))

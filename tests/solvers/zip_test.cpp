@@ -135,7 +135,7 @@ TEST(Zip, Sides_that_touch_in_the_bind_pose_come_to_lie_at_the_contact_distance_
     ClothSetup setup = flaps();
     for (Vec3& x : setup.garments[1].mesh.positions) x.x() -= 3e-3 - apart;
     setup.garments[1].pins[0].hold = {};
-    const double touching = model_of(setup)->contact.self_radius[0];
+    const double touching = ContactModel::self_radius(model_of(setup)->contact.radius[0]);
     auto solver = make_cloth_solver(setup);
     ASSERT_TRUE(solver);
     State state = (*solver)->initial_state();
