@@ -23,9 +23,9 @@ using FclBox = fcl::AABB<float>;
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
-constexpr std::size_t k_limb = 1024;  ///< most nodes of a limb, which is refitted as one
+constexpr std::size_t k_limb = 256;  ///< most nodes of a limb, which is refitted as one
 
-/// The tree of one surface; leaves are its elements.
+/// The tree of one surface; its leaves hold the elements.
 class Tree {
  public:
   bool built() const { return !nodes_.empty(); }
@@ -39,6 +39,7 @@ class Tree {
   /// place_of(vertex): in any unit. patches_of: per element, ascending; no rows: none.
   template <class Place>
   void build(std::span<const PairElement> elements, Place&& place_of, const Adjacency& patches_of) {
+    CHECK(elements.size() < (1u << 28));  // PairNode
     std::vector<fcl::Vector3<float>> points;
     std::vector<fcl::Triangle> faces;
     points.reserve(3 * elements.size());
@@ -57,24 +58,13 @@ class Tree {
     CHECK(model.beginModel(static_cast<int>(faces.size()), static_cast<int>(points.size())) == fcl::BVH_OK);
     CHECK(model.addSubModel(points, faces) == fcl::BVH_OK);
     CHECK(model.endModel() == fcl::BVH_OK);
+    const std::vector<int> order = take_nodes(model);
     elements_.clear();
-    nodes_.clear();
     elements_.reserve(elements.size());
-    nodes_.reserve(at(model.getNumBVs()));
-    std::vector<int> element_of_leaf;
-    for (int k = 0; k < model.getNumBVs(); ++k) {
-      const auto& node = model.getBV(k);
-      const bool leaf = node.first_child < 0;
-      nodes_.emplace_back(leaf ? -1 - static_cast<int>(elements_.size()) : node.first_child);
-      if (!leaf) continue;
-      element_of_leaf.push_back(-(node.first_child + 1));
-      elements_.push_back(elements[at(element_of_leaf.back())]);
-    }
+    for (const int e : order) elements_.push_back(elements[at(e)]);
     share_out();
     if (!patches_of.items.empty())
-      patches_.build(
-          nodes_.size(), [&](std::size_t k) { return nodes_[k].first_child(); },
-          [&](int leaf) { return patches_of.row(element_of_leaf[at(leaf)]); });
+      patches_.build(nodes_, elements.size(), [&](std::size_t e) { return patches_of.row(order[e]); });
   }
 
   /// A refit is begin_refit(), refit_below() for all limbs in any order, end_refit(). changed (per vertex) not empty:
@@ -103,17 +93,65 @@ class Tree {
     return (changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]) != 0;
   }
 
+  /// The nodes of FCL's tree, but for those below a node whose elements make a leaf. Returns the elements of all
+  /// leaves, one leaf after the other.
+  std::vector<int> take_nodes(const fcl::BVHModel<FclBox>& model) {
+    const std::size_t count = at(model.getNumBVs());
+    const auto child = [&](std::size_t k) { return model.getBV(static_cast<int>(k)).first_child; };
+    std::vector<int> elements_below(count);
+    for (std::size_t k = count; k-- > 0;)
+      elements_below[k] = child(k) < 0 ? 1 : elements_below[at(child(k))] + elements_below[at(child(k)) + 1];
+    std::vector<char> in_leaf(count, 0);
+    std::vector<int> number(count, 0);  // of those that are taken
+    int taken = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (in_leaf[k] == 0) number[k] = taken++;
+      if (child(k) >= 0 && elements_below[k] <= PairNode::k_most_elements)
+        in_leaf[at(child(k))] = in_leaf[at(child(k)) + 1] = 1;
+    }
+    nodes_.clear();
+    nodes_.reserve(at(taken));
+    std::vector<int> order;
+    order.reserve(at(elements_below[0]));
+    const auto add_below = [&](auto&& self, std::size_t k) -> void {
+      if (child(k) < 0) return order.push_back(-1 - child(k));
+      self(self, at(child(k)));
+      self(self, at(child(k)) + 1);
+    };
+    for (std::size_t k = 0; k < count; ++k) {
+      if (in_leaf[k] != 0) continue;
+      if (elements_below[k] > PairNode::k_most_elements) {
+        nodes_.push_back(PairNode::inner(number[at(child(k))]));
+      } else {
+        nodes_.push_back(PairNode::leaf(static_cast<int>(order.size()), elements_below[k]));
+        add_below(add_below, k);
+      }
+    }
+    return order;
+  }
+
+  bool is_changed(const PairNode& leaf, std::span<const char> changed) const {
+    bool any = false;
+    for (int e = leaf.first_element(); e < leaf.end_element(); ++e) any |= is_changed(elements_[at(e)], changed);
+    return any;
+  }
+  BoxLanes box_of(const PairNode& leaf, const PairFeatures& features) const {
+    BoxLanes box = features.box(elements_[at(leaf.first_element())]);
+    for (int e = leaf.first_element() + 1; e < leaf.end_element(); ++e) box = box.join(features.box(elements_[at(e)]));
+    return box;
+  }
+
   /// Node k, after its children.
   void refit(std::size_t k, const PairFeatures& features, std::span<const char> changed) {
     PairNode& node = nodes_[k];
     const bool leaf = node.is_leaf();
-    const std::size_t below = leaf ? node.element() : at(node.first_child());
+    const std::size_t child = leaf ? 0 : at(node.first_child());
     if (!changed.empty()) {
-      marks_[k] = leaf ? static_cast<char>(is_changed(elements_[below], changed))
-                       : static_cast<char>(marks_[below] | marks_[below + 1]);
+      marks_[k] =
+          leaf ? static_cast<char>(is_changed(node, changed)) : static_cast<char>(marks_[child] | marks_[child + 1]);
       if (marks_[k] == 0) return;
     }
-    node.set_box(leaf ? features.box(elements_[below]) : nodes_[below].box().join(nodes_[below + 1].box()));
+    node.set_box(leaf ? box_of(node, features) : nodes_[child].box().join(nodes_[child + 1].box()));
   }
 
   /// Limbs are all that is below a node, if that is not too much; the rest is the trunk. FCL puts what is below a node
@@ -216,7 +254,10 @@ void PairFinder::Impl::split_tasks(bool self) {
     for (const Task& task : tasks) {
       const int i = ta[task.a].first_child();
       if (task.b < 0) {
-        if (i < 0) continue;
+        if (i < 0) {
+          next_tasks.push_back(task);
+          continue;
+        }
         next_tasks.push_back({i, -1, true});
         next_tasks.push_back({i + 1, -1, true});
         if (overlap(ta[i], ta[i + 1])) next_tasks.push_back({i, i + 1, true});

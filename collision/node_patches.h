@@ -1,56 +1,87 @@
-// For the nodes of a tree over triangles: which patches everything below a node is in. Two nodes that have a patch in
-// common need not be looked at where the patch is skipped. For fcl_pair_finder.cpp.
+// For the nodes of a tree over triangles, and the triangles: which patches everything below a node is in. Two nodes
+// that have a patch in common need not be looked at where the patch is skipped. Neighbours are mostly in the same
+// patches, so equal sets of patches are kept once. For fcl_pair_finder.cpp.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <span>
 #include <vector>
 
 #include "baker/core/types.h"
+#include "collision/pair_node.h"
 
 namespace ft {
 
 class NodePatches {
  public:
-  bool built() const { return !start_.empty(); }
+  bool built() const { return !of_node_.empty(); }
 
-  /// first_child(node): negative for the leaf -1 - it, else that child and the next, which come behind their parents.
-  /// of_leaf(leaf): its patches, ascending.
-  template <class FirstChild, class OfLeaf>
-  void build(std::size_t nodes, FirstChild&& first_child, OfLeaf&& of_leaf) {
-    std::vector<std::vector<int>> lists(nodes);
-    std::size_t sum = 0;
-    for (std::size_t k = nodes; k-- > 0;) {
-      const int child = first_child(k);
-      if (child < 0) {
-        const std::span<const int> own = of_leaf(-1 - child);
-        lists[k].assign(own.begin(), own.end());
-      } else {
-        const std::vector<int>&a = lists[at(child)], &b = lists[at(child) + 1];
-        std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(lists[k]));
-      }
-      sum += lists[k].size();
-    }
+  /// of_element(element): its patches, ascending.
+  template <class OfElement>
+  void build(std::span<const PairNode> nodes, std::size_t element_count, OfElement&& of_element) {
+    std::map<std::vector<int>, int> known;
     start_.assign(1, 0);
-    start_.reserve(nodes + 1);
     items_.clear();
-    items_.reserve(sum);
-    for (const std::vector<int>& list : lists) {
-      items_.insert(items_.end(), list.begin(), list.end());
-      start_.push_back(static_cast<int>(items_.size()));
+    const auto number_of = [&](const std::vector<int>& set) {
+      const auto [it, is_new] = known.emplace(set, static_cast<int>(known.size()));
+      if (is_new) {
+        items_.insert(items_.end(), set.begin(), set.end());
+        start_.push_back(static_cast<int>(items_.size()));
+      }
+      return it->second;
+    };
+    std::vector<int> set;
+    const auto common = [&](int a, int b) {
+      if (a == b) return a;
+      set.clear();
+      std::set_intersection(&items_[0] + start_[at(a)], &items_[0] + start_[at(a) + 1], &items_[0] + start_[at(b)],
+                            &items_[0] + start_[at(b) + 1], std::back_inserter(set));
+      return number_of(set);
+    };
+    of_element_.resize(element_count);
+    for (std::size_t e = 0; e < element_count; ++e) {
+      const std::span<const int> own = of_element(e);
+      set.assign(own.begin(), own.end());
+      of_element_[e] = number_of(set);
     }
+    of_node_.resize(nodes.size());
+    for (std::size_t k = nodes.size(); k-- > 0;) {
+      const PairNode& node = nodes[k];
+      if (node.is_leaf()) {
+        of_node_[k] = of_element_[at(node.first_element())];
+        for (int e = node.first_element() + 1; e < node.end_element(); ++e)
+          of_node_[k] = common(of_node_[k], of_element_[at(e)]);
+      } else {
+        const std::size_t child = at(node.first_child());
+        of_node_[k] = common(of_node_[child], of_node_[child + 1]);
+      }
+    }
+    start_.shrink_to_fit();
+    items_.shrink_to_fit();
   }
 
   /// Whether everything below a node is in one of the skipped patches.
-  bool any(int node, std::span<const char> skipped) const {
-    for (int i = start_[at(node)]; i < start_[at(node) + 1]; ++i)
+  bool any(int node, std::span<const char> skipped) const { return any_in(of_node_[at(node)], skipped); }
+  /// Whether everything below two nodes is.
+  bool any_common(int a, int b, std::span<const char> skipped) const {
+    return any_in_both(of_node_[at(a)], of_node_[at(b)], skipped);
+  }
+  /// Whether two elements are.
+  bool any_common_of_elements(int a, int b, std::span<const char> skipped) const {
+    return any_in_both(of_element_[at(a)], of_element_[at(b)], skipped);
+  }
+
+ private:
+  bool any_in(int set, std::span<const char> skipped) const {
+    for (int i = start_[at(set)]; i < start_[at(set) + 1]; ++i)
       if (skipped[at(items_[at(i)])] != 0) return true;
     return false;
   }
-  /// Whether everything below two nodes is.
-  bool any_common(int a, int b, std::span<const char> skipped) const {
+  bool any_in_both(int a, int b, std::span<const char> skipped) const {
+    if (a == b) return any_in(a, skipped);
     int i = start_[at(a)], j = start_[at(b)];
     const int end_i = start_[at(a) + 1], end_j = start_[at(b) + 1];
     while (i < end_i && j < end_j) {
@@ -62,8 +93,8 @@ class NodePatches {
     return false;
   }
 
- private:
-  std::vector<int> start_, items_;
+  std::vector<int> of_node_, of_element_;  ///< sets by number
+  std::vector<int> start_, items_;         ///< of the sets
 };
 
 }  // namespace ft

@@ -7,30 +7,10 @@
 
 #include "collision/node_patches.h"
 #include "collision/pair_features.h"
+#include "collision/pair_node.h"
 #include "collision/pair_sort.h"
 
 namespace ft {
-
-/// A node of a tree over the triangles of one surface: a box, whose eighth lanes are the number of its first child.
-/// Children lie next to each other, behind their parents; a negative one is a leaf, of element -1 - first_child().
-class PairNode {
- public:
-  explicit PairNode(int first_child) : box_(VertexBox::nowhere()) {
-    box_.lo[7] = static_cast<std::int16_t>(first_child & 0xffff);
-    box_.minus_hi[7] = static_cast<std::int16_t>(first_child >> 16);
-  }
-  int first_child() const {
-    return static_cast<int>(static_cast<std::uint16_t>(box_.lo[7])) | static_cast<int>(box_.minus_hi[7]) << 16;
-  }
-  bool is_leaf() const { return box_.minus_hi[7] < 0; }
-  std::size_t element() const { return static_cast<std::size_t>(-1 - first_child()); }
-  BoxLanes box() const { return BoxLanes::load(box_); }
-  void set_box(const BoxLanes& box) { box.store_axes(box_); }
-
- private:
-  VertexBox box_;
-};
-static_assert(sizeof(PairNode) == 32);
 
 /// Keys of feature pairs (pair_sort.h), by rank.
 struct FoundPairs {
@@ -62,8 +42,14 @@ struct PairWalk {
 
   /// All pairs below node n of ta, which is tb.
   void within(int n) const {
+    if ((k_some && !ma[n]) || (patches && patches->any(n, skipped))) return;
     const int i = ta[n].first_child();
-    if (i < 0 || (k_some && !ma[n]) || (patches && patches->any(n, skipped))) return;
+    if (i < 0) {
+      for (int a = ta[n].first_element(); a < ta[n].end_element(); ++a)
+        for (int b = a + 1; b < ta[n].end_element(); ++b)
+          element_against_element(a, smaller(features.box(ea[a])), b, features.box(eb[b]));
+      return;
+    }
     within(i);
     within(i + 1);
     if (meets(i, i + 1)) between(i, i + 1);
@@ -75,7 +61,7 @@ struct PairWalk {
     const PairNode& nb = tb[b];
     const int i = na.first_child(), j = nb.first_child();
     if (i < 0 && j < 0) {
-      meet(ea[na.element()], eb[nb.element()]);
+      leaf_against_leaf(na, nb);
     } else if (j < 0) {
       if (meets(i, b)) between(i, b);
       if (meets(i + 1, b)) between(i + 1, b);
@@ -90,9 +76,25 @@ struct PairWalk {
     }
   }
 
+  void leaf_against_leaf(const PairNode& a, const PairNode& b) const {
+    const int first = b.first_element(), count = b.end_element() - first;
+    BoxLanes boxes[PairNode::k_most_elements];
+    for (int j = 0; j < count; ++j) boxes[j] = features.box(eb[first + j]);
+    for (int i = a.first_element(); i < a.end_element(); ++i) {
+      const BoxLanes box = smaller(features.box(ea[i]));
+      for (int j = 0; j < count; ++j) element_against_element(i, box, first + j, boxes[j]);
+    }
+  }
+
+  [[gnu::always_inline]] void element_against_element(int a, const BoxLanes& box_a, int b,
+                                                      const BoxLanes& box_b) const {
+    if (!box_a.overlaps(box_b)) return;
+    if (k_self && patches && patches->any_common_of_elements(a, b, skipped)) return;
+    meet(ea[a], box_a, eb[b], box_b);
+  }
+
   /// The feature pairs that a pair of triangles is responsible for.
-  void meet(const PairElement& a, const PairElement& b) const {
-    const BoxLanes box_a = smaller(features.box(a)), box_b = features.box(b);
+  void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b, const BoxLanes& box_b) const {
     for (int i = 0; i < a.owned_vertex_count; ++i)
       vertex_against_face(a.v[at(i)], smaller(features.box(a.v[at(i)])), b, box_b);
     for (int i = 0; i < b.owned_vertex_count; ++i) vertex_against_face(b.v[at(i)], features.box(b.v[at(i)]), a, box_a);

@@ -96,5 +96,51 @@ TEST(PairFinderPatches, Pairs_inside_a_skipped_one_are_left_out_and_no_others) {
   expect_same(found, every);
 }
 
+TEST(PairFinderPatches, Of_triangles_that_share_no_vertex_exactly_the_pairs_inside_are_left_out) {
+  test::Dice dice(31);
+  int left_out = 0, kept = 0;
+  for (const int triangles : {2, 3, 8, 9, 20, 60})  // one leaf, and many
+    for (int again = 0; again < 10; ++again) {
+      test::PairScene scene;
+      scene.cloth_vertices = 3 * triangles;
+      for (int t = 0; t < triangles; ++t) {
+        scene.cloth.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+        const Vec3 middle = dice.cube(0.5);
+        for (int i = 0; i < 3; ++i) {
+          const Vec3 p = middle + dice.cube(0.2);
+          scene.boxes.push_back(k_frame.swept(p, p, 0.1));
+        }
+      }
+      Adjacency members;
+      members.start.assign(1, 0);
+      std::vector<char> skipped;
+      for (int patch = 0; patch < 4; ++patch) {
+        for (int t = 0; t < triangles; ++t)
+          if (dice.below(3) == 0) members.items.push_back(t);
+        members.start.push_back(static_cast<int>(members.items.size()));
+        skipped.push_back(patch != 1 ? 1 : 0);
+      }
+      const auto is_inside = [&](const Stencil& s) {
+        for (int patch = 0; patch < members.row_count(); ++patch) {
+          const std::span<const int> row = members.row(patch);
+          if (skipped[at(patch)] != 0 && std::binary_search(row.begin(), row.end(), s.v[0] / 3) &&
+              std::binary_search(row.begin(), row.end(), s.v[3] / 3))
+            return true;
+        }
+        return false;
+      };
+      PairFinder finder(scene.cloth_vertices, scene.cloth, 0, {});
+      finder.set_patches(members);
+      ContactPairs found, wanted = test::brute_force(scene, true);
+      finder.find(scene.boxes, true, found, skipped);
+      left_out += static_cast<int>(std::erase_if(wanted.vertex_face, is_inside));
+      left_out += static_cast<int>(std::erase_if(wanted.edge_edge, is_inside));
+      kept += static_cast<int>(wanted.edge_edge.size());
+      expect_same(found, wanted);
+    }
+  EXPECT_GT(left_out, 1000);
+  EXPECT_GT(kept, 1000);
+}
+
 }  // namespace
 }  // namespace ft
