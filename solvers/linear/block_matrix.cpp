@@ -49,7 +49,9 @@ BlockPattern make_pattern(int vertex_count, std::span<const std::vector<std::arr
   higher.resize(at(start.back()));
   end.assign(start.begin(), start.end() - 1);
   each_pair([&](int a, int b) { higher[at(end[at(a)]++)] = b; });
-  std::vector<int> diagonal{0}, column;
+  std::vector<int> diagonal, column;
+  diagonal.reserve(at(vertex_count) + 1);
+  diagonal.push_back(0);
   for (int v = 0; v < vertex_count; ++v) {
     const auto first = higher.begin() + start[at(v)], last = higher.begin() + end[at(v)];
     std::sort(first, last);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "baker/core/check.h"
+
 namespace ft {
 namespace {
 
@@ -90,6 +92,13 @@ Choice best_supports(const Vec3& x, std::span<const int> nodes, std::span<const 
   return best;
 }
 
+Interpolation::Link link(int vertex, int share) {
+  Interpolation::Link out;
+  out.vertex = static_cast<std::uint32_t>(vertex) & (Interpolation::k_most_vertices - 1);
+  out.share = static_cast<std::uint32_t>(share) & 63;
+  return out;
+}
+
 /// Whole shares: rounded down, and what is missing goes to those that lost most.
 Interpolation::Row in_shares(const Choice& choice) {
   std::array<int, 3> share;
@@ -106,38 +115,31 @@ Interpolation::Row in_shares(const Choice& choice) {
     ++share[k];
     lost[k] -= 1;
   }
-  Interpolation::Row row;
+  Interpolation::Row row{};
   std::size_t next = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (share[k] == 0) continue;
-    row.coarse[next] = choice.coarse[k];
-    row.share[next++] = static_cast<std::uint8_t>(share[k]);
-  }
+  for (std::size_t k = 0; k < 3; ++k)
+    if (share[k] != 0) row[next++] = link(choice.coarse[k], share[k]);
   return row;
 }
 
 void find_children(Interpolation& p) {
   p.children_start.assign(at(p.coarse_count()) + 1, 0);
   for (const Interpolation::Row& row : p.rows)
-    for (const int c : row.coarse)
-      if (c >= 0) ++p.children_start[at(c) + 1];
+    for (const Interpolation::Link& to : row)
+      if (to.share != 0) ++p.children_start[to.vertex + 1];
   std::partial_sum(p.children_start.begin(), p.children_start.end(), p.children_start.begin());
   p.children.resize(at(p.children_start.back()));
-  p.children_share.resize(p.children.size());
   std::vector<int> next = p.children_start;
   for (std::size_t v = 0; v < p.rows.size(); ++v)
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (p.rows[v].coarse[k] < 0) continue;
-      const std::size_t to = at(next[at(p.rows[v].coarse[k])]++);
-      p.children[to] = static_cast<int>(v);
-      p.children_share[to] = p.rows[v].share[k];
-    }
+    for (const Interpolation::Link& to : p.rows[v])
+      if (to.share != 0) p.children[at(next[to.vertex]++)] = link(static_cast<int>(v), to.share);
 }
 
 }  // namespace
 
 Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> rest) {
   const int n = p.vertex_count();
+  CHECK(n <= Interpolation::k_most_vertices);
   Interpolation result;
   result.coarse_to_fine = independent_set(p);
   std::vector<int> coarse_of(at(n), -1);
@@ -146,8 +148,7 @@ Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> re
   std::vector<int> stamp(at(n), -1), ring, nodes;
   for (int v = 0; v < n; ++v) {
     if (coarse_of[at(v)] >= 0) {
-      result.rows[at(v)].coarse[0] = coarse_of[at(v)];
-      result.rows[at(v)].share[0] = Interpolation::k_shares;
+      result.rows[at(v)][0] = link(coarse_of[at(v)], Interpolation::k_shares);
       continue;
     }
     // Coarse vertices within two rings, nearest first.

@@ -19,17 +19,21 @@ struct Interpolation {
   /// are halves, thirds and quarters: with 63 a sheet that flies loses ten times the momentum to the linear solver.
   static constexpr int k_shares = 60;
   static constexpr float k_share = 1.f / k_shares;
-  /// Up to three coarse vertices per fine vertex (-1: unused); shares > 0 that sum to k_shares.
-  struct Row {
-    std::array<int, 3> coarse{-1, -1, -1};
-    std::array<std::uint8_t, 4> share{0, 0, 0, 0};  ///< the fourth is padding
-    float weight(std::size_t k) const { return k_share * static_cast<float>(share[k]); }
+  /// Of the fine vertex or the coarse one at its other end; vertices are below k_most_vertices.
+  struct Link {
+    std::uint32_t vertex : 26;
+    std::uint32_t share : 6;
+    float weight() const { return k_share * static_cast<float>(share); }
   };
+  static constexpr int k_most_vertices = 1 << 26;
+  static_assert(k_shares < 1 << 6);
+  /// Up to three coarse vertices per fine vertex; shares > 0 that sum to k_shares (0: unused, and all behind it).
+  using Row = std::array<Link, 3>;
   std::vector<Row> rows;
   std::vector<int> coarse_to_fine;  ///< the fine vertex that each coarse one is
-  /// The same by columns: fine vertices of each coarse one, ascending, and what share it has in them.
-  std::vector<int> children_start, children;
-  std::vector<std::uint8_t> children_share;
+  /// The same by columns: fine vertices of each coarse one, ascending.
+  std::vector<int> children_start;
+  std::vector<Link> children;
   int coarse_count() const { return static_cast<int>(coarse_to_fine.size()); }
 };
 

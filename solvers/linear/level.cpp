@@ -33,10 +33,12 @@ SymmetricBlock inverse_of(const Mat3f& block) {
 }  // namespace
 
 void Level::make_room() {
-  if (pattern == &own_pattern) matrix.make_room(own_pattern);
   const std::size_t n = at(size());
   inverse.resize(n);
-  for (auto* v : {&x, &r, &b}) v->resize(n);
+  for (auto* v : {&x, &b}) v->resize(n);
+  if (pattern != &own_pattern) return;
+  matrix.make_room(own_pattern);
+  r.resize(n);
 }
 
 void Level::give_back() {
@@ -116,7 +118,7 @@ void restrict_to(Level& coarse, const Level& fine, std::span<const Vec4f> residu
     for (std::size_t c = begin; c < end; ++c) {
       Vec4f sum = Vec4f::Zero();
       for (int k = p.children_start[c]; k < p.children_start[c + 1]; ++k)
-        sum += static_cast<float>(p.children_share[at(k)]) * residual[at(p.children[at(k)])];
+        sum += static_cast<float>(p.children[at(k)].share) * residual[p.children[at(k)].vertex];
       coarse.b[c] = Interpolation::k_share * sum;
     }
   });
@@ -128,10 +130,9 @@ template <bool k_add>
 void interpolate_onto(Level& fine, const Level& coarse) {
   parallel_for(at(fine.size()), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Interpolation::Row& row = fine.interpolation.rows[i];
       Vec4f sum = Vec4f::Zero();
-      for (std::size_t k = 0; k < 3; ++k)
-        if (row.coarse[k] >= 0) sum += static_cast<float>(row.share[k]) * coarse.x[at(row.coarse[k])];
+      for (const Interpolation::Link from : fine.interpolation.rows[i])
+        if (from.share != 0) sum += static_cast<float>(from.share) * coarse.x[from.vertex];
       sum *= Interpolation::k_share;
       fine.x[i] = k_add ? Vec4f(fine.x[i] + sum) : sum;
     }

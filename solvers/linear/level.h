@@ -43,14 +43,15 @@ struct Level {
 
   // Of a solve.
   std::vector<SymmetricBlock> inverse;  ///< of the diagonal blocks; zero for rows that are held
-  std::vector<Vec4f> x, r, b;
+  std::vector<Vec4f> x, b;
+  std::vector<Vec4f> r;  ///< of the finest without room until its cycle is symmetric
 
   // Towards the next level (absent on the coarsest).
   Interpolation interpolation;
   GalerkinPlan plan;
 
   int size() const { return pattern->vertex_count(); }
-  /// For the vectors of a solve, and of coarse levels the matrix; what is in them is not defined.
+  /// For the vectors of a solve, and of coarse levels r and the matrix; what is in them is not defined.
   void make_room();
   /// Frees the vectors.
   void give_back();

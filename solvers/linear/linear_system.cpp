@@ -37,14 +37,15 @@ struct LinearSystem::Impl {
   bool coarse_is_factored = false;
   std::vector<ExtraBlock> added;
   std::vector<char> held;
-  std::vector<Vec4f> direction, product;
+  std::vector<Vec4f> direction;
+  /// Of the matrix and the direction; then M^-1 residual, of which every entry wants that of the product alone.
+  std::vector<Vec4f> product;
   std::vector<Vec3> best;  ///< of solutions, where later ones are worse
   bool symmetric = false;  ///< the finest level smooths before the correction too
   float alpha = 0;         ///< of the last step: the residual has lost so much of product
 
   Level& fine() { return *levels.front(); }
-  /// M^-1 residual: of the finest level's r, too, nothing is wanted once the coarse correction has been added.
-  std::vector<Vec4f>& preconditioned() { return fine().r; }
+  std::vector<Vec4f>& preconditioned() { return product; }
   void hold(std::span<const char> fixed);
   void refresh_hierarchy();
   bool start(std::span<const Vec3> right_side);
@@ -197,7 +198,8 @@ Products LinearSystem::Impl::apply_cycle() {
       parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
         Lanes with_residual = Lanes::Zero(), with_product = with_residual, norm_squared = with_residual;
         for (std::size_t i = begin; i < end; ++i) {
-          Vec4f& z = level.r[i];
+          const Vec4f last = product[i];
+          Vec4f& z = preconditioned()[i];
           z.setZero();
           if (held[i]) continue;
           const Vec4f& b = level.b[i];
@@ -210,7 +212,7 @@ Products LinearSystem::Impl::apply_cycle() {
             z = level.inverse[i] * b;
           }
           with_residual += (b.array() * z.array()).cast<double>();
-          with_product += (product[i].array() * z.array()).cast<double>();
+          with_product += (last.array() * z.array()).cast<double>();
         }
         return {with_residual.sum(), with_product.sum(), norm_squared.sum()};
       });
@@ -223,6 +225,7 @@ Products LinearSystem::Impl::precondition() {
   const Products first = apply_cycle();
   if (first.with_residual >= k_least_along * first.norm_squared || symmetric) return first;
   symmetric = true;
+  fine().r.resize(fine().b.size());
   Products second = apply_cycle();
   second.with_product = 0;
   return second;
@@ -240,7 +243,7 @@ bool LinearSystem::Impl::start(std::span<const Vec3> right_side) {
     level.b[i].head<3>() = right_side[i].cast<float>();
     sound = sound && level.inverse[i].trace() > 0;
   }
-  for (auto* v : {&direction, &product}) v->assign(level.b.size(), Vec4f::Zero());
+  product.assign(level.b.size(), Vec4f::Zero());
   return sound;
 }
 
