@@ -1,6 +1,6 @@
 // Candidate pairs between features, over one numbering of all vertices: cloth vertices first [0, cloth_vertex_count),
 // then the collider's. A stencil is four vertices; those at or past cloth_vertex_count are kinematic. Found with FCL's
-// trees (fcl_pair_finder.cpp), sorted, each pair once.
+// trees (pair_finder.cpp), sorted, each pair once.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // For the nodes of a tree over triangles, and the triangles: which patches everything below a node is in. Two nodes
 // that have a patch in common need not be looked at where the patch is skipped. Neighbours are mostly in the same
-// patches, so equal sets of patches are kept once. For fcl_pair_finder.cpp.
+// patches, so equal sets of patches are kept once. For pair_finder.cpp.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Features of the two surfaces of a pair search, numbered: faces and edges by their lexicographic rank, so that sorted
 // numbers are sorted stencils; and for every triangle the features it stands for (its own vertices and edges), so that
 // every feature is owned exactly once. Boxes of edges and faces are joined from those of vertices where they are looked
-// at, which costs less than to keep them. For fcl_pair_finder.cpp.
+// at, which costs less than to keep them. For pair_finder.cpp.
 #pragma once
 
 #include <array>

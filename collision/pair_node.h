@@ -1,4 +1,4 @@
-// A node of the box trees of fcl_pair_finder.cpp: 32 bytes with its box. Leaves hold several triangles, whose boxes are
+// A node of the box trees of pair_finder.cpp: 32 bytes with its box. Leaves hold several triangles, whose boxes are
 // joined from those of their vertices where two leaves meet: that takes no more time than nodes all the way down, and a
 // fifth of their room. (Sheets of 4,000 and 40,000 vertices on a body: 4, 6 and 8 triangles to a leaf are equally fast,
 // 2 and 3 a little slower.)

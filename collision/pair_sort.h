@@ -1,6 +1,6 @@
 // Sorting of feature pairs that come up in any order: a pair is one 64-bit key, first feature in the high half. One
 // counting pass over first features, then a short sort within each: three times as fast as std::sort at half a million
-// pairs; few pairs are sorted as they are. For fcl_pair_finder.cpp.
+// pairs; few pairs are sorted as they are. For pair_finder.cpp.
 #pragma once
 
 #include <algorithm>

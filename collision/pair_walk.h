@@ -1,4 +1,4 @@
-// The walk of fcl_pair_finder.cpp over box trees, down to pairs of features whose boxes overlap.
+// The walk of pair_finder.cpp over box trees, down to pairs of features whose boxes overlap.
 #pragma once
 
 #include <cstdint>

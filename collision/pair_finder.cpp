@@ -1,12 +1,10 @@
-// Candidate pairs through FCL's trees (box trees over triangles, built once, refit in place), walked by our own
-// recursion: FCL's virtual traversal takes 2.4 times as long. A pair of triangles whose boxes overlap is reduced to
+// Candidate pairs through box trees over triangles (pair_tree.h), arranged once, refitted in place and walked by our
+// own recursion: FCL's virtual traversal takes 2.4 times as long. A pair of triangles whose boxes overlap is reduced to
 // features at once: every vertex and every edge is owned by one triangle, so each pair of features comes up once.
 //
-// Caution: the trees are built from the first places or boxes seen, since only then is there a place for every vertex.
-// They decide how long a search takes and nothing else: the result is complete for any tree and sorted, so it depends
-// on boxes alone.
-#include <fcl/geometry/bvh/BVH_model.h>
-
+// Caution: the trees are arranged for the first places or boxes seen, since only then is there a place for every
+// vertex. They decide how long a search takes and nothing else: the result is complete for any tree and sorted, so it
+// depends on boxes alone.
 #include <algorithm>
 #include <cmath>
 
@@ -14,183 +12,14 @@
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/contact_pairs.h"
+#include "collision/pair_tree.h"
 #include "collision/pair_walk.h"
 
 namespace ft {
 namespace {
 
-using FclBox = fcl::AABB<float>;
-
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
 constexpr std::size_t k_block = 4096;
-constexpr std::size_t k_limb = 256;  ///< most nodes of a limb, which is refitted as one
-
-/// The tree of one surface; its leaves hold the elements.
-class Tree {
- public:
-  bool built() const { return !nodes_.empty(); }
-  const PairNode* nodes() const { return nodes_.data(); }
-  const PairElement* elements() const { return elements_.data(); }
-  /// Per node: whether an element below it changed in the last refit() of some.
-  const char* marks() const { return marks_.data(); }
-  /// Per node: the patches that everything below it is in.
-  const NodePatches& patches() const { return patches_; }
-
-  /// place_of(vertex): in any unit. patches_of: per element, ascending; no rows: none.
-  template <class Place>
-  void build(std::span<const PairElement> elements, Place&& place_of, const Adjacency& patches_of) {
-    CHECK(elements.size() < (1u << 28));  // PairNode
-    std::vector<fcl::Vector3<float>> points;
-    std::vector<fcl::Triangle> faces;
-    points.reserve(3 * elements.size());
-    first_vertex_ = end_vertex_ = elements.empty() ? 0 : elements[0].v[0];
-    for (const PairElement& e : elements) {
-      const std::size_t first = points.size();
-      for (const int v : e.v) {
-        first_vertex_ = std::min(first_vertex_, v);
-        end_vertex_ = std::max(end_vertex_, v + 1);
-        const fcl::Vector3<float> p = place_of(v);
-        points.push_back(p.allFinite() ? p : fcl::Vector3<float>::Zero());
-      }
-      faces.emplace_back(first, first + 1, first + 2);
-    }
-    fcl::BVHModel<FclBox> model;
-    CHECK(model.beginModel(static_cast<int>(faces.size()), static_cast<int>(points.size())) == fcl::BVH_OK);
-    CHECK(model.addSubModel(points, faces) == fcl::BVH_OK);
-    CHECK(model.endModel() == fcl::BVH_OK);
-    const std::vector<int> order = take_nodes(model);
-    elements_.clear();
-    elements_.reserve(elements.size());
-    for (const int e : order) elements_.push_back(elements[at(e)]);
-    share_out();
-    if (!patches_of.items.empty())
-      patches_.build(nodes_, elements.size(), [&](std::size_t e) { return patches_of.row(order[e]); });
-  }
-
-  /// A refit is begin_refit(), refit_below() for all limbs in any order, end_refit(). changed (per vertex) not empty:
-  /// all other boxes are those of the last refit.
-  void begin_refit(std::span<const char> changed) {
-    any_mark_now_ = true;
-    if (changed.empty()) return;
-    const bool was_marked = any_mark_ || marks_.size() != nodes_.size();
-    any_mark_ = any_mark_now_ =
-        std::any_of(changed.begin() + first_vertex_, changed.begin() + end_vertex_, [](char c) { return c; }) &&
-        std::any_of(elements_.begin(), elements_.end(), [&](const PairElement& e) { return is_changed(e, changed); });
-    if (was_marked) marks_.assign(nodes_.size(), 0);
-  }
-  std::size_t limb_count() const { return limbs_.size(); }
-  void refit_below(std::size_t limb, const PairFeatures& features, std::span<const char> changed) {
-    if (!any_mark_now_) return;
-    for (std::size_t k = limbs_[limb].end; k-- > limbs_[limb].begin;) refit(k, features, changed);
-  }
-  void end_refit(const PairFeatures& features, std::span<const char> changed) {
-    if (!any_mark_now_) return;
-    for (std::size_t i = trunk_.size(); i-- > 0;) refit(trunk_[i], features, changed);
-  }
-
- private:
-  static bool is_changed(const PairElement& e, std::span<const char> changed) {
-    return (changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]) != 0;
-  }
-
-  /// The nodes of FCL's tree, but for those below a node whose elements make a leaf. Returns the elements of all
-  /// leaves, one leaf after the other.
-  std::vector<int> take_nodes(const fcl::BVHModel<FclBox>& model) {
-    const std::size_t count = at(model.getNumBVs());
-    const auto child = [&](std::size_t k) { return model.getBV(static_cast<int>(k)).first_child; };
-    std::vector<int> elements_below(count);
-    for (std::size_t k = count; k-- > 0;)
-      elements_below[k] = child(k) < 0 ? 1 : elements_below[at(child(k))] + elements_below[at(child(k)) + 1];
-    std::vector<char> in_leaf(count, 0);
-    std::vector<int> number(count, 0);  // of those that are taken
-    int taken = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (in_leaf[k] == 0) number[k] = taken++;
-      if (child(k) >= 0 && elements_below[k] <= PairNode::k_most_elements)
-        in_leaf[at(child(k))] = in_leaf[at(child(k)) + 1] = 1;
-    }
-    nodes_.clear();
-    nodes_.reserve(at(taken));
-    std::vector<int> order;
-    order.reserve(at(elements_below[0]));
-    const auto add_below = [&](auto&& self, std::size_t k) -> void {
-      if (child(k) < 0) return order.push_back(-1 - child(k));
-      self(self, at(child(k)));
-      self(self, at(child(k)) + 1);
-    };
-    for (std::size_t k = 0; k < count; ++k) {
-      if (in_leaf[k] != 0) continue;
-      if (elements_below[k] > PairNode::k_most_elements) {
-        nodes_.push_back(PairNode::inner(number[at(child(k))]));
-      } else {
-        nodes_.push_back(PairNode::leaf(static_cast<int>(order.size()), elements_below[k]));
-        add_below(add_below, k);
-      }
-    }
-    return order;
-  }
-
-  bool is_changed(const PairNode& leaf, std::span<const char> changed) const {
-    bool any = false;
-    for (int e = leaf.first_element(); e < leaf.end_element(); ++e) any |= is_changed(elements_[at(e)], changed);
-    return any;
-  }
-  BoxLanes box_of(const PairNode& leaf, const PairFeatures& features) const {
-    BoxLanes box = features.box(elements_[at(leaf.first_element())]);
-    for (int e = leaf.first_element() + 1; e < leaf.end_element(); ++e) box = box.join(features.box(elements_[at(e)]));
-    return box;
-  }
-
-  /// Node k, after its children.
-  void refit(std::size_t k, const PairFeatures& features, std::span<const char> changed) {
-    PairNode& node = nodes_[k];
-    const bool leaf = node.is_leaf();
-    const std::size_t child = leaf ? 0 : at(node.first_child());
-    if (!changed.empty()) {
-      marks_[k] =
-          leaf ? static_cast<char>(is_changed(node, changed)) : static_cast<char>(marks_[child] | marks_[child + 1]);
-      if (marks_[k] == 0) return;
-    }
-    node.set_box(leaf ? box_of(node, features) : nodes_[child].box().join(nodes_[child + 1].box()));
-  }
-
-  /// Limbs are all that is below a node, if that is not too much; the rest is the trunk. FCL puts what is below a node
-  /// in one place, behind it.
-  void share_out() {
-    std::vector<std::size_t> below(nodes_.size(), 0), end(nodes_.size(), 0);
-    for (std::size_t k = nodes_.size(); k-- > 0;) {
-      if (nodes_[k].is_leaf()) continue;
-      const std::size_t child = at(nodes_[k].first_child());
-      below[k] = 2 + below[child] + below[child + 1];
-      end[k] = std::max({child + 2, end[child], end[child + 1]});
-    }
-    std::vector<char> in_limb(nodes_.size(), 0);
-    trunk_.clear();
-    limbs_.clear();
-    for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      if (in_limb[k] != 0) continue;
-      trunk_.push_back(k);
-      if (nodes_[k].is_leaf() || below[k] > k_limb) continue;
-      const std::size_t begin = at(nodes_[k].first_child());
-      CHECK(end[k] - begin == below[k]);
-      limbs_.push_back({begin, end[k]});
-      std::fill_n(&in_limb[begin], below[k], 1);
-    }
-  }
-
-  std::vector<PairNode> nodes_;
-  std::vector<PairElement> elements_;  ///< in the order of their leaves
-  std::vector<char> marks_;
-  NodePatches patches_;
-  struct Limb {
-    std::size_t begin, end;
-  };
-  std::vector<Limb> limbs_;
-  std::vector<std::size_t> trunk_;  ///< all other nodes, ascending
-  bool any_mark_ = false;
-  bool any_mark_now_ = true;               ///< in the refit at hand, or all
-  int first_vertex_ = 0, end_vertex_ = 0;  ///< all vertices of the elements are in here
-};
 
 /// A piece of the search: two nodes that overlap, or a node of the cloth (a) against itself (b -1).
 struct Task {
@@ -208,7 +37,7 @@ struct PairFinder::Impl {
   bool want_edges = true;
   std::span<const char> skipped;  ///< of the search at hand
   BoxMargin self_margin{};
-  Tree cloth, collider;
+  PairTree cloth, collider;
 
   // Scratch, kept from search to search.
   std::vector<Task> tasks, next_tasks;
@@ -283,7 +112,7 @@ template <bool k_some>
 void PairFinder::Impl::run_task(const Task& task, const char* changed, FoundPairs& out) const {
   out.vertex_face.clear();
   out.edge_edge.clear();
-  const Tree& other = task.self ? cloth : collider;
+  const PairTree& other = task.self ? cloth : collider;
   const NodePatches* patches = task.self && !skipped.empty() && cloth.patches().built() ? &cloth.patches() : nullptr;
   const auto run = [&]<bool k_self>() {
     const PairWalk<k_some, k_self> walk{
@@ -340,7 +169,7 @@ void PairFinder::build_trees(Place&& place_of) {
 
 void PairFinder::arrange(std::span<const Vec3> x) {
   CHECK(x.size() == at(impl_->features.vertex_count));
-  build_trees([&](int v) -> fcl::Vector3<float> { return x[at(v)].cast<float>(); });
+  build_trees([&](int v) -> Vec3f { return x[at(v)].cast<float>(); });
 }
 
 void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped,
@@ -367,9 +196,9 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.skipped = skipped;
   const PairFeatures& features = m.features;
   m.features.set_boxes(boxes);
-  build_trees([&](int v) -> fcl::Vector3<float> {
+  build_trees([&](int v) -> Vec3f {
     const VertexBox& box = boxes[at(v)];
-    fcl::Vector3<float> middle;
+    Vec3f middle;
     for (int k = 0; k < 3; ++k)
       middle[k] = 0.5f * (static_cast<float>(box.lo[at(k)]) - static_cast<float>(box.minus_hi[at(k)]));
     return middle;
