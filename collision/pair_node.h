@@ -19,7 +19,7 @@ class PairNode {
   static PairNode inner(int first_child) { return PairNode(first_child); }
   /// first_element is below 2^28.
   static PairNode leaf(int first_element, int element_count) {
-    return PairNode(-1 - (first_element * k_most_elements + element_count - 1));
+    return PairNode(-1 - (first_element * k_most_elements + (element_count - 1)));
   }
 
   bool is_leaf() const { return box_.minus_hi[7] < 0; }
