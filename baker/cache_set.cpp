@@ -38,9 +38,9 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
           primary.name + ".collider", "collider", false);
     const auto is_there = [&](const ManifestSystem& system) { return system.name == primary.name; };
     if (std::any_of(systems_.begin(), systems_.end(), is_there)) continue;
-    std::vector<Vec3> body(static_cast<std::size_t>(primary.trajectory->surface().vertex_count()));
-    primary.trajectory->bind_pose(body);
-    add({g, -1, false, shared(make_triangle_mesh(primary.name, body, primary.trajectory->surface().triangles))},
+    add({g, -1, false,
+         shared(make_triangle_mesh(primary.name, bind_pose_of(*primary.trajectory),
+                                   primary.trajectory->surface().triangles))},
         primary.name, "body", alone);
   }
 }

@@ -4,15 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 
-#include "baker/pins.h"
+#include "baker/plan_cloths.h"
 #include "baker/plan_cords.h"
 #include "baker/quality.h"
-#include "baker/vertex_maps.h"
-#include "io/shot/mesh_file.h"
-#include "io/shot/weld.h"
-#include "solvers/cloth/coarse_garment.h"
 
 namespace ft {
 namespace {
@@ -25,10 +20,6 @@ constexpr double k_smallest_primary = 0.05, k_largest_primary = 30;
 constexpr double k_still = 1e-5;
 
 constexpr double k_prop_step = 1.0 / 600;  ///< longest between samples of a prop's adjusted track [s]
-
-std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
-  return shot.file.filename().string() + ": cloth \"" + cloth.name + "\"";
-}
 
 ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const std::filesystem::path& cache) {
   ImportRequest request;
@@ -54,16 +45,10 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   return request;
 }
 
-std::vector<Vec3> bind_pose(const Trajectory& trajectory) {
-  std::vector<Vec3> out(static_cast<std::size_t>(trajectory.surface().vertex_count()));
-  trajectory.bind_pose(out);
-  return out;
-}
-
 Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory, const CharacterInfo& info,
                      std::vector<std::string>& notes) {
   const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
-  const auto pose = bind_pose(trajectory);
+  const auto pose = bind_pose_of(trajectory);
   if (pose.empty() || trajectory.surface().triangles.empty())
     return input_error("there is no surface in " + spec.file.filename().string(), where,
                        "cloth needs a body: a mesh, or a BVH, for which one is built");
@@ -100,176 +85,6 @@ TeleportScan scan_of(const Shot& shot, const PrimarySpec& spec, const Trajectory
   settings.frames = spec.teleport_frames;
   return scan_teleports(trajectory, settings);
 }
-
-/// Frames of the shot -> seconds from its first frame.
-HoldSpan hold_span(const PinSpec& pin, const Shot& shot) {
-  HoldSpan out;
-  if (pin.from) out.from = (*pin.from - shot.first_frame) / shot.fps;
-  if (pin.until) out.until = (*pin.until - shot.first_frame) / shot.fps;
-  out.fade = pin.fade / shot.fps;
-  return out;
-}
-
-/// A pin on vertices of the file -> on joined ones; the strongest weight counts.
-ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
-  std::map<int, double> weight_of;
-  for (std::size_t i = 0; i < pin.vertices.size(); ++i) {
-    double& weight = weight_of[joined_of[static_cast<std::size_t>(pin.vertices[i])]];
-    weight = std::max(weight, pin.weights.empty() ? 1.0 : pin.weights[i]);
-  }
-  ClothPin out;
-  out.stiffness = pin.stiffness;
-  out.max_pull = pin.max_pull;
-  for (const auto& [vertex, weight] : weight_of) out.vertices.push_back(vertex), out.weights.push_back(weight);
-  return out;
-}
-
-Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, GroupPlan& group,
-                   std::vector<std::string>& notes) {
-  const auto located = [&](Error error) {
-    error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
-    return error;
-  };
-  std::vector<std::string> mesh_notes;
-  auto mesh = read_obj(spec.mesh, &mesh_notes);
-  if (!mesh) return located(mesh.error());
-  ClothGarment garment;
-  GarmentOutput output;
-  garment.name = spec.name;
-  mesh->name = spec.name;
-  place_garment(*mesh, spec);
-  garment.mesh = *mesh;
-  output.mesh = std::make_shared<const Mesh>(std::move(*mesh));
-  if (spec.weld > 0 && all_finite(output.mesh->positions)) {
-    WeldedMesh welded = weld(*output.mesh, spec.weld);
-    garment.mesh = std::move(welded.mesh);
-    garment.mesh.name = spec.name;
-    output.joined_of = std::move(welded.joined_of);
-  }
-  if (const Status checked = check_garment(garment.mesh); !checked) {
-    Error error = located(checked.error());
-    if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
-    return error;
-  }
-  for (const std::string& note : inspect_garment(garment.mesh).notes) mesh_notes.push_back(note);
-  for (const std::string& note : mesh_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
-
-  if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
-    std::vector<std::string> pattern_notes;
-    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes); !cut)
-      return located(cut.error());
-    for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
-    garment.pattern_scale = spec.pattern_scale;
-  }
-  garment.sewing_time = spec.sewing_time;
-  if (!garment.mesh.stitches.empty() && spec.sewing_time > shot.preroll / shot.fps)
-    notes.push_back(fmt::format(
-        "cloth \"{}\": its seams close {:.3g} s after the shot's first frame: sewing_time is longer than the pre-roll",
-        spec.name, spec.sewing_time - shot.preroll / shot.fps));
-  if (!garment.mesh.stitches.empty() && shot.preroll == 0)
-    notes.push_back(fmt::format("cloth \"{}\" is sewn in the shot's first frames: there is no pre-roll", spec.name));
-
-  const Fabric* fabric = find_fabric(spec.fabric);
-  if (!fabric) return located(usage_error("fabric \"" + spec.fabric + "\" does not exist"));
-  garment.fabric = *fabric;
-  for (const auto& [key, value] : spec.fabric_overrides)
-    if (!set_fabric_value(garment.fabric, key, value))
-      return located(usage_error("fabric has no value \"" + key + "\""));
-
-  auto maps = resolve_maps(spec.maps, *output.mesh);
-  if (!maps) return located(maps.error());
-  garment.maps =
-      output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
-  garment.thickness = spec.thickness;
-  garment.friction = spec.friction;
-  garment.self_friction = spec.self_friction;
-  garment.self_collision = spec.self_collision;
-
-  const Box cloth_box = bounds(garment.mesh.positions);
-  Box body_box = bounds(bind_pose(*primary.trajectory));
-  const double ratio = cloth_box.size().maxCoeff() / body_box.size().maxCoeff();
-  if (ratio > 10 || ratio < 0.01)
-    notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?",
-                                spec.name, cloth_box.size().maxCoeff(), body_box.size().maxCoeff()));
-  body_box.inflate(0.1 * body_box.size().maxCoeff());
-  if (!cloth_box.overlaps(body_box))
-    notes.push_back(fmt::format("cloth \"{}\" is nowhere near \"{}\" in the bind pose: are offset and up right?",
-                                spec.name, primary.name));
-  output.pattern_scale = garment.pattern_scale;
-  group.setup.garments.push_back(std::move(garment));
-  group.outputs.push_back(std::move(output));
-  return {};
-}
-
-/// The pins of a garment of the group, once all garments are there: they may hold to any of them.
-Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, GroupPlan& group, std::size_t own,
-                std::vector<std::string>& notes) {
-  auto& garments = group.setup.garments;
-  const auto located = [&](Error error) {
-    error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
-    return error;
-  };
-  const GarmentOutput& output = group.outputs[own];
-  const auto body = bind_pose(*primary.trajectory);
-  for (const PinSpec& pin_spec : spec.pins) {
-    const auto target = std::find_if(garments.begin(), garments.end(),
-                                     [&](const ClothGarment& garment) { return garment.name == pin_spec.to; });
-    const bool to_world = pin_spec.to == k_pin_world, to_cloth = !pin_spec.to.empty() && !to_world;
-    CHECK(!to_cloth || target != garments.end());  // the shot file was judged
-    auto resolved = to_cloth ? resolve_pin(pin_spec, *output.mesh, target->mesh.positions, triangulate(target->mesh))
-                             : resolve_pin(pin_spec, *output.mesh, body, primary.trajectory->surface().triangles);
-    if (!resolved) return located(resolved.error());
-    ClothPin pin = output.joined_of.empty() ? std::move(*resolved) : on_joined(*resolved, output.joined_of);
-    pin.hold = hold_span(pin_spec, shot);
-    pin.opens = pin_spec.opens;
-    pin.to_world = to_world;
-    if (to_cloth) {
-      pin.to = static_cast<int>(target - garments.begin());
-      if (const Status held = check_footholds(garments, own, pin, notes); !held) return located(held.error());
-    }
-    garments[own].pins.push_back(std::move(pin));
-  }
-  return {};
-}
-
-void note_riding(const ClothGarment& garment, std::vector<std::string>& notes) {
-  const std::optional<CoarseGarment> moves = without_short_edges(garment);
-  if (!moves) return;
-  const std::size_t all = garment.mesh.positions.size();
-  notes.push_back(
-      fmt::format("cloth \"{}\": {} of {} vertices ride on the others: their edges are shorter than {:.2g} mm, where "
-                  "nobody sees them move",
-                  garment.name, all - moves->kept.size(), all, 1e3 * shortest_edge(garment)));
-}
-
-ClothSetup common_setup(const Shot& shot) {
-  ClothSetup setup;
-  setup.first_frame = shot.first_frame;
-  setup.fps = shot.fps;
-  setup.preroll_frames = shot.preroll;
-  setup.gravity = shot.solver.gravity;
-  setup.wind = shot.wind.velocity;
-  setup.min_substeps = shot.solver.min_substeps;
-  setup.max_substeps = shot.solver.max_substeps;
-  setup.newton_iterations = shot.solver.newton_iterations;
-  setup.linear_tolerance = shot.solver.linear_tolerance;
-  setup.bdf2 = shot.solver.integrator == "bdf2";
-  setup.feasible.gap = shot.solver.gap;
-  setup.feasible.carve = shot.solver.carve;
-  return setup;
-}
-
-}  // namespace
-
-void place_garment(Mesh& mesh, const ClothSpec& spec) {
-  for (Vec3& p : mesh.positions) {
-    p *= spec.unit_scale;
-    if (spec.up == "z") p = Vec3(p.x(), p.z(), -p.y());
-    p += spec.offset;
-  }
-}
-
-namespace {
 
 void note_pass(const HybridPass& pass, const std::string& primary, std::vector<std::string>& notes) {
   notes.push_back(pass.text(primary));
@@ -339,29 +154,9 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
     primary.info.format = spec.shape;
     primary.info.vertex_count = primary.trajectory->surface().vertex_count();
     primary.info.triangle_count = static_cast<int>(primary.trajectory->surface().triangles.size());
-    primary.info.bind_bounds = bounds(bind_pose(*primary.trajectory));
+    primary.info.bind_bounds = bounds(bind_pose_of(*primary.trajectory));
     primary.info.up = "y";
   }
-  return {};
-}
-
-Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
-  GroupPlan group{p, common_setup(shot), {}, {}};
-  group.setup.primary = plan.primaries[p].trajectory;
-  group.setup.teleports = plan.primaries[p].scan.teleports;
-  std::vector<const ClothSpec*> worn;
-  for (const ClothSpec& spec : shot.cloths) {
-    if (spec.on != plan.primaries[p].name) continue;
-    if (const Status added = add_garment(shot, spec, plan.primaries[p], group, plan.notes); !added) return added;
-    worn.push_back(&spec);
-  }
-  for (std::size_t g = 0; g < worn.size(); ++g)
-    if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added) return added;
-  if (group.setup.garments.empty()) return {};
-  for (const ClothGarment& garment : group.setup.garments) note_riding(garment, plan.notes);
-  apply_quality(shot, group.setup);
-  group.setup.poses = std::make_shared<FeasiblePoses>(group.setup.primary, group.setup.feasible);
-  plan.groups.push_back(std::move(group));
   return {};
 }
 

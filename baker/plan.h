@@ -67,7 +67,4 @@ using Importer = std::function<Result<ImportedPrimary>(const ImportRequest&)>;
 /// import_cache: folder for import results, may be empty.
 Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache);
 
-/// Scale, axis and offset of the shot file -> metres, Y-up, the primary's bind pose.
-void place_garment(Mesh& mesh, const ClothSpec& spec);
-
 }  // namespace ft

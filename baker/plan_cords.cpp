@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "baker/plan_common.h"
 #include "baker/quality.h"
 #include "io/shot/mesh_file.h"
 #include "solvers/cords/generators.h"
@@ -109,14 +110,8 @@ Status plan_cords(const Shot& shot, std::size_t p, BakePlan& plan) {
                        "a primary that yields is followed by cords that are all two-way so far");
   CHECK(primary.prop);
   setup.prop = rigid_prop(*primary.prop, primary.track, two_way);
-  setup.first_frame = shot.first_frame;
-  setup.fps = shot.fps;
-  setup.preroll_frames = shot.preroll;
-  setup.gravity = shot.solver.gravity;
-  setup.wind = shot.wind.velocity;
-  setup.min_substeps = shot.solver.min_substeps;
+  take_from_shot(shot, setup);
   apply_quality(shot, setup);
-  setup.bdf2 = shot.solver.integrator == "bdf2";
   plan.groups.push_back(std::move(group));
   return {};
 }

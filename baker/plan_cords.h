@@ -5,7 +5,8 @@
 
 namespace ft {
 
-/// The cords of one primary, with it as their prop, as a group of their own; `out` stays as it is where there are none.
+/// The cords of one primary, with it as their prop, as a group of their own; `plan` stays as it is where there are
+/// none.
 Status plan_cords(const Shot& shot, std::size_t primary, BakePlan& plan);
 
 /// The graph that a shot file's table means [m].

@@ -24,8 +24,7 @@ PrimaryMass primary_mass(const PrimarySpec& spec, const Trajectory& trajectory) 
     out.given = true;
     return out;
   }
-  std::vector<Vec3> bind(static_cast<std::size_t>(trajectory.surface().vertex_count()));
-  trajectory.bind_pose(bind);
+  const std::vector<Vec3> bind = bind_pose_of(trajectory);
   const double spacing = k_columns * bounds(bind).size().maxCoeff();
   if (spacing > 0) out.volume = enclosed_volume(bind, trajectory.surface().triangles, spacing).value_or(0);
   out.kilograms = k_body_density * out.volume;

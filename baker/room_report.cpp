@@ -19,8 +19,7 @@ constexpr int k_bridged_frames = 2;
 /// Per part: whether it is the nearest of the body to some vertex of a garment in the bind pose.
 std::vector<char> wearing_parts(const GroupPlan& group, const Trajectory& body) {
   const Surface& surface = body.surface();
-  std::vector<Vec3> bind(at(surface.vertex_count()));
-  body.bind_pose(bind);
+  const std::vector<Vec3> bind = bind_pose_of(body);
   std::vector<char> out(surface.parts.size(), 0);
   for (const ClothGarment& garment : group.setup.garments) {
     const auto& x = garment.mesh.positions;

@@ -169,8 +169,7 @@ Result<YieldedCharacter> yield_character(const Shot& shot, const PrimarySpec& sp
   if (placed.clip < 0)
     return located(usage_error("plays no clip: there is no motion that could yield", {},
                                "name one of its clips, or the file with its animation"));
-  std::vector<Vec3> bind(at(trajectory.surface().vertex_count()));
-  trajectory.bind_pose(bind);
+  const std::vector<Vec3> bind = bind_pose_of(trajectory);
   const std::vector<const StandInKeys*> stand_ins = stand_ins_of(shot, spec.name);
   const std::vector<Foot> feet = find_feet(placed, bind);
   const int frame_count = shot.last_frame - shot.first_frame + 1;

@@ -46,4 +46,11 @@ class Trajectory {
   virtual double preroll() const = 0;
 };
 
+/// bind_pose() [m].
+inline std::vector<Vec3> bind_pose_of(const Trajectory& trajectory) {
+  std::vector<Vec3> out(static_cast<std::size_t>(trajectory.surface().vertex_count()));
+  trajectory.bind_pose(out);
+  return out;
+}
+
 }  // namespace ft

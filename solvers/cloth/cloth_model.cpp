@@ -133,8 +133,7 @@ void place_and_pin(ClothModel& model) {
   std::vector<Triangle> body;
   model.start.assign(model.contact.rest.begin(), model.contact.rest.end());
   if (setup.primary) {
-    bind.resize(at(setup.primary->surface().vertex_count()));
-    setup.primary->bind_pose(bind);
+    bind = bind_pose_of(*setup.primary);
     body = setup.primary->surface().triangles;
     const Eigen::Isometry3d place = setup.primary->bind_to_start();
     for (std::size_t g = 0; g < setup.garments.size(); ++g) {

@@ -1,0 +1,20 @@
+// What all groups of a plan have in common, cloth or cords.
+#pragma once
+
+#include "io/shot/shot.h"
+
+namespace ft {
+
+/// Frames, forces and integrator of the shot into a ClothSetup or LockstepSetup.
+template <class Setup>
+void take_from_shot(const Shot& shot, Setup& setup) {
+  setup.first_frame = shot.first_frame;
+  setup.fps = shot.fps;
+  setup.preroll_frames = shot.preroll;
+  setup.gravity = shot.solver.gravity;
+  setup.wind = shot.wind.velocity;
+  setup.min_substeps = shot.solver.min_substeps;
+  setup.bdf2 = shot.solver.integrator == "bdf2";
+}
+
+}  // namespace ft
