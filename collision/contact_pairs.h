@@ -1,5 +1,5 @@
 // Candidate pairs between features, over one numbering of all vertices: cloth vertices first [0, cloth_vertex_count),
-// then the collider's. A stencil is four vertices; those at or past cloth_vertex_count are kinematic. Found with FCL's
+// then the collider's. A stencil is four vertices; those at or past cloth_vertex_count are kinematic. Found with box
 // trees (pair_finder.cpp), sorted, each pair once.
 #pragma once
 
@@ -73,8 +73,7 @@ class PairFinder {
                     std::span<const char> skipped = {}, const PairSieve& sieve = {});
 
  private:
-  template <class Place>
-  void build_trees(Place&& place_of);
+  void build_trees(const std::function<Vec3f(int)>& place_of);
   void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
               std::span<const char> skipped, const PairSieve& sieve, ContactPairs& out);
 

@@ -159,8 +159,7 @@ void PairFinder::set_patches(const Adjacency& members) {
     for (const int t : members.row(p)) m.patches_of.items[at(next[at(t)]++)] = p;
 }
 
-template <class Place>
-void PairFinder::build_trees(Place&& place_of) {
+void PairFinder::build_trees(const std::function<Vec3f(int)>& place_of) {
   Impl& m = *impl_;
   if (!m.features.cloth.empty()) m.cloth.build(m.features.cloth, place_of, m.patches_of);
   if (!m.features.collider.empty()) m.collider.build(m.features.collider, place_of, {});
@@ -169,7 +168,7 @@ void PairFinder::build_trees(Place&& place_of) {
 
 void PairFinder::arrange(std::span<const Vec3> x) {
   CHECK(x.size() == at(impl_->features.vertex_count));
-  build_trees([&](int v) -> Vec3f { return x[at(v)].cast<float>(); });
+  build_trees([&](int v) { return x[at(v)].cast<float>(); });
 }
 
 void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped,

@@ -102,26 +102,26 @@ void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<c
                 FrameReport& report) {
   if (std::all_of(m.released.begin(), m.released.end(), [](int part) { return part < 0; })) return;
   const auto parts = model.collider->part_of_vertex();
-  for (std::size_t part = 0; part < touched.size(); ++part) {
+  for (int part = 0; part < static_cast<int>(touched.size()); ++part) {
     std::vector<Vec3> through;
     std::vector<int> index;
     for (std::size_t i = 0; i < m.released.size(); ++i)
-      if (m.released[i] == static_cast<int>(part)) through.push_back(m.x[i]), index.push_back(static_cast<int>(i));
+      if (m.released[i] == part) through.push_back(m.x[i]), index.push_back(static_cast<int>(i));
     if (through.empty()) continue;
     report.released_vertices += static_cast<int>(through.size());
     bool any_touched = false;
     for (std::size_t p = 0; p < touched.size(); ++p)
-      any_touched = any_touched || (touched[p] && model.may_pass(static_cast<int>(part), static_cast<int>(p)));
+      any_touched = any_touched || (touched[p] && model.may_pass(part, static_cast<int>(p)));
     std::vector<Triangle> shell;
     for (const Triangle& t : model.collider->triangles())
-      if (model.may_pass(static_cast<int>(part), parts[at(t[0])])) shell.push_back(t);
+      if (model.may_pass(part, parts[at(t[0])])) shell.push_back(t);
     double deepest = 0;
     int worst = index[0];
     for (const Penetration& p : penetrations(through, body, shell))
       if (p.depth > deepest) deepest = p.depth, worst = index[at(p.vertex)];
     add_incident(model, m, Incident::Kind::k_released, worst, deepest,
                  "no room: " + std::to_string(through.size()) + " vertices let through part " +
-                     model.collider->trajectory().surface().parts[part].name,
+                     model.collider->trajectory().surface().parts[at(part)].name,
                  report);
     if (!any_touched && deepest == 0)
       for (const int i : index) m.released[at(i)] = -1;

@@ -1,7 +1,5 @@
 #include "solvers/cloth/cloth_motion.h"
 
-#include <utility>
-
 #include "baker/core/check.h"
 #include "baker/core/state_points.h"
 
@@ -31,62 +29,60 @@ void store(State& state, const ClothMotion& m) {
 }
 
 ClothMotion take_motion(State& state, std::size_t count) {
-  ClothMotion m;
-  const auto take = [&](const char* name, std::size_t size, auto&& read) {
+  const auto points = [&](std::string_view name) {
+    std::vector<Vec3> out = points_of(state, name, count);
+    state.set(name, {});
+    return out;
+  };
+  const auto numbers = [&](std::string_view name, std::size_t size) {
     const auto* values = state.find(name);
     CHECK(values && values->size() == size);
-    read(*values);
+    std::vector<double> out = *values;
     state.set(name, {});
+    return out;
   };
-  for (const auto& [name, points] : {std::pair("x", &m.x),
-                                     {"v", &m.v},
-                                     {"x_previous", &m.x_previous},
-                                     {"v_previous", &m.v_previous},
-                                     {"x_older", &m.x_older},
-                                     {"v_older", &m.v_older}})
-    take(name, 3 * count, [points = points](const std::vector<double>& values) {
-      const auto view = as_points(values);
-      points->assign(view.begin(), view.end());
-    });
-  take("h_previous", 1, [&](const std::vector<double>& values) { m.h_previous = values[0]; });
-  take("h_older", 1, [&](const std::vector<double>& values) { m.h_older = values[0]; });
-  take("released", count, [&](const std::vector<double>& values) { m.released = {values.begin(), values.end()}; });
-  take("tangled", count, [&](const std::vector<double>& values) { m.tangled = {values.begin(), values.end()}; });
+  ClothMotion m;
+  m.x = points("x");
+  m.v = points("v");
+  m.x_previous = points("x_previous");
+  m.v_previous = points("v_previous");
+  m.x_older = points("x_older");
+  m.v_older = points("v_older");
+  m.h_previous = numbers("h_previous", 1)[0];
+  m.h_older = numbers("h_older", 1)[0];
+  for (const double part : numbers("released", count)) m.released.push_back(static_cast<int>(part));
+  for (const double is : numbers("tangled", count)) m.tangled.push_back(static_cast<char>(is));
   return m;
 }
 
 KeptMotion::KeptMotion(const ClothMotion& m)
     : x_(m.x), h_previous_(m.h_previous), h_older_(m.h_older), released_(m.released), tangled_(m.tangled) {
-  const auto rounded = [](std::span<const Vec3> values) {
+  const auto from = [](std::span<const Vec3> origin, std::span<const Vec3> values) {
     std::vector<Vec3f> out(values.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = values[i].cast<float>();
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = (values[i] - origin[i]).cast<float>();
     return out;
   };
-  const auto from_x = [&](std::span<const Vec3> values) {
-    std::vector<Vec3f> out(values.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = (values[i] - m.x[i]).cast<float>();
-    return out;
-  };
-  v_ = rounded(m.v);
-  v_previous_ = rounded(m.v_previous);
-  v_older_ = rounded(m.v_older);
-  to_previous_ = from_x(m.x_previous);
-  to_older_ = from_x(m.x_older);
+  const std::vector<Vec3> zero(x_.size(), Vec3::Zero());
+  v_ = from(zero, m.v);
+  v_previous_ = from(zero, m.v_previous);
+  v_older_ = from(zero, m.v_older);
+  to_previous_ = from(x_, m.x_previous);
+  to_older_ = from(x_, m.x_older);
 }
 
 ClothMotion KeptMotion::motion() const {
-  ClothMotion m;
-  m.x = x_;
-  const auto exact = [](std::span<const Vec3f> values, std::vector<Vec3> sum) {
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i].cast<double>();
-    return sum;
+  const auto back = [](std::vector<Vec3> origin, std::span<const Vec3f> values) {
+    for (std::size_t i = 0; i < origin.size(); ++i) origin[i] += values[i].cast<double>();
+    return origin;
   };
   const std::vector<Vec3> zero(x_.size(), Vec3::Zero());
-  m.v = exact(v_, zero);
-  m.v_previous = exact(v_previous_, zero);
-  m.v_older = exact(v_older_, zero);
-  m.x_previous = exact(to_previous_, x_);
-  m.x_older = exact(to_older_, x_);
+  ClothMotion m;
+  m.x = x_;
+  m.v = back(zero, v_);
+  m.v_previous = back(zero, v_previous_);
+  m.v_older = back(zero, v_older_);
+  m.x_previous = back(x_, to_previous_);
+  m.x_older = back(x_, to_older_);
   m.h_previous = h_previous_;
   m.h_older = h_older_;
   m.released = released_;

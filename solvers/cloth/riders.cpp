@@ -19,10 +19,10 @@ Mat3 frame_of(const std::array<int, 3>& t, std::span<const Vec3> x) {
   return triangle_frame(x[at(t[0])], x[at(t[1])], x[at(t[2])]);
 }
 
-std::vector<std::vector<Riders::Spoke>> spokes_of(const Riders& riders, const Mesh& moves) {
-  std::vector<int> group_at(moves.positions.size(), -1);
-  for (std::size_t g = 0; g < riders.into.size(); ++g) group_at[at(riders.into[g])] = static_cast<int>(g);
-  std::vector<std::vector<Riders::Spoke>> out(riders.into.size());
+/// group_at: of each vertex that moves; -1: none.
+std::vector<std::vector<Riders::Spoke>> spokes_of(const Mesh& moves, std::span<const int> group_at,
+                                                  std::size_t group_count) {
+  std::vector<std::vector<Riders::Spoke>> out(group_count);
   for (const Edge& e : unique_edges(triangulate(moves)))
     for (const auto& [from, to] : {std::pair(e[0], e[1]), std::pair(e[1], e[0])})
       if (const int g = group_at[at(from)]; g >= 0)
@@ -31,7 +31,11 @@ std::vector<std::vector<Riders::Spoke>> spokes_of(const Riders& riders, const Me
 }
 
 Riders riders_of(const ClothGarment& given, const CoarseGarment& coarse) {
-  Riders out{given.name, given.mesh, coarse.kept, coarse.places, {}, {}, {}, {}, {}, {}};
+  Riders out;
+  out.name = given.name;
+  out.mesh = given.mesh;
+  out.kept = coarse.kept;
+  out.places = coarse.places;
   const std::vector<Vec3>& x = given.mesh.positions;
   const std::vector<Vec3>& moved = coarse.garment.mesh.positions;
   std::vector<int> group_at(moved.size(), -1);
@@ -51,7 +55,7 @@ Riders riders_of(const ClothGarment& given, const CoarseGarment& coarse) {
     out.offset.back() = frame_of(place.vertex, moved).transpose() * (x[v] - place.of(moved));
     out.around.back() = x[v] - moved[at(into)];
   }
-  out.spokes = spokes_of(out, coarse.garment.mesh);
+  out.spokes = spokes_of(coarse.garment.mesh, group_at, out.group_count());
   out.alone.assign(out.group_count(), 1);
   for (const Edge& e : unique_edges(triangulate(given.mesh))) {
     const int a = out.group[at(e[0])], b = out.group[at(e[1])];
