@@ -12,9 +12,12 @@
 #include "solvers/energies/cords.h"
 #include "solvers/energies/registry.h"
 #include "tests/solvers/cloth_patches.h"
+#include "tests/support/spring_sheet.h"
 
 namespace ft {
 namespace {
+
+using test::dense;
 
 struct Scene {
   ClothTopology topology;
@@ -43,17 +46,6 @@ Scene make_scene(Energy& energy, ClothTopology topology, std::uint64_t seed, dou
   s.x_t0 = jitter(s.x, 0.2 * amplitude, seed + 2);
   s.x_tm1 = jitter(s.x_t0, 0.2 * amplitude, seed + 3);
   return s;
-}
-
-Eigen::MatrixXd dense(const BlockMatrix& m) {
-  const int n = m.pattern->vertex_count();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  for (int i = 0; i < n; ++i)
-    m.pattern->visit_row(i, [&](int j, int place) {
-      const Mat3 block = m.blocks[at(place)].cast<double>();
-      out.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
-    });
-  return out;
 }
 
 Eigen::VectorXd gradient_of(const Energy& energy, const std::vector<Vec3>& x) {

@@ -5,73 +5,16 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
-#include "baker/core/random.h"
 #include "solvers/linear/extra_rows.h"
-#include "solvers/linear/galerkin_plan.h"
-#include "solvers/linear/interpolation.h"
 #include "solvers/linear/linear_system.h"
 #include "solvers/linear/row_product.h"
+#include "tests/support/spring_sheet.h"
 
 namespace ft {
 namespace {
 
-double noise(std::size_t element, std::uint64_t draw) {
-  return 2 * random_uniform({.element = element}, draw) - 1;
-}
-
-/// A crumpled sheet of springs: stiff along the springs, a thousand times softer across them, as cloth is.
-struct Sheet {
-  int n;
-  std::vector<Vec3> rest, x;
-  std::vector<std::array<int, 4>> springs;
-  BlockPattern pattern;
-
-  explicit Sheet(int cells) : n(cells + 1) {
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const std::size_t v = rest.size();
-        const double h = 1.0 / cells;
-        rest.emplace_back(h * (i + 0.2 * noise(v, 0)), h * (j + 0.2 * noise(v, 1)), 0);
-        x.push_back(rest.back() + Vec3(0, 0, 0.05 * std::sin(9 * rest.back().x()) * std::cos(7 * rest.back().y())));
-      }
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const int v = j * n + i;
-        if (i + 1 < n) springs.push_back({v, v + 1, -1, -1});
-        if (j + 1 < n) springs.push_back({v, v + n, -1, -1});
-        if (i + 1 < n && j + 1 < n) springs.push_back({v, v + n + 1, -1, -1});
-      }
-    pattern = make_pattern(n * n, std::array{springs});
-  }
-
-  void fill(BlockMatrix& m) const {
-    for (std::size_t i = 0; i < x.size(); ++i)
-      m.blocks[at(pattern.diagonal[i])] += Mat3f::Identity() * 0.02f * float(1e4 / (n * n));
-    for (const auto& s : springs) {
-      const Vec3 d = (x[at(s[1])] - x[at(s[0])]).normalized();
-      const Mat3f k = (1000 * d * d.transpose() + Mat3::Identity()).cast<float>();
-      for (const int a : {0, 1})
-        for (int b = a; b < 2; ++b) m.blocks[at(pattern.find(s[at(a)], s[at(b)]))] += a == b ? k : Mat3f(-k);
-    }
-  }
-
-  std::vector<Vec3> load() const {
-    std::vector<Vec3> b;
-    for (std::size_t i = 0; i < x.size(); ++i) b.emplace_back(noise(i, 5), noise(i, 6) - 2, noise(i, 7));
-    return b;
-  }
-};
-
-Eigen::MatrixXd dense(const BlockMatrix& m) {
-  const int n = m.pattern->vertex_count();
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  for (int i = 0; i < n; ++i)
-    m.pattern->visit_row(i, [&](int j, int place) {
-      const Mat3 block = m.blocks[at(place)].cast<double>();
-      a.block<3, 3>(3 * i, 3 * j) = j < i ? Mat3(block.transpose()) : block;
-    });
-  return a;
-}
+using test::dense, test::fill_with_noise, test::noise;
+using Sheet = test::SpringSheet;
 
 Eigen::VectorXd dense_solution(const Sheet& sheet, std::span<const PairTerm> terms, std::span<const char> fixed) {
   BlockMatrix m;
@@ -135,16 +78,6 @@ TEST(BlockPattern, Has_every_pair_of_a_stencil_once_whatever_order_and_however_o
   EXPECT_EQ(BlockPattern().vertex_count(), 0);
 }
 
-/// Any values, symmetric.
-void fill_with_noise(BlockMatrix& m) {
-  for (std::size_t p = 0; p < m.pattern->block_count(); ++p)
-    for (int c = 0; c < 9; ++c) m.blocks[p].data()[c] = float(noise(p, static_cast<std::uint64_t>(c)));
-  for (int i = 0; i < m.pattern->vertex_count(); ++i) {
-    Mat3f& block = m.blocks[at(m.pattern->diagonal[at(i)])];
-    block = (block + block.transpose()).eval();
-  }
-}
-
 TEST(RowProduct, Multiplies_rows_of_even_and_odd_length_by_both_halves_of_a_symmetric_matrix) {
   std::vector<std::array<int, 4>> springs;
   for (int i = 1; i < 12; ++i)
@@ -170,68 +103,6 @@ TEST(RowProduct, Multiplies_rows_of_even_and_odd_length_by_both_halves_of_a_symm
     const Vec4f row = row_product(matrix, at(i), x.data());
     EXPECT_LT((row.head<3>().cast<double>() - expected.segment<3>(3 * i)).norm(), 1e-5);  // a hundred roundings
     EXPECT_EQ(row[3], 0);
-  }
-}
-
-TEST(GalerkinPlan, Sums_up_what_a_dense_product_does) {
-  const Sheet sheet(11);
-  const Interpolation p = make_interpolation(sheet.pattern, sheet.rest);
-  BlockMatrix fine;
-  fine.reset(sheet.pattern);
-  fill_with_noise(fine);
-  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(3 * sheet.pattern.vertex_count(), 3 * p.coarse_count());
-  for (int i = 0; i < sheet.pattern.vertex_count(); ++i)
-    for (const Interpolation::Link to : p.rows[at(i)])
-      if (to.share != 0)
-        weights.block<3, 3>(3 * i, 3 * static_cast<int>(to.vertex))
-            .diagonal()
-            .setConstant(double(to.share) / Interpolation::k_shares);
-  const Eigen::MatrixXd expected = weights.transpose() * dense(fine) * weights;
-  GalerkinPlan plan;
-  const BlockPattern pattern = plan.build(sheet.pattern, p);
-  BlockMatrix coarse;
-  coarse.reset(pattern);
-  plan.apply(fine, coarse);
-  EXPECT_LT((dense(coarse) - expected).norm(), 1e-5 * expected.norm());
-}
-
-/// Vertices that belong to nothing, amid a sheet, move its parts apart by as many places.
-TEST(GalerkinPlan, Gives_the_same_bits_whatever_the_distances_between_places) {
-  const Sheet sheet(11);
-  const int n = sheet.pattern.vertex_count();
-  const auto coarse_of = [&](int gap, int& coarse_gap) {
-    const auto moved = [&](int v) { return v < n / 2 ? v : v + gap; };
-    std::vector<std::array<int, 4>> springs;
-    for (const auto& s : sheet.springs) springs.push_back({moved(s[0]), moved(s[1]), -1, -1});
-    std::vector<Vec3> rest(at(n + gap), Vec3::Zero());
-    for (int v = 0; v < n; ++v) rest[at(moved(v))] = sheet.rest[at(v)];
-    const BlockPattern pattern = make_pattern(n + gap, std::array{springs});
-    BlockMatrix fine, coarse;
-    fine.reset(pattern);
-    for (int v = 0; v < n; ++v)
-      sheet.pattern.visit_row(v, [&](int u, int place) {
-        for (int c = 0; u >= v && c < 9; ++c)
-          fine.blocks[at(pattern.find(moved(v), moved(u)))].data()[c] =
-              float(noise(at(place), static_cast<std::uint64_t>(c)));
-      });
-    GalerkinPlan plan;
-    const Interpolation p = make_interpolation(pattern, rest);
-    const BlockPattern coarse_pattern = plan.build(pattern, p);
-    coarse.reset(coarse_pattern);
-    plan.apply(fine, coarse);
-    coarse_gap = p.coarse_count();
-    std::vector<Mat3f> blocks;
-    for (std::size_t i = 0; i < at(p.coarse_count()); ++i)
-      if (p.coarse_to_fine[i] < n / 2 || p.coarse_to_fine[i] >= n / 2 + gap)
-        blocks.insert(blocks.end(), coarse.blocks.begin() + coarse_pattern.diagonal[i],
-                      coarse.blocks.begin() + coarse_pattern.diagonal[i + 1]);
-    return blocks;
-  };
-  int none = 0, some = 0;
-  const std::vector<Mat3f> expected = coarse_of(0, none);
-  for (const int gap : {1, 20, 30, 31, 60, 65300, 65534, 65535, 65536, 140000}) {
-    EXPECT_EQ(coarse_of(gap, some), expected) << gap;
-    EXPECT_EQ(some, none + gap);
   }
 }
 
@@ -384,45 +255,6 @@ TEST(LinearSystem, solves_loose_vertices_and_separate_pieces) {
   const LinearReport report = system.solve(std::vector<Vec3>(400, Vec3(1, 2, 3)), std::vector<char>(400, 0), x);
   EXPECT_TRUE(report.converged);
   for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-4);
-}
-
-TEST(Interpolation, sums_to_one_and_nearly_reproduces_linear_fields) {
-  const Sheet sheet(40);
-  const Interpolation p = make_interpolation(sheet.pattern, sheet.rest);
-  EXPECT_LT(p.coarse_count(), 40 * 40 / 3);
-  double squared = 0;
-  for (std::size_t i = 0; i < sheet.rest.size(); ++i) {
-    Vec3 x = Vec3::Zero();
-    float sum = 0;
-    int shares = 0;
-    for (const Interpolation::Link to : p.rows[i]) {
-      x += double(to.weight()) * sheet.rest[at(p.coarse_to_fine[to.vertex])];
-      sum += to.weight();
-      shares += to.share;
-    }
-    EXPECT_NEAR(sum, 1, 1e-6);
-    EXPECT_EQ(shares, Interpolation::k_shares);
-    squared += (x - sheet.rest[i]).squaredNorm();
-  }
-  const double cell = 1.0 / 40;
-  EXPECT_LT(std::sqrt(squared / double(sheet.rest.size())), 0.25 * cell);
-}
-
-TEST(Interpolation, reproduces_linear_fields_of_a_regular_mesh_but_at_its_border) {
-  constexpr int n = 21;
-  std::vector<Vec3> rest;
-  std::vector<std::array<int, 4>> triangles;
-  for (int v = 0; v < n * n; ++v) rest.emplace_back(v % n, v / n, 0);
-  for (int v = 0; v < n * n; ++v)
-    if (v % n + 1 < n && v / n + 1 < n)
-      triangles.push_back({v, v + 1, v + n + 1, -1}), triangles.push_back({v, v + n + 1, v + n, -1});
-  const Interpolation p = make_interpolation(make_pattern(n * n, std::array{triangles}), rest);
-  for (int v = 0; v < n * n; ++v) {
-    if (std::min({v % n, v / n, n - 1 - v % n, n - 1 - v / n}) < 2) continue;
-    Vec3 x = Vec3::Zero();
-    for (const Interpolation::Link to : p.rows[at(v)]) x += to.share * rest[at(p.coarse_to_fine[to.vertex])];
-    EXPECT_EQ(x, Vec3(Interpolation::k_shares * rest[at(v)]));
-  }
 }
 
 }  // namespace
