@@ -17,15 +17,23 @@ bool is_cord(const Triangle& t) {
 }
 
 template <class T>
-std::size_t rank(const std::vector<T>& sorted, const T& value) {
+std::size_t rank(std::span<const T> sorted, const T& value) {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+}
+
+std::vector<Edge> edges_of(std::span<const Triangle> triangles) {
+  std::vector<Edge> edges = unique_edges(triangles);
+  std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
+  return edges;
 }
 
 }  // namespace
 
 PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
-                           std::span<const Triangle> collider_triangles)
-    : vertex_count(cloth_vertex_count + collider_vertex_count) {
+                           std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges)
+    : vertex_count(cloth_vertex_count + collider_vertex_count),
+      cloth_edges(known_edges),
+      collider_edges(edges_of(collider_triangles)) {
   std::vector<Triangle> all(cloth_triangles.begin(), cloth_triangles.end());
   all.insert(all.end(), collider_triangles.begin(), collider_triangles.end());
   faces = all;
@@ -33,12 +41,14 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   std::erase_if(faces, is_cord);
   faces.shrink_to_fit();
-  edges = unique_edges(all);
-  std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
+  if (std::vector<Edge> found = edges_of(cloth_triangles); !std::ranges::equal(found, known_edges)) {
+    own_cloth_edges = std::move(found);
+    cloth_edges = own_cloth_edges;
+  }
 
   cloth.reserve(cloth_triangles.size());
   collider.reserve(collider_triangles.size());
-  std::vector<char> face_owned(faces.size()), edge_owned(edges.size()), vertex_owned(at(vertex_count));
+  std::vector<char> face_owned(faces.size()), edge_owned(edge_count()), vertex_owned(at(vertex_count));
   const auto take = [](std::vector<char>& owned, std::size_t i) {
     const bool free = !owned[i];
     owned[i] = 1;
@@ -50,7 +60,7 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
     e.v = all[k];
     e.face = -1;
     if (!is_cord(e.v)) {
-      const std::size_t face = rank(faces, e.v);
+      const std::size_t face = rank<Triangle>(faces, e.v);
       if (take(face_owned, face)) e.face = static_cast<int>(face);
     }
     for (std::size_t i = 0; i < 3; ++i) {
@@ -58,7 +68,8 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
       CHECK(of_cloth == (e.v[i] < cloth_vertex_count));
       const auto [lo, hi] = std::minmax(e.v[i], e.v[(i + 1) % 3]);
       if (lo == hi) continue;
-      const std::size_t edge = rank(edges, Edge{lo, hi});
+      const std::size_t edge = of_cloth ? rank<Edge>(cloth_edges, {lo, hi})
+                                        : cloth_edges.size() + rank<Edge>(collider_edges, {lo, hi});
       if (take(edge_owned, edge)) e.owned_edge[at(e.owned_edge_count++)] = static_cast<int>(edge);
     }
     for (std::size_t i = 0; i < 3; ++i)

@@ -26,15 +26,24 @@ struct PairElement {
 struct PairFeatures {
   int vertex_count = 0;
   std::vector<Triangle> faces;               ///< by rank
-  std::vector<Edge> edges;                   ///< by rank
+  std::span<const Edge> cloth_edges;         ///< by rank, first the cloth's
+  std::vector<Edge> own_cloth_edges;         ///< what cloth_edges sees, unless it is the caller's
+  std::vector<Edge> collider_edges;          ///< the ranks that follow
   std::vector<PairElement> cloth, collider;  ///< in the order of the triangles, until there are trees over them
 
   /// Of one search. What has a vertex that is nowhere is so too.
   std::span<const VertexBox> vertex_boxes;
   bool all_present = true;  ///< no vertex is nowhere
 
+  /// As PairFinder's.
   PairFeatures(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
-               std::span<const Triangle> collider_triangles);
+               std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges);
+  PairFeatures(PairFeatures&&) noexcept = default;  // no copies: cloth_edges may see its own list
+  std::size_t edge_count() const { return cloth_edges.size() + collider_edges.size(); }
+  const Edge& edge(int rank) const {
+    const std::size_t k = at(rank);
+    return k < cloth_edges.size() ? cloth_edges[k] : collider_edges[k - cloth_edges.size()];
+  }
   void set_boxes(std::span<const VertexBox> boxes);
   bool present(int v) const { return all_present || !vertex_boxes[at(v)].is_nowhere(); }
   BoxLanes box(int v) const { return BoxLanes::load(vertex_boxes[at(v)]); }

@@ -52,7 +52,7 @@ struct PairFinder::Impl {
     return {{key_first(key), f[0], f[1], f[2]}};
   }
   Stencil edge_edge(std::uint64_t key) const {
-    const Edge &a = features.edges[at(key_first(key))], &b = features.edges[at(key_second(key))];
+    const Edge &a = features.edge(key_first(key)), &b = features.edge(key_second(key));
     return {{a[0], a[1], b[0], b[1]}};
   }
   void sift(const PairSieve& sieve, FoundPairs& pairs) const;
@@ -137,8 +137,9 @@ void PairFinder::Impl::sift(const PairSieve& sieve, FoundPairs& pairs) const {
 }
 
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
-                       std::span<const Triangle> collider_triangles)
-    : impl_(new Impl(PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles))) {}
+                       std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges)
+    : impl_(new Impl(PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles,
+                                  known_edges))) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 
@@ -221,7 +222,7 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
     if (task == 0)
       sort(m.sort_vertex_face, at(features.vertex_count), &FoundPairs::vertex_face);
     else
-      sort(m.sort_edge_edge, features.edges.size(), &FoundPairs::edge_edge);
+      sort(m.sort_edge_edge, features.edge_count(), &FoundPairs::edge_edge);
   });
   give_back(found);
 

@@ -101,12 +101,12 @@ struct PairWalk {
     if (!want_edges || a.owned_edge_count == 0) return;
     for (int j = 0; j < b.owned_edge_count; ++j) {
       const int rb = b.owned_edge[at(j)];
-      const Edge& vb = features.edges[at(rb)];
+      const Edge& vb = features.edge(rb);
       const BoxLanes box = features.box(vb);
       if (!box.overlaps(box_a) || !features.present(vb[0]) || !features.present(vb[1])) continue;
       for (int i = 0; i < a.owned_edge_count; ++i) {
         const int ra = a.owned_edge[at(i)];
-        const Edge& va = features.edges[at(ra)];
+        const Edge& va = features.edge(ra);
         if (!smaller(features.box(va)).overlaps(box)) continue;
         if (va[0] == vb[0] || va[0] == vb[1] || va[1] == vb[0] || va[1] == vb[1]) continue;
         if (!features.present(va[0]) || !features.present(va[1])) continue;

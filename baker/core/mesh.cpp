@@ -61,15 +61,20 @@ std::vector<Edge> unique_edges(std::span<const Triangle> triangles) {
 }
 
 Adjacency vertex_neighbours(std::size_t vertex_count, std::span<const Edge> edges) {
-  std::vector<std::array<int, 2>> both;
-  both.reserve(2 * edges.size());
-  for (const Edge& e : edges) both.insert(both.end(), {{e[0], e[1]}, {e[1], e[0]}});
-  std::sort(both.begin(), both.end());
   Adjacency out;
   out.start.assign(vertex_count + 1, 0);
-  out.items.reserve(both.size());
-  for (const auto& b : both) ++out.start[at(b[0]) + 1], out.items.push_back(b[1]);
+  for (const Edge& e : edges)
+    for (const int v : e) ++out.start[at(v) + 1];
   std::partial_sum(out.start.begin(), out.start.end(), out.start.begin());
+  out.items.resize(2 * edges.size());
+  std::vector<int> next(out.start.begin(), out.start.end() - 1);
+  // Of sorted edges, the lower neighbours of all vertices first: rows are ascending then.
+  for (const Edge& e : edges) out.items[at(next[at(e[1])]++)] = e[0];
+  for (const Edge& e : edges) out.items[at(next[at(e[0])]++)] = e[1];
+  for (std::size_t i = 0; i < vertex_count; ++i) {
+    const auto begin = out.items.begin() + out.start[i], end = out.items.begin() + out.start[i + 1];
+    if (!std::is_sorted(begin, end)) std::sort(begin, end);
+  }
   return out;
 }
 

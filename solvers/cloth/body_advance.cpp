@@ -81,7 +81,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     s.pin_motion[p] = h / in.h * motion;
   }
   StepInput step;
-  step.x_t0 = cloth.x;
+  step.x_t0 = std::span(s.piece.start).first(cloth.x.size());
   step.v_t0 = cloth.v;
   step.x_tm1 = cloth.x_previous;
   step.v_tm1 = cloth.v_previous;
@@ -95,7 +95,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.pin_target = s.pins;
   step.pin_motion = s.pin_motion;
   step.push = in.push;
-  step.balls = {s.piece.centre, s.piece.slack, cloth.x};
+  step.balls = {s.piece.centre, s.piece.slack, step.x_t0};
   step.friction_share = in.friction_share;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations;
@@ -119,7 +119,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     return all;
   };
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
-  give_back(s.piece.carry);  // piece.all has it
+  give_back(s.piece.carry, cloth.x);  // piece.all and piece.start have them
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
   report.lost_weight += h / in.h * result.lost_weight;
@@ -137,11 +137,12 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     sum.peak = std::max(sum.peak, force);
     if (force > 0) sum.contact_time += h;
   }
-  std::copy_n(s.end.begin(), cloth.x.size(), cloth.x_older.begin());
-  // What was newest grows older, and what was oldest has become the newest.
+  // What was newest grows older; of the velocities what was oldest has become the newest.
+  const std::size_t n = step.x_t0.size();
   cloth.x_older.swap(cloth.x_previous);
+  std::copy_n(s.piece.start.begin(), n, cloth.x_previous.begin());
+  cloth.x.assign(s.end.begin(), s.end.begin() + static_cast<std::ptrdiff_t>(n));
   cloth.v_older.swap(cloth.v_previous);
-  cloth.x_previous.swap(cloth.x);
   cloth.v_previous.swap(cloth.v);
   cloth.h_older = cloth.h_previous;
   cloth.h_previous = step.h;

@@ -60,10 +60,9 @@ Vec3 mean_of(std::span<const Vec3> values) {
 Candidates::Candidates(const ClothModel& model)
     : model_(model),
       finder_(model.vertex_count(), model.triangles, model.collider ? model.collider->vertex_count() : 0,
-              shifted_triangles(model)),
+              shifted_triangles(model), model.rest_edges.edges),
       patches_(model.contact.rest, model.triangles,
-               k_patch_reach * ContactModel::self_radius(largest(model.contact.radius))),
-      neighbours_(vertex_neighbours(at(model.vertex_count()), model.rest_edges.edges)) {
+               k_patch_reach * ContactModel::self_radius(largest(model.contact.radius))) {
   radius_ = std::max(radius_, largest(model.contact.radius));
   self_radius_ = ContactModel::self_radius(largest(model.contact.radius));
   finder_.set_patches(patches_.members());
@@ -139,12 +138,13 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = h * cloth.v[i];
   piece.carry = inertia_;
   if (near_body_.vertex_face.empty()) return;
+  const Adjacency neighbours = vertex_neighbours(cloth.x.size(), model_.rest_edges.edges);
   CarryInput input;
   input.cloth_vertex_count = static_cast<int>(cloth.x.size());
   input.x = piece.start;
   input.body_motion = piece.body_motion;
   input.inertia = inertia_;
-  input.neighbours = &neighbours_;
+  input.neighbours = &neighbours;
   input.clumps = &model_.clumps;
   input.smooth = &model_.carry_smooth;
   input.pairs = &near_body_;
@@ -167,23 +167,23 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
                        k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() +
                        k_slack_body * std::min(fastest_, k_farthest_range) + k_slack_least;
   piece.slack[i] = k_slack_way * way.norm() + std::min(spare, most_spare_[at(model_.contact.garment[i])]);
-  set_box(i, cloth, piece);
+  set_box(i, piece);
 }
 
-void Candidates::set_box(std::size_t i, const ClothMotion& cloth, const PieceMotion& piece) {
-  const Vec3 centre = cloth.x[i] + piece.centre[i] - frame_;
-  boxes_[i] = box_frame_.swept(cloth.x[i], cloth.x[i] + piece.all[i] - frame_, 0.5 * radius_);
+void Candidates::set_box(std::size_t i, const PieceMotion& piece) {
+  const Vec3 &start = piece.start[i], centre = start + piece.centre[i] - frame_;
+  boxes_[i] = box_frame_.swept(start, start + piece.all[i] - frame_, 0.5 * radius_);
   boxes_[i].include(box_frame_.swept(centre, centre, piece.slack[i] + 0.5 * radius_));
 }
 
 /// Which patches of cloth are flat in the whole of what this piece may do, as far as is known.
-void Candidates::begin_flat(const ClothMotion& cloth, const PieceMotion& piece) {
-  patches_.begin(cloth.x);
+void Candidates::begin_flat(const PieceMotion& piece) {
+  patches_.begin(std::span(piece.start).first(piece.carry.size()));
   lost_.clear();
-  std::vector<Vec3> carried(cloth.x.size());
+  std::vector<Vec3> carried(piece.carry.size());
   for (const std::vector<Vec3>* way : {&piece.carry, &piece.centre}) {
     parallel_for(carried.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) carried[i] = cloth.x[i] + (*way)[i];
+      for (std::size_t i = begin; i < end; ++i) carried[i] = piece.start[i] + (*way)[i];
     });
     patches_.keep(carried, true, lost_);
   }
@@ -212,7 +212,7 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
       boxes_[nc + i] = box_frame_.swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
     }
   });
-  if (any_self_) begin_flat(cloth, piece);
+  if (any_self_) begin_flat(piece);
   give_back(pairs_.vertex_face, pairs_.edge_edge);  // their memory is needed for the search
   Touching touching;
   finder_.find(boxes_, any_self_, pairs_, patches_.flat(), sieve(cloth, piece, &touching));

@@ -80,11 +80,11 @@ class Candidates {
   bool counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const;
   int part_of(const Stencil& stencil) const;
   void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);
-  void set_box(std::size_t vertex, const ClothMotion& cloth, const PieceMotion& piece);
+  void set_box(std::size_t vertex, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
   double renew_carried(const ClothMotion& cloth, PieceMotion& piece);
   void add_touching(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs, Touching& touching) const;
-  void begin_flat(const ClothMotion& cloth, const PieceMotion& piece);
+  void begin_flat(const PieceMotion& piece);
   void mark_lost();
   void add_missing(const ClothMotion& cloth, const PieceMotion& piece);
   void drop_blocked();
@@ -95,7 +95,6 @@ class Candidates {
   const ClothModel& model_;
   PairFinder finder_;
   FlatPatches patches_;
-  Adjacency neighbours_;  ///< of cloth vertices along edges
   double radius_ = 1e-3, self_radius_ = 0;
   bool any_self_ = false;
   std::vector<double> most_spare_;  ///< per garment, of the slack that is not for the way [m]

@@ -97,8 +97,8 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
   }
   if (any_self_) {
     lost_.clear();
-    std::vector<Vec3> carried(cloth.x.size());
-    for (std::size_t i = 0; i < carried.size(); ++i) carried[i] = cloth.x[i] + piece.carry[i];
+    std::vector<Vec3> carried(piece.carry.size());
+    for (std::size_t i = 0; i < carried.size(); ++i) carried[i] = piece.start[i] + piece.carry[i];
     if (!patches_.keep(carried, false, lost_)) mark_lost();
   }
   return renew(cloth, piece);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baker/core/check.h"
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 
 namespace ft {
@@ -59,7 +60,6 @@ void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_
   x_start_ = x_start;
   h_ = h;
   way_.assign(at(model_.cloth_vertex_count), 0.f);
-  x_last_.clear();
   state_vf_.assign(pairs.vertex_face.size(), {-1.f, 0.f});
   state_ee_.assign(pairs.edge_edge.size(), {-1.f, 0.f});
   contacts_.clear();
@@ -156,19 +156,18 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, st
   block_contacts_.clear();
 }
 
-void ContactPotential::update(std::span<const Vec3> x) {
-  const std::size_t n = way_.size();
-  const bool first = x_last_.empty();
-  x_last_.resize(n);
-  parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!first) way_[i] += static_cast<float>((x[i] - x_last_[i]).norm());
-      x_last_[i] = x[i];
-    }
+void ContactPotential::update(std::span<const Vec3> x, std::span<const Vec3> move, double share) {
+  CHECK(move.empty() || move.size() == way_.size());
+  parallel_for(move.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) way_[i] += static_cast<float>(share * move[i].norm());
   });
   contacts_.clear();
   update_kind(true, x, 0);
   update_kind(false, x, 0);
+}
+
+void ContactPotential::forget_contacts() {
+  give_back(contacts_);
 }
 
 void ContactPotential::extend(std::span<const Vec3> x) {

@@ -52,11 +52,14 @@ class ContactPotential {
   /// h: its length [s], friction_share: of all friction [1].
   void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h, double friction_share = 1);
 
-  /// Finds the active contacts at x (all vertices). Distances are evaluated anew only where the pair can have come
-  /// within reach.
-  void update(std::span<const Vec3> x);
+  /// Finds the active contacts at x (all vertices): where the cloth was at the last update, and on by `share` of the
+  /// move (per cloth vertex [m]); empty: nothing has moved, or it is the first. Distances are evaluated anew only where
+  /// the pair can have come within reach.
+  void update(std::span<const Vec3> x, std::span<const Vec3> move = {}, double share = 1);
   /// Fixes normal forces for friction at the contacts of the last update.
   void lag_friction();
+  /// Gives back the memory of the contacts: there are none until the next update. Friction stays fixed.
+  void forget_contacts();
   /// Takes up the pairs that have come behind those of begin(), at x, the positions of the last update and of
   /// lag_friction().
   void extend(std::span<const Vec3> x);
@@ -98,7 +101,6 @@ class ContactPotential {
   std::span<const Vec3> x_start_;
   double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]
-  std::vector<Vec3> x_last_;
   /// Distance when it was last evaluated (-1: never) and what the pair's vertices had gone then, at least [m].
   struct PairState {
     float distance, way;

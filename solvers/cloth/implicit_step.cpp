@@ -213,9 +213,10 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     contact.add_gradient(all, s.gradient);
     contact.add_terms(all, terms);
     s.system.add_pair_terms(terms);
-    give_back(terms, s.trial, s.cut);  // not for the linear solve
     for (Vec3& g : s.gradient) g = -g;
     const double before = of_cloth + contact.value(all);
+    give_back(terms, s.trial, s.cut);  // not for the linear solve
+    contact.forget_contacts();
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
     const auto find_direction = [&](std::span<const char> held) {
@@ -282,7 +283,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
         }
         return most;
       });
-      contact.update(s.trial);
+      contact.update(s.trial, s.direction, factor);  // from where it was, or back by half
       of_trial = potential_of_cloth(cloth(s.trial));
       const double after = of_trial + contact.value(s.trial);
       finite = std::isfinite(after);
@@ -298,7 +299,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       std::copy_n(s.trial.begin(), n, all.begin());
       of_cloth = of_trial;
     } else {
-      contact.update(all);
+      contact.update(all, s.direction, 2 * factor);
       result.last_move = 0;
     }
     result.seconds_contact += watch.lap();

@@ -267,7 +267,7 @@ void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient,
     }
   });
   measured_ = false;  // the next question is about another place
-  give_back(rho_, moment_);
+  give_back(last_.phi, rho_, moment_);
 }
 
 void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const {

@@ -20,7 +20,7 @@ Vec3 somewhere(std::uint64_t draw, std::uint64_t i, double size) {
 struct Heap {
   ContactModel model;
   ContactPairs pairs;  ///< all vertices with faces, and edges, of consecutive vertices; none of the body with itself
-  std::vector<Vec3> rest, start, moved, displacement;
+  std::vector<Vec3> rest, start, way, moved, displacement;  ///< way: of the cloth, from start to moved
 
   Heap() {
     model.cloth_vertex_count = k_cloth;
@@ -31,8 +31,11 @@ struct Heap {
     for (std::uint64_t i = 0; i < k_all; ++i) {
       if (i < k_cloth) rest.push_back(somewhere(0, i, 1));
       start.push_back(somewhere(1, i, 0.01));
-      moved.push_back(start.back() + (i < k_cloth ? somewhere(2, i, 5e-4) : Vec3::Zero().eval()));
-      if (i < k_cloth) displacement.push_back(somewhere(3, i, 5e-4));
+      moved.push_back(start.back());
+      if (i >= k_cloth) continue;
+      way.push_back(somewhere(2, i, 5e-4));
+      moved.back() += way.back();
+      displacement.push_back(somewhere(3, i, 5e-4));
     }
     model.rest = rest;
     for (int v = 0; v < k_all; ++v)
@@ -65,7 +68,7 @@ Outcome walk(const Heap& heap, double come_late) {
   contact.begin(pairs, heap.start, 0.01);
   contact.update(heap.start);
   contact.lag_friction();
-  contact.update(heap.moved);
+  contact.update(heap.moved, heap.way);
   contact.lag_friction();
   pairs.vertex_face.insert(pairs.vertex_face.end(), late.vertex_face.begin(), late.vertex_face.end());
   pairs.edge_edge.insert(pairs.edge_edge.end(), late.edge_edge.begin(), late.edge_edge.end());
@@ -82,7 +85,7 @@ Outcome walk(const Heap& heap, double come_late) {
   std::sort(out.near.begin(), out.near.end());
   std::vector<Vec3> next = heap.moved;
   for (std::size_t i = 0; i < k_cloth; ++i) next[i] += heap.displacement[i];
-  contact.update(next);
+  contact.update(next, heap.displacement);
   out.value = contact.value(next);
   out.gradient.assign(k_cloth, Vec3::Zero());
   contact.add_gradient(next, out.gradient);
