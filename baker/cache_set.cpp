@@ -10,6 +10,14 @@
 namespace ft {
 namespace {
 
+template <class To, class From>
+std::vector<To> converted(std::span<const From> points) {
+  std::vector<To> out;
+  out.reserve(points.size());
+  for (const From& p : points) out.push_back(p.template cast<typename To::Scalar>());
+  return out;
+}
+
 std::shared_ptr<const Mesh> shared(Mesh mesh) {
   return std::make_shared<const Mesh>(std::move(mesh));
 }
@@ -110,15 +118,15 @@ Snapshot CacheSet::take(std::span<const State> states) const {
       solvers_[source.group]->collider_positions(state, x);
     else
       plan_.primaries[plan_.groups[source.group].primary].trajectory->sample(state.time, x);
-    out.positions.push_back(std::move(x));
+    out.positions.push_back(converted<Vec3f, Vec3>(x));
   }
   return out;
 }
 
 std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::span<const Vec3> x,
-                                          const std::vector<Vec3>* before) const {
-  if (before == nullptr) return std::vector<Vec3>(x.size(), Vec3::Zero());
-  std::vector<Vec3> v = *before;
+                                          std::span<const Vec3f> before) const {
+  if (before.empty()) return std::vector<Vec3>(x.size(), Vec3::Zero());
+  std::vector<Vec3> v = converted<Vec3, Vec3f>(before);
   // Motion blur must not see the way from one place to the other.
   const auto& teleports = plan_.primaries[plan_.groups[source.group].primary].scan.teleports;
   if (const Teleport* teleport = teleport_into(teleports, frame)) carry(*teleport, std::span(v));
@@ -128,10 +136,11 @@ std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::
 
 Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
   for (std::size_t i = 0; i < writers_.size(); ++i) {
-    const std::vector<Vec3>& x = snapshot.positions[i];
+    const std::vector<Vec3> x = converted<Vec3, Vec3f>(snapshot.positions[i]);
     std::vector<Vec3> v;
     if (sources_[i].garment >= 0)
-      v = velocities_of(sources_[i], snapshot.frame, x, before != nullptr ? &before->positions[i] : nullptr);
+      v = velocities_of(sources_[i], snapshot.frame, x,
+                        before != nullptr ? std::span(before->positions[i]) : std::span<const Vec3f>());
     for (auto& writer : writers_[i])
       if (const Status written = writer->write_frame(x, v); !written) return written;
   }

@@ -16,10 +16,10 @@ namespace ft {
 
 using Solvers = std::vector<std::unique_ptr<Solver>>;
 
-/// Positions of every cached system at one frame [m].
+/// Positions of every cached system at one frame, as the files will have them [m].
 struct Snapshot {
   int frame = 0;
-  std::vector<std::vector<Vec3>> positions;
+  std::vector<std::vector<Vec3f>> positions;
 };
 
 class CacheSet {
@@ -50,7 +50,7 @@ class CacheSet {
   void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
   /// Of a garment at `frame` [m/s].
   std::vector<Vec3> velocities_of(const Source& source, int frame, std::span<const Vec3> x,
-                                  const std::vector<Vec3>* before) const;
+                                  std::span<const Vec3f> before) const;
   void add(Source source, std::string name, const std::string& role, bool all_formats);
 
   const BakePlan& plan_;

@@ -32,7 +32,7 @@ __attribute__((constructor(101))) void check_machine() {
 constexpr int k_mapped_from = 1 << 20;
 /// Smaller ones come and go with every Newton iteration: what they leave at the end of the heap, up to so much [bytes],
 /// is theirs again a moment later, and costs more to return than to keep.
-constexpr int k_kept_at_end = 8 << 20;
+constexpr int k_kept_at_end = 2 << 20;
 
 void give_memory_back() {
 #if defined(M_MMAP_THRESHOLD)

@@ -36,7 +36,9 @@ int checkpoint_interval(std::span<const State> states) {
 }
 
 bool finite(const Snapshot& snapshot) {
-  return std::all_of(snapshot.positions.begin(), snapshot.positions.end(), [](const auto& x) { return all_finite(x); });
+  return std::all_of(snapshot.positions.begin(), snapshot.positions.end(), [](const std::vector<Vec3f>& x) {
+    return std::all_of(x.begin(), x.end(), [](const Vec3f& p) { return p.allFinite(); });
+  });
 }
 
 /// Mean of the last frames [s].

@@ -68,8 +68,8 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
       CHECK(of_cloth == (e.v[i] < cloth_vertex_count));
       const auto [lo, hi] = std::minmax(e.v[i], e.v[(i + 1) % 3]);
       if (lo == hi) continue;
-      const std::size_t edge = of_cloth ? rank<Edge>(cloth_edges, {lo, hi})
-                                        : cloth_edges.size() + rank<Edge>(collider_edges, {lo, hi});
+      const std::size_t edge =
+          of_cloth ? rank<Edge>(cloth_edges, {lo, hi}) : cloth_edges.size() + rank<Edge>(collider_edges, {lo, hi});
       if (take(edge_owned, edge)) e.owned_edge[at(e.owned_edge_count++)] = static_cast<int>(edge);
     }
     for (std::size_t i = 0; i < 3; ++i)

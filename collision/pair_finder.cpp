@@ -138,8 +138,8 @@ void PairFinder::Impl::sift(const PairSieve& sieve, FoundPairs& pairs) const {
 
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                        std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges)
-    : impl_(new Impl(PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles,
-                                  known_edges))) {}
+    : impl_(new Impl(
+          PairFeatures(cloth_vertex_count, cloth_triangles, collider_vertex_count, collider_triangles, known_edges))) {}
 PairFinder::~PairFinder() = default;
 PairFinder::PairFinder(PairFinder&&) noexcept = default;
 

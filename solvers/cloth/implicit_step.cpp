@@ -270,6 +270,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       truncate();
     }
     s.direction.swap(s.cut);
+    give_back(s.cut);
 
     double factor = 1, of_trial = 0;
     bool accepted = false, finite = true, whole = true;

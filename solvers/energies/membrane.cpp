@@ -247,17 +247,19 @@ void Membrane::begin_step(const StepContext& context) {
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     Vertices v;
     Deformation d;
-    alignas(32) Lane e[3];
+    alignas(32) Lane e[3], before[3] = {};
+    const double a = history ? context.a : 1, b = history ? context.b : 0;
     for (std::size_t i = begin; i < end; ++i) {
       slots_->vertices.get(i, v);
       deformation(v, groups_[i], context.x_t0, d);
-      strain(d, reference_[i].strain);
-      if (!history) continue;
-      deformation(v, groups_[i], context.x_tm1, d);
       strain(d, e);
+      if (history) {
+        deformation(v, groups_[i], context.x_tm1, d);
+        strain(d, before);
+      }
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < k_lanes; ++l)
-          reference_[i].strain[k][l] = context.a * reference_[i].strain[k][l] - context.b * e[k][l];
+          reference_[i].strain[k][l] = static_cast<float>(a * e[k][l] - b * before[k][l]);
     }
   });
 }

@@ -1,10 +1,11 @@
 // In-plane elasticity of cloth: constant-strain triangles, orthotropic St. Venant-Kirchhoff, with strain-rate damping.
 //   U = sum A/2 (E.CE + d (E - E_ref).C(E - E_ref)),   d = damping time / rate time of the integrator
 //       + sum A k (t(E11 - L1) + t(E22 - L2)),   t'' rising from 0 to 1 over a strain of 1 %: limits of a weave
-// E is the Green strain (E11, E22, 2 E12) in weft/warp axes, E_ref what the integrator's rate formula subtracts from E:
-// a body that moves rigidly feels neither term, exactly. Hessian: Gauss-Newton plus the geometric term with the
-// positive part of the 2x2 stress (closed form, no 9x9 eigenproblem). For cloth, mats, sails. Caution: StVK softens
-// under strong compression; cloth buckles out of the plane long before.
+// E is the Green strain (E11, E22, 2 E12) in weft/warp axes, E_ref what the integrator's rate formula subtracts from E,
+// to seven digits: a body that moves rigidly does not feel the first term change, and of damping no more than that.
+// Hessian: Gauss-Newton plus the geometric term with the positive part of the 2x2 stress (closed form, no 9x9
+// eigenproblem). For cloth, mats, sails. Caution: StVK softens under strong compression; cloth buckles out of the plane
+// long before.
 #pragma once
 
 #include <memory>
@@ -54,7 +55,7 @@ class Membrane final : public Energy {
   };
   using Vertices = GroupIndices<3>::Group;
   struct Reference {
-    double strain[3][k_lanes];  ///< E_ref
+    float strain[3][k_lanes];  ///< E_ref
   };
 
  private:
