@@ -2,14 +2,11 @@
 // the import child (it must not touch anything else), then the command line.
 #include <unistd.h>
 
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
-
 #include <cstdlib>
 #include <cstring>
 
 #include "baker/commands/command_line.h"
+#include "baker/heap.h"
 #include "io/import/import.h"
 
 namespace {
@@ -27,24 +24,10 @@ __attribute__((constructor(101))) void check_machine() {
 #endif
 }
 
-/// Lists that come and go with every search are larger than this [bytes] and shall not leave holes behind. Left to
-/// itself the allocator takes more and more of them from its heap: 5 % of the memory at 40,000 vertices.
-constexpr int k_mapped_from = 1 << 20;
-/// Smaller ones come and go with every Newton iteration: what they leave at the end of the heap, up to so much [bytes],
-/// is theirs again a moment later, and costs more to return than to keep.
-constexpr int k_kept_at_end = 2 << 20;
-
-void give_memory_back() {
-#if defined(M_MMAP_THRESHOLD)
-  mallopt(M_MMAP_THRESHOLD, k_mapped_from);
-  mallopt(M_TRIM_THRESHOLD, k_kept_at_end);
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  give_memory_back();
+  ft::set_up_heap();
   if (argc > 1 && std::strcmp(argv[1], "--import-child") == 0) return ft::import_child_main(argc, argv);
   return ft::run_command_line(argc, argv);
 }

@@ -20,11 +20,11 @@ namespace ft {
 
 /// Balls that the movable vertices have to stay in: at x + dx all of them do, and at x. Empty: there are none.
 struct MotionBounds {
-  std::span<const Vec3> centre;    ///< m
-  std::span<const double> radius;  ///< m
-  std::span<const Vec3> from{};    ///< what centres are counted from [m]; empty: the origin
+  std::span<const Vec3> from;     ///< what centres are counted from [m]
+  std::span<const Vec3f> centre;  ///< m
+  std::span<const float> radius;  ///< m
 
-  Vec3 centre_of(std::size_t i) const { return from.empty() ? centre[i] : (from[i] + centre[i]).eval(); }
+  Vec3 centre_of(std::size_t i) const { return from[i] + centre[i].cast<double>(); }
 };
 
 /// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it.

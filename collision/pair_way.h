@@ -18,8 +18,9 @@ namespace ft {
 /// Of all vertices: places and ways [m]; balls around x + centre [m], of the first vertices alone, the others stop
 /// where their centre is.
 struct VertexWays {
-  std::span<const Vec3> x, d, centre;
-  std::span<const double> slack;
+  std::span<const Vec3> x, d;
+  std::span<const Vec3f> centre;
+  std::span<const float> slack;
 };
 
 class PairWay {
@@ -86,12 +87,21 @@ class PairWay {
   struct Differences {
     Lanes x, y, z;
 
-    Differences(PairKind kind, const Stencil& pair, std::span<const Vec3> from) {
+#ifdef __AVX__
+    static __m256d load(const Vec3& v) {
+      return _mm256_maskload_pd(v.data(), _mm256_setr_epi64x(-1, -1, -1, 0));
+    }
+    static __m256d load(const Vec3f& v) {
+      return _mm256_cvtps_pd(_mm_maskload_ps(v.data(), _mm_setr_epi32(-1, -1, -1, 0)));
+    }
+#endif
+
+    template <class Vector>
+    Differences(PairKind kind, const Stencil& pair, std::span<const Vector> from) {
       const bool face = kind == PairKind::k_vertex_face;
 #ifdef __AVX__
-      const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
-      const auto load = [&](std::size_t k) { return _mm256_maskload_pd(from[at(pair.v[k])].data(), three); };
-      const __m256d v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+      const __m256d v0 = load(from[at(pair.v[0])]), v1 = load(from[at(pair.v[1])]);
+      const __m256d v2 = load(from[at(pair.v[2])]), v3 = load(from[at(pair.v[3])]);
       const __m256d a = _mm256_sub_pd(v0, face ? v1 : v2), b = _mm256_sub_pd(v0, face ? v2 : v3);
       const __m256d c = _mm256_sub_pd(face ? v0 : v1, face ? v3 : v2), d = _mm256_sub_pd(face ? v0 : v1, v3);
       const __m256d low_ab = _mm256_unpacklo_pd(a, b), low_cd = _mm256_unpacklo_pd(c, d);
@@ -100,7 +110,8 @@ class PairWay {
       y = reinterpret_cast<Lanes>(_mm256_permute2f128_pd(high_ab, high_cd, 0x20));
       z = reinterpret_cast<Lanes>(_mm256_permute2f128_pd(low_ab, low_cd, 0x31));
 #else
-      const std::array<Vec3, 4> v = gather(from, pair);
+      std::array<Vec3, 4> v;
+      for (std::size_t k = 0; k < 4; ++k) v[k] = from[at(pair.v[k])].template cast<double>();
       const auto component = [&](Eigen::Index k) {
         return face ? Lanes{v[0][k], v[0][k], v[0][k], v[0][k]} - Lanes{v[1][k], v[2][k], v[3][k], v[3][k]}
                     : Lanes{v[0][k], v[0][k], v[1][k], v[1][k]} - Lanes{v[2][k], v[3][k], v[2][k], v[3][k]};

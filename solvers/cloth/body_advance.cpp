@@ -95,7 +95,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.pin_target = s.pins;
   step.pin_motion = s.pin_motion;
   step.push = in.push;
-  step.balls = {s.piece.centre, s.piece.slack, step.x_t0};
+  step.balls = {step.x_t0, s.piece.centre, s.piece.slack};
   step.friction_share = in.friction_share;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations;

@@ -162,16 +162,17 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
   const double pull = acceleration.norm();
   if (pull > k_most_acceleration) acceleration *= k_most_acceleration / pull;
   const Vec3 way = h_ * cloth.v[i] + acceleration - piece.carry[i];
-  piece.centre[i] = piece.carry[i] + 0.5 * way;
+  piece.centre[i] = (piece.carry[i] + 0.5 * way).cast<float>();
   const double spare = k_slack_acceleration * std::min(pull, k_most_acceleration) +
                        k_slack_gravity * h_ * h_ * model_.setup.gravity.norm() +
                        k_slack_body * std::min(fastest_, k_farthest_range) + k_slack_least;
-  piece.slack[i] = k_slack_way * way.norm() + std::min(spare, most_spare_[at(model_.contact.garment[i])]);
+  piece.slack[i] =
+      static_cast<float>(k_slack_way * way.norm() + std::min(spare, most_spare_[at(model_.contact.garment[i])]));
   set_box(i, piece);
 }
 
 void Candidates::set_box(std::size_t i, const PieceMotion& piece) {
-  const Vec3 &start = piece.start[i], centre = start + piece.centre[i] - frame_;
+  const Vec3 &start = piece.start[i], centre = start + piece.centre[i].cast<double>() - frame_;
   boxes_[i] = box_frame_.swept(start, start + piece.all[i] - frame_, 0.5 * radius_);
   boxes_[i].include(box_frame_.swept(centre, centre, piece.slack[i] + 0.5 * radius_));
 }
@@ -181,12 +182,14 @@ void Candidates::begin_flat(const PieceMotion& piece) {
   patches_.begin(std::span(piece.start).first(piece.carry.size()));
   lost_.clear();
   std::vector<Vec3> carried(piece.carry.size());
-  for (const std::vector<Vec3>* way : {&piece.carry, &piece.centre}) {
+  const auto keep = [&](const auto& way) {
     parallel_for(carried.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) carried[i] = piece.start[i] + (*way)[i];
+      for (std::size_t i = begin; i < end; ++i) carried[i] = piece.start[i] + way[i].template cast<double>();
     });
     patches_.keep(carried, true, lost_);
-  }
+  };
+  keep(piece.carry);
+  keep(piece.centre);
 }
 
 double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
@@ -205,10 +208,10 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   parallel_for(nc, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) place(i, cloth, piece);
   });
-  std::copy(piece.body_motion.begin(), piece.body_motion.end(), piece.centre.begin() + static_cast<std::ptrdiff_t>(nc));
   parallel_for(nb, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& start = piece.start[nc + i];
+      piece.centre[nc + i] = piece.body_motion[i].cast<float>();
       boxes_[nc + i] = box_frame_.swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
     }
   });

@@ -23,8 +23,8 @@ struct PieceMotion {
   std::vector<Vec3> carry;        ///< per cloth vertex, while it is planned [m]
   std::vector<Vec3> all;          ///< carry, then body_motion [m]
   /// Per vertex: from the start to the middle of where the solve may put it; of the body its motion [m].
-  std::vector<Vec3> centre;
-  std::vector<double> slack;  ///< per cloth vertex: how far the solve may put it from there [m]
+  std::vector<Vec3f> centre;
+  std::vector<float> slack;  ///< per cloth vertex: how far the solve may put it from there [m]
 };
 
 /// A cloth vertex that wants to leave its ball: where it is, where it wants to be, and what to add around [m].

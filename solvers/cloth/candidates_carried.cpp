@@ -91,7 +91,7 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
     if (piece.carry[i] == piece.all[i]) continue;
     moved_[i] = 1;
     piece.all[i] = piece.carry[i];
-    if ((piece.carry[i] - piece.centre[i]).norm() <= piece.slack[i]) continue;
+    if ((piece.carry[i] - piece.centre[i].cast<double>()).norm() <= piece.slack[i]) continue;
     changed_[i] = 1;
     place(i, cloth, piece);
   }

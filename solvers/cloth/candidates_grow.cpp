@@ -17,8 +17,8 @@ void Candidates::give_room(const ClothMotion& cloth, std::span<const RoomRequest
   for (const RoomRequest& request : requests) {
     const std::size_t i = at(request.vertex);
     changed_[i] = 1;
-    piece.centre[i] = 0.5 * (request.from + request.to) - piece.start[i];
-    piece.slack[i] = 0.5 * (request.to - request.from).norm() + request.spare;
+    piece.centre[i] = (0.5 * (request.from + request.to) - piece.start[i]).cast<float>();
+    piece.slack[i] = static_cast<float>(0.5 * (request.to - request.from).norm() + request.spare);
     set_box(i, piece);
   }
   add_missing(cloth, piece);

@@ -56,7 +56,7 @@ ClothMotion take_motion(State& state, std::size_t count) {
 }
 
 KeptMotion::KeptMotion(const ClothMotion& m)
-    : x_(m.x), h_previous_(m.h_previous), h_older_(m.h_older), released_(m.released), tangled_(m.tangled) {
+    : x_(m.x), h_previous_(m.h_previous), released_(m.released), tangled_(m.tangled) {
   const auto from = [](std::span<const Vec3> origin, std::span<const Vec3> values) {
     std::vector<Vec3f> out(values.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = (values[i] - origin[i]).cast<float>();
@@ -65,9 +65,7 @@ KeptMotion::KeptMotion(const ClothMotion& m)
   const std::vector<Vec3> zero(x_.size(), Vec3::Zero());
   v_ = from(zero, m.v);
   v_previous_ = from(zero, m.v_previous);
-  v_older_ = from(zero, m.v_older);
   to_previous_ = from(x_, m.x_previous);
-  to_older_ = from(x_, m.x_older);
 }
 
 ClothMotion KeptMotion::motion() const {
@@ -80,11 +78,10 @@ ClothMotion KeptMotion::motion() const {
   m.x = x_;
   m.v = back(zero, v_);
   m.v_previous = back(zero, v_previous_);
-  m.v_older = back(zero, v_older_);
   m.x_previous = back(x_, to_previous_);
-  m.x_older = back(x_, to_older_);
+  m.x_older = m.x_previous;
+  m.v_older = m.v_previous;
   m.h_previous = h_previous_;
-  m.h_older = h_older_;
   m.released = released_;
   m.tangled = tangled_;
   return m;

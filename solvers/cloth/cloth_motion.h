@@ -28,7 +28,8 @@ void store(State& state, const ClothMotion& motion);
 /// the program.
 ClothMotion take_motion(State& state, std::size_t count);
 
-/// A motion in half the room, from which cloth can start once more: positions to the bit, all else to seven digits.
+/// A motion in less than half the room, from which cloth can start once more: positions to the bit, velocities and the
+/// last step to seven digits; what is older is forgotten.
 class KeptMotion {
  public:
   explicit KeptMotion(const ClothMotion& motion);
@@ -36,9 +37,9 @@ class KeptMotion {
 
  private:
   std::vector<Vec3> x_;
-  std::vector<Vec3f> v_, v_previous_, v_older_;
-  std::vector<Vec3f> to_previous_, to_older_;  ///< from x [m]
-  double h_previous_, h_older_;
+  std::vector<Vec3f> v_, v_previous_;
+  std::vector<Vec3f> to_previous_;  ///< from x [m]
+  double h_previous_;
   std::vector<int> released_;
   std::vector<char> tangled_;
 };

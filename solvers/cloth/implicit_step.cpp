@@ -137,8 +137,6 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       if (!in.push.empty()) s.y[i] += bh * bh * in.push[i];
     }
   });
-  s.gradient.resize(n);
-  s.direction.resize(n);
 
   s.pins.clear();
   for (std::size_t p = 0; p < model_.pins.size(); ++p) {
@@ -190,6 +188,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     contact.mark_touching(s.touches);
     const std::span<const Vec3> x = all.first(n);
     BlockMatrix& hessian = s.system.begin();
+    s.gradient.resize(n);
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const double m = model_.mass[i] * inertia;
@@ -270,7 +269,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       truncate();
     }
     s.direction.swap(s.cut);
-    give_back(s.cut);
+    give_back(s.cut, s.gradient);
 
     double factor = 1, of_trial = 0;
     bool accepted = false, finite = true, whole = true;
@@ -333,7 +332,7 @@ void ImplicitStep::measure_on_body(std::span<const Vec3> all, double inertia, St
   result.on_body.resize(garments);
   if (std::none_of(s.touches.begin(), s.touches.end(), [](char c) { return c != 0; })) return;
   const std::span<const Vec3> x = all.first(n);
-  std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
+  s.gradient.assign(n, Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   if (garments > 1) s.contact->add_gradient_between_garments(all, s.gradient);
@@ -350,7 +349,7 @@ void ImplicitStep::measure_lost(std::span<const Vec3> all, double inertia, StepR
   if (model_.attachments.empty() || !(gravity > 0)) return;
   Scratch& s = *scratch_;
   const std::span<const Vec3> x = all.first(s.y.size());
-  std::fill(s.gradient.begin(), s.gradient.end(), Vec3::Zero());
+  s.gradient.assign(s.y.size(), Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   s.contact->add_gradient(all, s.gradient);

@@ -156,38 +156,44 @@ void Bending::begin_step(const StepContext& context) {
   if (!damps_) return;
   for (std::size_t p = 0; p < root_.size(); ++p) root_[p] = std::sqrt(damping_time_[p] / context.rate_time());
   const bool history = context.has_history() && context.b != 0;
-  if (history) work_out(context.x_tm1, start_);  // the start of the last step is mostly where this one came from
-  work_out(context.x_t0, last_);                 // and its end where this one starts
-  start_.of = last_.of;
-  start_.phi.resize(motion_.size());
+  // The start of the last step is mostly where this one came from, and its end where this one starts.
+  if (history && (start_.empty() || start_of_ != hash_bytes(std::as_bytes(context.x_tm1)))) {
+    Bends before;
+    work_out(context.x_tm1, before);
+    start_.assign(before.phi.begin(), before.phi.end());
+  }
+  work_out(context.x_t0, last_);
+  start_of_ = last_.of;
+  start_.resize(motion_.size());
   parallel_for(motion_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const double before = start_.phi[s];
-      start_.phi[s] = last_.phi[s];
-      motion_[s] = history ? static_cast<float>(context.b * angle_difference(start_.phi[s], before)) : 0.0f;
+      motion_[s] = history ? static_cast<float>(context.b * angle_difference(last_.phi[s], start_[s])) : 0.0f;
+      start_[s] = static_cast<float>(last_.phi[s]);
     }
   });
 }
 
-/// Fills last_, rho_, moment_ and energy_.
+/// Fills last_, moment_ and energy_.
 void Bending::measure(std::span<const Vec3> x) const {
   if (measured_ && last_.of == hash_bytes(std::as_bytes(x))) return;
   measured_ = true;
   work_out(x, last_);
-  rho_.resize(motion_.size());
+  std::vector<double> rhos(motion_.size());
   moment_.resize(motion_.size());
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = i * k_lanes;
-      double* rho = rho_.data() + first;
+      double* rho = rhos.data() + first;
       if (!damps_) {
         std::fill_n(rho, k_lanes, 0.0);
         continue;
       }
-      const double *phi = last_.phi.data() + first, *start = start_.phi.data() + first;
-      const float* motion = motion_.data() + first;
-      for (int l = 0; l < k_lanes; ++l)
-        rho[l] = root_[groups_[i].piece[l]] * angle_difference(phi[l], start[l] + motion[l]);
+      const double* phi = last_.phi.data() + first;
+      const float *start = start_.data() + first, *motion = motion_.data() + first;
+      for (int l = 0; l < k_lanes; ++l) {
+        const double reference = static_cast<double>(start[l]) + static_cast<double>(motion[l]);
+        rho[l] = root_[groups_[i].piece[l]] * angle_difference(phi[l], reference);
+      }
     }
   });
   energy_ = sum_over_chunks(schedule_, [&](std::size_t begin, std::size_t end) {
@@ -198,13 +204,13 @@ void Bending::measure(std::span<const Vec3> x) const {
       neighbours_.get(i, neighbours);
       for (std::size_t l = 0; l < k_lanes; ++l) {
         const std::size_t slot = i * k_lanes + l;
-        double elastic = g.coupling[0][l] * last_.phi[slot], viscous = g.coupling[0][l] * rho_[slot];
+        double elastic = g.coupling[0][l] * last_.phi[slot], viscous = g.coupling[0][l] * rhos[slot];
         for (int k = 0; k + 1 < k_couplings; ++k) {
           const std::size_t n = at(neighbours.column[k][l]);
-          elastic += g.coupling[k + 1][l] * last_.phi[n], viscous += g.coupling[k + 1][l] * rho_[n];
+          elastic += g.coupling[k + 1][l] * last_.phi[n], viscous += g.coupling[k + 1][l] * rhos[n];
         }
         moment_[slot] = elastic + (damps_ ? root_[g.piece[l]] : 0) * viscous;
-        total += 0.5 * (elastic * last_.phi[slot] + viscous * rho_[slot]);
+        total += 0.5 * (elastic * last_.phi[slot] + viscous * rhos[slot]);
       }
     }
     return total;
@@ -267,7 +273,7 @@ void Bending::add_derivatives(std::span<const Vec3> x, std::span<Vec3> gradient,
     }
   });
   measured_ = false;  // the next question is about another place
-  give_back(last_.phi, rho_, moment_);
+  give_back(last_.phi, moment_);
 }
 
 void Bending::add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const {

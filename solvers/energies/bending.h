@@ -61,16 +61,15 @@ class Bending final : public Energy {
   GroupIndices<k_couplings - 1> neighbours_;  ///< slots of the other hinges of a row of K
   std::vector<HingeGroup> groups_;
   std::vector<double> damping_time_;  ///< of the pieces [s]
-  // Of the step: theta_ref is motion_ past the start.
+  // Of the step: theta_ref is motion_ past the start, to seven digits.
   bool damps_ = false;
-  std::vector<double> root_;  ///< of the pieces: sqrt(d) [1]
-  Bends start_;
-  std::vector<float> motion_;  ///< rad
+  std::vector<double> root_;           ///< of the pieces: sqrt(d) [1]
+  Hash128 start_of_;                   ///< of the positions at its start
+  std::vector<float> start_, motion_;  ///< per hinge slot: as Bends::phi there; to theta_ref [rad]
   mutable BlockPositions<4> positions_;
   // Of the last x that was measured: the next question is mostly about the same one, and the next step starts there.
   mutable Bends last_;
   mutable bool measured_ = false;       ///< in this step, what follows
-  mutable std::vector<double> rho_;     ///< per hinge slot
   mutable std::vector<double> moment_;  ///< dU / d theta [N m]; gathering it anew while the matrix is filled is slow
   mutable double energy_ = 0;           ///< J
 };

@@ -40,9 +40,9 @@ struct LinearSystem::Impl {
   std::vector<Vec4f> direction;
   /// Of the matrix and the direction; then M^-1 residual, of which every entry wants that of the product alone.
   std::vector<Vec4f> product;
-  std::vector<Vec3> best;  ///< of solutions, where later ones are worse
-  bool symmetric = false;  ///< the finest level smooths before the correction too
-  float alpha = 0;         ///< of the last step: the residual has lost so much of product
+  std::vector<Vec3f> solution, best;  ///< best: where later ones are worse
+  bool symmetric = false;             ///< the finest level smooths before the correction too
+  float alpha = 0;                    ///< of the last step: the residual has lost so much of product
 
   Level& fine() { return *levels.front(); }
   std::vector<Vec4f>& preconditioned() { return product; }
@@ -50,7 +50,7 @@ struct LinearSystem::Impl {
   void refresh_hierarchy();
   bool start(std::span<const Vec3> right_side);
   bool step(double rz);
-  void advance(std::span<Vec3> solution, float beta);
+  void advance(float beta);
   void correct(std::size_t depth);
   void solve_coarsest(Level& level);
   Products precondition();
@@ -268,22 +268,24 @@ bool LinearSystem::Impl::step(double rz) {
 }
 
 /// The solution after that step, and the next direction.
-void LinearSystem::Impl::advance(std::span<Vec3> solution, float beta) {
+void LinearSystem::Impl::advance(float beta) {
   parallel_for(direction.size(), k_rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      solution[i] += (alpha * direction[i].head<3>()).cast<double>();
+      solution[i] += alpha * direction[i].head<3>();
       direction[i] = preconditioned()[i] + beta * direction[i];
     }
   });
 }
 
-LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> out) {
+LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed,
+                                 std::vector<Vec3>& out) {
   Impl& s = *impl_;
+  ft::give_back(out);
   for (const auto& level : s.levels) level->make_room();
   s.hold(fixed);
   s.refresh_hierarchy();
   const bool sound = s.start(right_side);
-  std::fill(out.begin(), out.end(), Vec3::Zero());
+  s.solution.assign(right_side.size(), Vec3f::Zero());
 
   LinearReport report;
   report.converged =
@@ -299,20 +301,23 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
     const auto [next, along_last, norm_squared] = s.precondition();
     const double residual = std::sqrt(norm_squared / first.norm_squared);
     const bool better = residual < best_residual;
-    if (is_best && !better) s.best.assign(out.begin(), out.end());
+    if (is_best && !better) s.best = s.solution;
     is_best = better;
     if (is_best) best_residual = residual;
     // Flexible: the cycle is not symmetric (Bouwmeester et al. 2015, Nonsymmetric Preconditioning for Conjugate
     // Gradient and Steepest Descent Methods), so that the difference of two residuals stands for the new one alone.
-    s.advance(out, -s.alpha * static_cast<float>(along_last / rz));
+    s.advance(-s.alpha * static_cast<float>(along_last / rz));
     if (!(next >= 0) || !std::isfinite(next)) break;
     report.converged = residual <= s.settings.tolerance && sound;
     rz = next;
   }
   report.residual = best_residual;
-  if (!is_best) std::copy(s.best.begin(), s.best.end(), out.begin());
   for (const auto& level : s.levels) level->give_back();
-  ft::give_back(s.held, s.direction, s.product, s.best);
+  ft::give_back(s.held, s.direction, s.product);
+  if (!is_best) s.solution.swap(s.best);
+  out.resize(s.solution.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = s.solution[i].cast<double>();
+  ft::give_back(s.solution, s.best);
   return report;
 }
 

@@ -41,7 +41,8 @@ class LinearSystem {
   void add_pair_terms(std::span<const PairTerm> terms);
   /// Rows of fixed[i] != 0 are held at zero, and leave the matrix for good: what is solved before it is filled anew may
   /// hold more of them, but not less.
-  LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::span<Vec3> solution);
+  /// solution: room is made for it when the solve's own vectors are gone.
+  LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::vector<Vec3>& solution);
   /// Frees the matrices until the next begin(). What else a solve needs is there only while it runs.
   void give_back();
 

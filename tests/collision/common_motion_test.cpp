@@ -174,17 +174,18 @@ TEST(CommonMotion, Bounds_hold) {
   for (const std::uint64_t seed : {3, 4, 5, 6, 7}) {
     Cloth cloth = hostile_sheets(seed);
     Dice dice(seed);
-    std::vector<Vec3> centre;
-    std::vector<double> radius;
-    for (std::size_t i = 0; i < at(cloth.movable_count); ++i) {  // x and x + dx on the ball
-      centre.push_back(cloth.x[i] + 0.5 * cloth.dx[i] + 0.2 * cloth.dx[i].cross(dice.direction()));
-      radius.push_back(std::max((cloth.x[i] - centre[i]).norm(), (cloth.x[i] + cloth.dx[i] - centre[i]).norm()));
+    std::vector<Vec3f> centre;
+    std::vector<float> radius;
+    for (std::size_t i = 0; i < at(cloth.movable_count); ++i) {  // x and x + dx on the ball, but for rounding
+      centre.push_back((0.5 * cloth.dx[i] + 0.2 * cloth.dx[i].cross(dice.direction())).cast<float>());
+      const Vec3 from = centre[i].cast<double>();
+      radius.push_back(std::nextafter(static_cast<float>(std::max(from.norm(), (cloth.dx[i] - from).norm())), 1.0f));
     }
     const ContactPairs pairs = all_pairs(cloth);
-    const Moved moved = move(cloth, pairs, true, {centre, radius});
+    const Moved moved = move(cloth, pairs, true, {cloth.x, centre, radius});
     EXPECT_EQ(crossed(cloth, pairs, moved.displacement), 0);
     for (std::size_t i = 0; i < radius.size(); ++i)
-      EXPECT_LE((cloth.x[i] + moved.displacement[i] - centre[i]).norm(), radius[i] * (1 + 1e-9));
+      EXPECT_LE((moved.displacement[i] - centre[i].cast<double>()).norm(), radius[i] * (1 + 1e-9));
   }
 }
 

@@ -11,8 +11,9 @@ namespace {
 using test::Dice;
 
 struct Case {
-  std::array<Vec3, 4> x, d, centre;
-  std::array<double, 4> slack;
+  std::array<Vec3, 4> x, d;
+  std::array<Vec3f, 4> centre;
+  std::array<float, 4> slack;
   VertexWays ways(std::size_t movable) const { return {x, d, centre, std::span(slack).first(movable)}; }
 };
 
@@ -24,8 +25,8 @@ Case random_case(Dice& dice, PairKind kind, double apart) {
     const bool first = static_cast<int>(k) < first_feature_size(kind);
     out.x[k] = dice.cube(0.02) + (first ? away : Vec3::Zero());
     out.d[k] = common + dice.cube(0.02);
-    out.centre[k] = out.d[k] + dice.cube(0.004);
-    out.slack[k] = dice.uniform(0, 0.004);
+    out.centre[k] = (out.d[k] + dice.cube(0.004)).cast<float>();
+    out.slack[k] = static_cast<float>(dice.uniform(0, 0.004));
   }
   return out;
 }
@@ -55,7 +56,8 @@ TEST(PairWay, What_is_apart_keeps_apart_on_its_way_and_wherever_it_ends) {
       for (int step = 0; step < 8; ++step) {
         std::array<Vec3, 4> last;
         for (std::size_t k = 0; k < 4; ++k)
-          last[k] = c.x[k] + c.centre[k] + (k < movable ? Vec3(c.slack[k] * dice.direction()) : Vec3(0, 0, 0));
+          last[k] =
+              c.x[k] + c.centre[k].cast<double>() + (k < movable ? Vec3(c.slack[k] * dice.direction()) : Vec3(0, 0, 0));
         EXPECT_GT(pair_geometry(kind, last).distance, k_radius - 1e-15);
       }
     }
@@ -69,7 +71,7 @@ TEST(PairWay, Cloth_that_glides_along_a_face_at_a_distance_is_apart_however_far_
     Case c;
     c.x = {Vec3(0.001, 0.01, 0), Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0, -0.02)};
     c.d = {Vec3(way_length, 0, 0.3 * way_length), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    c.centre = c.d;
+    for (std::size_t k = 0; k < 4; ++k) c.centre[k] = c.d[k].cast<float>();
     c.slack = {0.004, 0, 0, 0};
     const PairWay way(PairKind::k_vertex_face, k_all, c.ways(1), 0.003, 1e-4);
     EXPECT_EQ(way.judge(way.flat()), PairWay::Verdict::k_apart);

@@ -55,7 +55,7 @@ std::vector<Vec3> somewhere_in_reach(const TwoSheets& s, std::uint64_t draw) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     Vec3 d;
     for (int k = 0; k < 3; ++k) d[k] = 2 * random_uniform({k_seed, 0, draw, i}, static_cast<std::uint64_t>(k)) - 1;
-    out[i] = s.cloth.x[i] + s.piece.centre[i] + s.piece.slack[i] / std::max(1.0, d.norm()) * d;
+    out[i] = s.cloth.x[i] + s.piece.centre[i].cast<double>() + s.piece.slack[i] / std::max(1.0, d.norm()) * d;
   }
   return out;
 }
@@ -164,7 +164,8 @@ TEST(Candidates, are_complete_before_and_after_vertices_get_other_room) {
     candidates.give_room(s.cloth, requests, s.piece);
     for (const RoomRequest& r : requests)
       for (const Vec3& p : {r.from, r.to})
-        EXPECT_LE((s.cloth.x[at(r.vertex)] + s.piece.centre[at(r.vertex)] - p).norm(), s.piece.slack[at(r.vertex)]);
+        EXPECT_LE((s.cloth.x[at(r.vertex)] + s.piece.centre[at(r.vertex)].cast<double>() - p).norm(),
+                  s.piece.slack[at(r.vertex)]);
   };
   ask(0, [](std::size_t i) { return i % 3 == 0; });
   const ContactPairs needed = touching(s);
