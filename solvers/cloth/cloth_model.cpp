@@ -241,6 +241,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   model->pattern = make_pattern(model->vertex_count(), stencils);
   model->attachments = std::move(model->topology->attachments);
   model->seams = std::move(model->topology->seams);
+  model->flipped_caps = std::move(model->topology->flipped_caps);
   model->topology.reset();
   for (ClothGarment& garment : model->setup.garments) {
     Mesh& mesh = garment.mesh;

@@ -62,6 +62,7 @@ struct ClothModel {
   std::unique_ptr<ClothTopology> topology;  ///< while the model is built; energies copy what they need
   std::vector<AttachPoint> attachments;
   std::vector<SeamPoint> seams;
+  std::vector<FlippedCap> flipped_caps;
   std::unique_ptr<MovingCollider> collider;  ///< null: cloth alone
   std::vector<int> part_rank;                ///< of the collider's parts: 0 is the largest
   double start_depth = 0;                    ///< how deep the deepest vertex started inside the body [m]

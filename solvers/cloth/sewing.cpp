@@ -98,23 +98,29 @@ void sew(ClothModel& model) {
 }
 
 void lengths_from_pattern(const ClothTopology& topology, RestEdges& edges) {
+  const auto index_of = [&](int a, int b) {
+    const Edge edge{std::min(a, b), std::max(a, b)};
+    const auto found = std::lower_bound(edges.edges.begin(), edges.edges.end(), edge);
+    return found != edges.edges.end() && *found == edge ? static_cast<std::size_t>(found - edges.edges.begin())
+                                                        : edges.edges.size();
+  };
   std::vector<double> sum(edges.edges.size(), 0.0);
   std::vector<int> count(edges.edges.size(), 0);
   for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
     if (!(topology.pieces[at(topology.triangle_piece[t])].pattern_scale > 0) || topology.rest_area[t] == 0) continue;
     const Triangle& v = topology.triangles[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      const int a = v[(k + 1) % 3], b = v[(k + 2) % 3];
-      const Edge edge{std::min(a, b), std::max(a, b)};
-      const auto found = std::lower_bound(edges.edges.begin(), edges.edges.end(), edge);
-      if (found == edges.edges.end() || *found != edge) continue;
-      const auto i = static_cast<std::size_t>(found - edges.edges.begin());
+      const std::size_t i = index_of(v[(k + 1) % 3], v[(k + 2) % 3]);
+      if (i == edges.edges.size()) continue;
       sum[i] += rest_length(topology, t, k);
       ++count[i];
     }
   }
   for (std::size_t i = 0; i < count.size(); ++i)
-    if (count[i] > 0) edges.lengths[i] = sum[i] / count[i];
+    if (count[i] > 0) edges.lengths[i] = static_cast<float>(sum[i] / count[i]);
+  for (const FlippedCap& cap : topology.flipped_caps)
+    if (const std::size_t i = index_of(cap.base[0], cap.base[1]); i < edges.edges.size())
+      edges.lengths[i] = static_cast<float>(cap.base_length);
 }
 
 bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, std::span<Vec3> acceleration) {

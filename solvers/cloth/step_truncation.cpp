@@ -1,6 +1,8 @@
 #include "solvers/cloth/step_truncation.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
@@ -26,6 +28,8 @@ double farthest_from(const Vec3& place, std::span<const int> vertices, std::span
 
 StepTruncation::StepTruncation(const ClothModel& model) : model_(model) {
   const std::span<const Vec3> rest = model.contact.rest;
+  std::set<std::pair<int, Edge>> flipped;  // no springs
+  for (const FlippedCap& cap : model.flipped_caps) flipped.emplace(cap.vertex, cap.base);
   for (const Triangle& t : model.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(t[(k + 1) % 3], t[(k + 2) % 3]);
@@ -36,7 +40,7 @@ StepTruncation::StepTruncation(const ClothModel& model) : model_(model) {
       const int clump = model.clumps.of(t[k]);
       const bool together = clump >= 0 && (clump == model.clumps.of(base[0]) || clump == model.clumps.of(base[1]));
       if (height <= k_very_near * model.typical_edge[at(model.contact.garment[at(t[k])])] && way > 0 && way < length &&
-          !together)
+          !together && !flipped.contains({t[k], base}))
         caps_.push_back({t[k], base, way / length, height});
     }
 }

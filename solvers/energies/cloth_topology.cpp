@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "baker/core/check.h"
+#include "solvers/energies/caps.h"
 #include "solvers/energies/cloth_topology_bending.h"
 
 namespace ft {
@@ -40,6 +41,36 @@ void cut_from_pattern(const std::array<Vec2, 3>& uv, double scale, std::size_t t
   if (!(std::abs(det) > k_flattest * longest2) || !(std::abs(det) > 1e-14)) return;
   out.rest_inverse[t] = {e2.y() / det, -e2.x() / det, -e1.y() / det, e1.x() / det};
   out.rest_area[t] = 0.5 * std::abs(det);
+}
+
+/// Lengths as they are at rest; uv: null without any.
+void cut_from_rest(const std::array<Vec2, 3>* uv, std::size_t t, ClothTopology& out) {
+  const Triangle& tri = out.triangles[t];
+  const Vec3 e1 = out.rest[at(tri[1])] - out.rest[at(tri[0])], e2 = out.rest[at(tri[2])] - out.rest[at(tri[0])];
+  const Vec3 n = e1.cross(e2);
+  const double area2 = n.norm();
+  const double longest2 = std::max({e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()});
+  if (!(area2 > k_flattest * longest2) || !(area2 > 1e-14)) return;
+  const Vec3 normal = n / area2;
+  Vec3 axis2 = uv == nullptr ? Vec3::Zero() : warp_from_uvs(e1, e2, *uv);
+  if (!(axis2.norm() > 0) || !axis2.allFinite()) axis2 = warp_from_shape(normal);
+  axis2.normalize();
+  const Vec3 axis1 = axis2.cross(normal);
+  const double a = e1.dot(axis1), b = e2.dot(axis1), c = e1.dot(axis2), d = e2.dot(axis2);
+  const double det = a * d - b * c;  // = area2
+  out.rest_inverse[t] = {d / det, -b / det, -c / det, a / det};
+  out.rest_area[t] = 0.5 * area2;
+}
+
+/// Shape of a triangle at rest.
+void measure(std::size_t t, const std::array<Vec2, 3>* uv, ClothTopology& out) {
+  out.rest_inverse[t] = {0, 0, 0, 0};
+  out.rest_area[t] = 0;
+  const double scale = uv == nullptr ? 0 : out.pieces[at(out.triangle_piece[t])].pattern_scale;
+  if (scale > 0)
+    cut_from_pattern(*uv, scale, t, out);
+  else
+    cut_from_rest(uv, t, out);
 }
 
 void weigh(std::size_t t, ClothTopology& out) {
@@ -102,34 +133,16 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
   out.triangle_piece.resize(count);
   out.rest_area.assign(count, 0.0);
   out.rest_inverse.assign(count, {0, 0, 0, 0});
+  std::vector<std::array<Vec2, 3>> uvs(triangle_uvs.begin(), triangle_uvs.end());
   for (std::size_t t = 0; t < count; ++t) {
-    const Triangle& tri = triangles[t];
-    for (const int v : tri) CHECK(v >= 0 && v < out.vertex_count);
-    out.triangle_piece[t] = piece_of[at(tri[0])];
+    for (const int v : triangles[t]) CHECK(v >= 0 && v < out.vertex_count);
+    out.triangle_piece[t] = piece_of[at(triangles[t][0])];
     CHECK(out.triangle_piece[t] >= 0);
-    const double scale = triangle_uvs.empty() ? 0 : pieces[at(out.triangle_piece[t])].pattern_scale;
-    if (scale > 0) {
-      cut_from_pattern(triangle_uvs[t], scale, t, out);
-      weigh(t, out);
-      continue;
-    }
-    const Vec3 e1 = rest[at(tri[1])] - rest[at(tri[0])], e2 = rest[at(tri[2])] - rest[at(tri[0])];
-    const Vec3 n = e1.cross(e2);
-    const double area2 = n.norm();
-    const double longest2 = std::max({e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()});
-    if (!(area2 > k_flattest * longest2) || !(area2 > 1e-14)) continue;
-    const Vec3 normal = n / area2;
-    Vec3 axis2 = triangle_uvs.empty() ? Vec3::Zero() : warp_from_uvs(e1, e2, triangle_uvs[t]);
-    if (!(axis2.norm() > 0) || !axis2.allFinite()) axis2 = warp_from_shape(normal);
-    axis2.normalize();
-    const Vec3 axis1 = axis2.cross(normal);
-    const double a = e1.dot(axis1), b = e2.dot(axis1), c = e1.dot(axis2), d = e2.dot(axis2);
-    const double det = a * d - b * c;  // = area2
-    out.rest_inverse[t] = {d / det, -b / det, -c / det, a / det};
-    out.rest_area[t] = 0.5 * area2;
-    weigh(t, out);
   }
-
+  const auto measure_one = [&](std::size_t t) { measure(t, uvs.empty() ? nullptr : &uvs[t], out); };
+  for (std::size_t t = 0; t < count; ++t) measure_one(t);
+  flip_caps(out, uvs, measure_one);
+  for (std::size_t t = 0; t < count; ++t) weigh(t, out);
   add_hinges(out);
   add_bend_elements(out);
   return out;

@@ -86,12 +86,20 @@ struct AttachPoint {
   HoldSpan hold{};                 ///< when
 };
 
+/// A cap of the mesh that is none here, see caps.h: its vertex, and the edge that is in no triangle any more.
+struct FlippedCap {
+  int vertex = 0;
+  Edge base{};
+  double base_length = 0;  ///< at rest [m]
+};
+
 struct TriangleOrder;
 
 struct ClothTopology {
   int vertex_count = 0;
-  std::vector<Vec3> rest;  ///< m
-  std::vector<Triangle> triangles;
+  std::vector<Vec3> rest;           ///< m
+  std::vector<Triangle> triangles;  ///< those of the mesh, but for flipped caps
+  std::vector<FlippedCap> flipped_caps;
   std::vector<int> triangle_piece;
   std::vector<double> rest_area;  ///< of each triangle [m2]; 0 where the triangle is degenerate and carries nothing
   /// Inverse of the 2x2 matrix of rest edges (x1 - x0, x2 - x0) in material axes, row by row [1/m]; zero when

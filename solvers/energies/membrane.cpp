@@ -7,14 +7,12 @@
 
 #include "baker/core/check.h"
 #include "solvers/energies/block_scatter.h"
+#include "solvers/energies/caps.h"
 
 namespace ft {
 namespace {
 
 using Lane = double[k_lanes];
-
-/// Height of the highest cap in its longest edges, and in its shortest.
-constexpr double k_cap_height = 0.02, k_cap_shortest = 1.0 / 3;
 
 /// Two edges and the deformation gradient F = (f1 f2) of a group.
 struct Deformation {
@@ -189,17 +187,6 @@ std::array<double, 4> membrane_stiffness(const Fabric& f) {
   const double scale = 1 / (1 - f.poisson * f.poisson);
   return {f.stretch_weft * scale, f.stretch_warp * scale,
           f.poisson * std::sqrt(f.stretch_weft * f.stretch_warp) * scale, f.shear};
-}
-
-double cap_stiffness(double rest_area, const std::array<double, 4>& rest_inverse) {
-  // Rest edges in material axes: columns of the inverse of rest_inverse.
-  const auto& r = rest_inverse;
-  const double det = r[0] * r[3] - r[1] * r[2];
-  const Vec2 first = Vec2(r[3], -r[2]) / det, second = Vec2(-r[1], r[0]) / det;
-  const auto [shortest, longest] = std::minmax({first.norm(), second.norm(), (second - first).norm()});
-  const double height = 2 * rest_area / longest;
-  const double share = height < k_cap_shortest * shortest ? height / (k_cap_height * longest) : 1;
-  return share < 1 ? share * share : 1;
 }
 
 Membrane::Membrane(const ClothTopology& topology) {

@@ -22,14 +22,6 @@ namespace ft {
 /// 1).
 std::array<double, 4> membrane_stiffness(const Fabric& fabric);
 
-/// Share of its stiffness that a triangle keeps [1], from its area [m2] and ClothTopology::rest_inverse: 1 unless it is
-/// a cap, one corner of which lies so near the middle part of the longest edge that its height h is less than s = 1/50
-/// of that edge's length L; then (h / s L)^2. A cap is next to no cloth, but a spring of stiffness 1/h that steps of
-/// Newton's method and truncation strain by multiples of 1. With the share it is as soft across as a strip of cloth
-/// that is s^2 L^2 / h wide, for h = L/2000 that is still less than an edge. Triangles with one very short edge keep
-/// all: their corners hang together.
-double cap_stiffness(double rest_area, const std::array<double, 4>& rest_inverse);
-
 class Membrane final : public Energy {
  public:
   explicit Membrane(const ClothTopology& topology);

@@ -119,6 +119,22 @@ TEST(Torture, Spots_of_short_edges_of_any_size_are_survived_slow) {
   EXPECT_LE(strained, 2);
 }
 
+TEST(Torture, Caps_of_any_height_are_survived_slow) {
+  if (test::k_sanitized) GTEST_SKIP() << "takes too long";
+  const Scene& scene = *find_scene("caps");
+  for (const double height : {2e-3, 7e-4, 5e-4, 2e-4, 2e-5, 3e-6, 1e-7}) {
+    SCOPED_TRACE(height);
+    const Walked walked = walk(scene, {}, [&](ClothSetup& setup) { setup = caps_of(height); });
+    expect_untouched(walked);
+    for (const CheckedFrame& f : walked.frames) {
+      expect_agreement(f);
+      EXPECT_TRUE(f.report.finite) << f.report.frame;
+      EXPECT_LT(f.speed, scene.speed_bar) << f.report.frame;
+      EXPECT_LT(f.report.strain_p99, 0.04) << f.report.frame;
+    }
+  }
+}
+
 const auto k_name = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
 INSTANTIATE_TEST_SUITE_P(scene, Torture, testing::ValuesIn(names(k_survived)), k_name);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Torture);

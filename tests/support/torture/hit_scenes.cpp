@@ -229,8 +229,12 @@ ClothSetup cut_edges() {
   return setup_of({on_a_ball(with_cut_diagonals(make_sheet(0.7, 32, 0.205), 1.0 / 200, 10))}, swinging_ball(0.2));
 }
 
+ClothSetup caps_of(double height) {
+  return setup_of({on_a_ball(with_caps(make_sheet(0.7, 32, 0.205), height, 21))}, swinging_ball(0.2));
+}
+
 ClothSetup caps() {
-  return setup_of({on_a_ball(with_caps(make_sheet(0.7, 32, 0.205), 1e-4, 21))}, swinging_ball(0.2));
+  return caps_of(1e-4);
 }
 
 ClothSetup tiny_edges() {

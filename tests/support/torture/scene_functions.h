@@ -29,6 +29,8 @@ ClothSetup needles();
 ClothSetup dense_spots(double ratio);
 ClothSetup tiny_triangles();
 ClothSetup cut_edges();
+/// The same sheet, in which some triangles have a vertex at that height [m] above the middle of their longest edge.
+ClothSetup caps_of(double height);
 ClothSetup caps();
 ClothSetup tiny_edges();
 
