@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <map>
 #include <span>
 #include <vector>
 
+#include "baker/core/hash.h"
 #include "baker/core/types.h"
 #include "collision/pair_node.h"
 
@@ -22,16 +22,26 @@ class NodePatches {
   /// of_element(element): its patches, ascending.
   template <class OfElement>
   void build(std::span<const PairNode> nodes, std::size_t element_count, OfElement&& of_element) {
-    std::map<std::vector<int>, int> known;
     start_.assign(1, 0);
     items_.clear();
+    std::vector<int> known(1024, -1);  // sets by hash: a map's keys would take several times what the sets do
+    const auto place_of = [&](std::span<const int> set) {
+      std::size_t k = hash_bytes(std::as_bytes(set)).low % known.size();
+      while (known[k] >= 0 && !std::ranges::equal(items_of(known[k]), set)) k = (k + 1) % known.size();
+      return k;
+    };
     const auto number_of = [&](const std::vector<int>& set) {
-      const auto [it, is_new] = known.emplace(set, static_cast<int>(known.size()));
-      if (is_new) {
-        items_.insert(items_.end(), set.begin(), set.end());
-        start_.push_back(static_cast<int>(items_.size()));
+      const std::size_t place = place_of(set);
+      if (known[place] >= 0) return known[place];
+      const int number = static_cast<int>(start_.size()) - 1;
+      known[place] = number;
+      items_.insert(items_.end(), set.begin(), set.end());
+      start_.push_back(static_cast<int>(items_.size()));
+      if (2 * start_.size() > known.size()) {
+        known.assign(2 * known.size(), -1);
+        for (int n = 0; n <= number; ++n) known[place_of(items_of(n))] = n;
       }
-      return it->second;
+      return number;
     };
     std::vector<int> set;
     const auto common = [&](int a, int b) {
@@ -75,6 +85,9 @@ class NodePatches {
   }
 
  private:
+  std::span<const int> items_of(int set) const {
+    return {items_.data() + start_[at(set)], items_.data() + start_[at(set) + 1]};
+  }
   bool any_in(int set, std::span<const char> skipped) const {
     for (int i = start_[at(set)]; i < start_[at(set) + 1]; ++i)
       if (skipped[at(items_[at(i)])] != 0) return true;
