@@ -9,14 +9,11 @@
 namespace ft {
 
 VertexClumps::VertexClumps(const RestEdges& edges, std::span<const double> size) {
-  const auto fits = [&](double length, int a, int b) {  // to the digits that lengths have
-    return static_cast<float>(length) <= static_cast<float>(std::min(size[at(a)], size[at(b)]));
-  };
   std::vector<std::size_t> shortest;
   for (std::size_t k = 0; k < edges.edges.size(); ++k) {
     const auto [a, b] = edges.edges[k];
     CHECK(at(a) < size.size() && at(b) < size.size());
-    if (fits(edges.lengths[k], a, b)) shortest.push_back(k);
+    if (edges.lengths[k] <= std::min(size[at(a)], size[at(b)])) shortest.push_back(k);
   }
   if (shortest.empty()) return;
   std::stable_sort(shortest.begin(), shortest.end(),
@@ -27,7 +24,7 @@ VertexClumps::VertexClumps(const RestEdges& edges, std::span<const double> size)
     const int a = sets.root(edges.edges[k][0]), b = sets.root(edges.edges[k][1]);
     if (a == b) continue;
     const double joined = way[at(a)] + edges.lengths[k] + way[at(b)];
-    if (fits(joined, a, b)) way[at(sets.join(a, b))] = joined;
+    if (joined <= std::min(size[at(a)], size[at(b)])) way[at(sets.join(a, b))] = joined;
   }
   of_.assign(size.size(), -1);
   std::vector<int> count(size.size(), 0), index(size.size(), -1);

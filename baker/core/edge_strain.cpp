@@ -9,7 +9,7 @@ namespace ft {
 RestEdges rest_edges(std::span<const Vec3> rest, std::span<const Triangle> triangles) {
   RestEdges out;
   for (const Edge& e : unique_edges(triangles)) {
-    const auto length = static_cast<float>((rest[at(e[0])] - rest[at(e[1])]).norm());
+    const double length = (rest[at(e[0])] - rest[at(e[1])]).norm();
     if (!(length > 0)) continue;
     out.edges.push_back(e);
     out.lengths.push_back(length);

@@ -11,7 +11,7 @@ namespace ft {
 
 struct RestEdges {
   std::vector<Edge> edges;
-  std::vector<float> lengths;  ///< of each edge at rest, > 0 [m]
+  std::vector<double> lengths;  ///< of each edge at rest, > 0 [m]
 };
 
 /// Unique edges, sorted, with their lengths in `rest` [m].

@@ -101,12 +101,12 @@ void weigh(ClothModel& model) {
   model.mass = model.topology->mass;
   model.contact.area.assign(n, 0.0);
   model.unused.assign(n, 1);
-  for (const Triangle& t : model.triangles) {
+  const ClothTopology& topology = *model.topology;
+  for (std::size_t index = 0; index < topology.triangles.size(); ++index) {
+    const Triangle& t = topology.triangles[index];
     const auto& rest = model.contact.rest;
-    const std::size_t index = static_cast<std::size_t>(&t - model.triangles.data());
-    const bool cut = model.topology->pieces[at(model.topology->triangle_piece[index])].pattern_scale > 0;
-    const double area =
-        cut ? model.topology->rest_area[index] : triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
+    const bool cut = topology.pieces[at(topology.triangle_piece[index])].pattern_scale > 0;
+    const double area = cut ? topology.rest_area[index] : triangle_area(rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]);
     for (const int v : t) {
       model.contact.area[at(v)] += area / 3;
       model.unused[at(v)] = 0;

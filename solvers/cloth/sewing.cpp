@@ -117,10 +117,10 @@ void lengths_from_pattern(const ClothTopology& topology, RestEdges& edges) {
     }
   }
   for (std::size_t i = 0; i < count.size(); ++i)
-    if (count[i] > 0) edges.lengths[i] = static_cast<float>(sum[i] / count[i]);
+    if (count[i] > 0) edges.lengths[i] = sum[i] / count[i];
   for (const FlippedCap& cap : topology.flipped_caps)
     if (const std::size_t i = index_of(cap.base[0], cap.base[1]); i < edges.edges.size())
-      edges.lengths[i] = static_cast<float>(cap.base_length);
+      edges.lengths[i] = cap.base_length;
 }
 
 bool ease_sewing(const ClothModel& model, double time, std::span<const Vec3> v, std::span<Vec3> acceleration) {

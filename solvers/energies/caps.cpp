@@ -9,9 +9,7 @@ namespace {
 
 /// Height of the highest cap in its longest edges, and in its shortest.
 constexpr double k_cap_height = 0.02, k_cap_shortest = 1.0 / 3;
-/// Both triangles must be so many times less flat than the cap [1].
-constexpr double k_better = 3;
-/// What the two of them may gain or lose of their area [1]: more where they make no convex quadrilateral.
+/// What the two of them may gain or lose of their area [1]: more where they are folded over each other at rest.
 constexpr double k_same_area = 0.05;
 /// The other diagonal must be no shorter than this share of the cap's base: else it would be a needle's end [1].
 constexpr double k_least_diagonal = 0.1;
@@ -42,21 +40,17 @@ class Flips {
     const Corners o = corners(other);
     std::size_t far = 0;  // the corner of the other that looks at the base, which it has the other way round
     while (far < 3 && (o.vertex[(far + 1) % 3] != c.vertex[b] || o.vertex[(far + 2) % 3] != c.vertex[a])) ++far;
-    if (far == 3 || !(topology_.rest_area[other] > 0) ||
-        topology_.triangle_piece[cap] != topology_.triangle_piece[other] ||
-        around_.contains(edge_of(c.vertex[top], o.vertex[far])))
-      return;
+    if (far == 3 || around_.contains(edge_of(c.vertex[top], o.vertex[far]))) return;
     const double length = rest_length(topology_, cap, top);
     const auto differ = [&](const Vec2& p, const Vec2& q) {
       return !((p - q).norm() <= k_same_uv * (c.uv[b] - c.uv[a]).norm());
     };
     if (differ(c.uv[a], o.uv[(far + 2) % 3]) || differ(c.uv[b], o.uv[(far + 1) % 3])) return;
-    const double flattest = std::min(flatness(cap), flatness(other)), area = area_of(cap, other);
+    const double area = area_of(cap, other);
     forget(cap), forget(other);
     set(cap, {{c.vertex[a], o.vertex[far], c.vertex[top]}, {c.uv[a], o.uv[far], c.uv[top]}});
     set(other, {{o.vertex[far], c.vertex[b], c.vertex[top]}, {o.uv[far], c.uv[b], c.uv[top]}});
-    if (is_sound(cap) && is_sound(other) && std::min(flatness(cap), flatness(other)) > k_better * flattest &&
-        std::abs(area_of(cap, other) - area) < k_same_area * area &&
+    if (is_sound(cap) && is_sound(other) && std::abs(area_of(cap, other) - area) < k_same_area * area &&
         rest_length(topology_, cap, 0) > k_least_diagonal * length) {
       topology_.flipped_caps.push_back({c.vertex[top], base, length});
       return;
@@ -97,12 +91,6 @@ class Flips {
     return topology_.rest_area[t] > 0 && cap_stiffness(topology_.rest_area[t], topology_.rest_inverse[t]) == 1;
   }
   double area_of(std::size_t t, std::size_t u) const { return topology_.rest_area[t] + topology_.rest_area[u]; }
-  /// Height by longest edge.
-  double flatness(std::size_t t) const {
-    double longest = 0;
-    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, rest_length(topology_, t, k));
-    return 2 * topology_.rest_area[t] / (longest * longest);
-  }
 
   ClothTopology& topology_;
   std::vector<std::array<Vec2, 3>>& uvs_;

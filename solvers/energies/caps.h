@@ -20,9 +20,9 @@ namespace ft {
 /// L/2000 that is still less than an edge. Triangles with one very short edge keep all: their corners hang together.
 double cap_stiffness(double rest_area, const std::array<double, 4>& rest_inverse);
 
-/// Parts caps and what lies beyond their longest edge anew, where no cap is left of the two and both are less flat;
-/// appends to ClothTopology::flipped_caps. uvs: of the corners of each triangle, or empty. measure(triangle) fills
-/// rest_inverse and rest_area of a triangle; they have to be filled.
+/// Parts caps and what lies beyond their longest edge anew, where no cap and no needle comes of the two; appends to
+/// ClothTopology::flipped_caps. uvs: of the corners of each triangle, or empty. measure(triangle) fills rest_inverse
+/// and rest_area of a triangle; they have to be filled.
 void flip_caps(ClothTopology& topology, std::vector<std::array<Vec2, 3>>& uvs,
                const std::function<void(std::size_t)>& measure);
 

@@ -52,9 +52,9 @@ TEST(JudgeCords, the_middle_lines_of_a_nets_tubes_are_its_cords) {
   ASSERT_EQ(lines->cords.edges.size(), net.cords.size());
   const std::multiset<double> expected = lengths_of(net);
   auto length = expected.begin();
-  std::vector<float> found = lines->cords.lengths;
+  std::vector<double> found = lines->cords.lengths;
   std::sort(found.begin(), found.end());
-  for (const float l : found) EXPECT_FLOAT_EQ(l, static_cast<float>(*length++));
+  for (const double l : found) EXPECT_NEAR(l, *length++, 1e-12);
 }
 
 TEST(JudgeCords, what_is_no_tube_is_refused) {

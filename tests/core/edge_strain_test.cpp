@@ -12,7 +12,7 @@ TEST(Edge_strain, Edge_without_length_is_left_out) {
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}};
   const RestEdges edges = rest_edges(rest, triangles);
   EXPECT_EQ(edges.edges, (std::vector<Edge>{{0, 1}, {0, 2}, {0, 3}, {2, 3}}));
-  EXPECT_EQ(edges.lengths, (std::vector<float>{1, 1, 2, std::sqrt(5.0f)}));
+  EXPECT_EQ(edges.lengths, (std::vector<double>{1, 1, 2, std::sqrt(5.0)}));
 }
 
 TEST(Edge_strain, Twice_the_size_is_a_strain_of_one_everywhere_and_half_of_minus_a_half) {

@@ -90,10 +90,17 @@ TEST(Caps, Stay_where_nothing_lies_beyond_or_not_the_same_cloth) {
   Sheet slanted(1e-5);  // no convex quadrilateral
   slanted.rest[1] = {-0.02, -0.0201, 0};
   EXPECT_EQ(flips(slanted, false), 0u);
+  Sheet folded(4e-4);  // over the cap, along its base
+  folded.rest[1] = {0.0021, 0.0079, 0};
+  EXPECT_EQ(flips(folded, false), 0u);
   Sheet pocket(1e-5);  // three at an edge
   pocket.rest.emplace_back(0.01, 0.01, 0.02);
   pocket.triangles.push_back({0, 2, 5});
   EXPECT_EQ(flips(pocket, false), 0u);
+  Sheet taken(1e-5);  // by another triangle, the other diagonal
+  taken.rest.emplace_back(0.01, 0, 0.02);
+  taken.triangles.push_back({4, 1, 5});
+  EXPECT_EQ(flips(taken, false), 0u);
 }
 
 TEST(Caps, On_either_side_of_an_edge_stay) {
