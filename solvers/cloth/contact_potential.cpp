@@ -13,6 +13,9 @@ namespace {
 constexpr std::size_t k_block = 512;
 constexpr float k_rounding = 1.0001f;  ///< of float sums of ways
 constexpr float k_no_way = 1e30f;
+/// Lists that have to grow get room for one in so many more, not for twice as many.
+constexpr std::size_t k_spare = 8;
+constexpr float k_never = -1;  ///< that a pair's distance was evaluated
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
 constexpr double k_truncation_reach = 2.3;
 /// Share of the radius below which the contact law rises faster: cloth that is drawn taut over an edge of the body, at
@@ -60,8 +63,8 @@ void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_
   x_start_ = x_start;
   h_ = h;
   way_.assign(at(model_.cloth_vertex_count), 0.f);
-  state_vf_.assign(pairs.vertex_face.size(), {-1.f, 0.f});
-  state_ee_.assign(pairs.edge_edge.size(), {-1.f, 0.f});
+  known_vf_.assign(pairs.vertex_face.size(), k_never);
+  known_ee_.assign(pairs.edge_edge.size(), k_never);
   contacts_.clear();
   lagged_.clear();
 }
@@ -113,10 +116,15 @@ float ContactPotential::way_of(const std::array<int, 4>& v, bool vertex_face, bo
   return side[0] + side[1];
 }
 
+/// Whether a pair can be no farther apart than `reach` [m] now. known: of known_vf_ or known_ee_.
+bool ContactPotential::may_be_within(const std::array<int, 4>& v, bool vertex_face, float known, float reach) const {
+  return known == k_never || !(known - k_rounding * way_of(v, vertex_face, true) > reach);
+}
+
 /// The pairs from the first on.
 void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first) {
   const auto& list = vertex_face ? pairs_->vertex_face : pairs_->edge_edge;
-  auto& state = vertex_face ? state_vf_ : state_ee_;
+  auto& known = vertex_face ? known_vf_ : known_ee_;
   const int n = model_.cloth_vertex_count;
   const std::size_t count = list.size() - first, blocks = block_count(count, k_block);
   if (block_contacts_.size() < blocks) block_contacts_.resize(blocks);
@@ -125,17 +133,14 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, st
     out.clear();
     for (std::size_t p = first + begin; p < first + end; ++p) {
       const auto& v = list[p].v;
-      PairState& s = state[p];
       const bool self = v[0] < n && v[3] < n;
       double largest = 0;
       for (const int i : v)
         if (i < n) largest = std::max(largest, model_.radius[at(i)]);
       if (self) largest = ContactModel::self_radius(largest);
-      if (s.distance >= 0 &&
-          s.distance - k_rounding * (way_of(v, vertex_face, true) - s.way) > static_cast<float>(largest) + 1e-6f)
-        continue;
+      if (!may_be_within(v, vertex_face, known[p], static_cast<float>(largest) + 1e-6f)) continue;
       const PairGeometry g = geometry_of(vertex_face, v, x);
-      s = {static_cast<float>(g.distance), way_of(v, vertex_face, false)};
+      known[p] = static_cast<float>(g.distance) + k_rounding * way_of(v, vertex_face, false);
       if (g.distance >= largest || g.distance <= 0) continue;
       if (!vertex_face && !g.interior) continue;
       Contact c;
@@ -171,10 +176,14 @@ void ContactPotential::forget_contacts() {
 }
 
 void ContactPotential::extend(std::span<const Vec3> x) {
-  const std::size_t first_vf = state_vf_.size(), first_ee = state_ee_.size(), first_contact = contacts_.size();
+  const std::size_t first_vf = known_vf_.size(), first_ee = known_ee_.size(), first_contact = contacts_.size();
   CHECK(first_vf <= pairs_->vertex_face.size() && first_ee <= pairs_->edge_edge.size());
-  state_vf_.resize(pairs_->vertex_face.size(), {-1.f, 0.f});
-  state_ee_.resize(pairs_->edge_edge.size(), {-1.f, 0.f});
+  const auto add = [](std::vector<float>& known, std::size_t count) {
+    if (count > known.capacity()) known.reserve(count + count / k_spare);
+    known.resize(count, k_never);
+  };
+  add(known_vf_, pairs_->vertex_face.size());
+  add(known_ee_, pairs_->edge_edge.size());
   update_kind(true, x, first_vf);
   update_kind(false, x, first_ee);
   lag_friction_from(first_contact);
@@ -300,26 +309,33 @@ void ContactPotential::near_pairs(std::span<const double> lengths, double floor,
     for (std::size_t i = begin; i < end; ++i)
       reach_[i] = static_cast<float>(k_truncation_reach * lengths[i] + floor) + 1e-6f;
   });
-  const auto take = [&](const std::vector<Stencil>& list, const std::vector<PairState>& state, bool vertex_face,
+  std::vector<char> near;  // per pair
+  const auto take = [&](const std::vector<Stencil>& list, const std::vector<float>& known, bool vertex_face,
                         std::vector<Stencil>& to) {
-    const std::size_t blocks = block_count(list.size(), k_block);
-    if (block_pairs_.size() < blocks) block_pairs_.resize(blocks);
-    parallel_for(list.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      std::vector<Stencil>& mine = block_pairs_[begin / k_block];
-      mine.clear();
+    near.assign(known.size(), 0);
+    std::vector<std::size_t> place(block_count(known.size(), k_block) + 1, 0);
+    parallel_for(known.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      std::size_t count = 0;
       for (std::size_t p = begin; p < end; ++p) {
         float reach = 0;
         for (const int i : list[p].v)
           if (i < n) reach = std::max(reach, reach_[at(i)]);
-        if (state[p].distance - k_rounding * (way_of(list[p].v, vertex_face, true) - state[p].way) < reach)
-          mine.push_back(list[p]);
+        near[p] = may_be_within(list[p].v, vertex_face, known[p], reach) ? 1 : 0;
+        count += near[p] != 0 ? 1 : 0;
       }
+      place[begin / k_block + 1] = count;
     });
-    to.clear();
-    for (std::size_t b = 0; b < blocks; ++b) to.insert(to.end(), block_pairs_[b].begin(), block_pairs_[b].end());
+    for (std::size_t b = 1; b < place.size(); ++b) place[b] += place[b - 1];
+    if (place.back() > to.capacity()) give_back(to);  // so that there are never two of them
+    to.resize(place.back());
+    parallel_for(known.size(), k_block, [&](std::size_t begin, std::size_t end) {
+      std::size_t next = place[begin / k_block];
+      for (std::size_t p = begin; p < end; ++p)
+        if (near[p] != 0) to[next++] = list[p];
+    });
   };
-  take(pairs_->vertex_face, state_vf_, true, out.vertex_face);
-  take(pairs_->edge_edge, state_ee_, false, out.edge_edge);
+  take(pairs_->vertex_face, known_vf_, true, out.vertex_face);
+  take(pairs_->edge_edge, known_ee_, false, out.edge_edge);
 }
 
 double ContactPotential::smallest_gap() const {

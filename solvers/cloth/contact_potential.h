@@ -95,21 +95,19 @@ class ContactPotential {
   void update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first);
   void lag_friction_from(std::size_t first);
   float way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const;
+  bool may_be_within(const std::array<int, 4>& v, bool vertex_face, float known, float reach) const;
 
   const ContactModel& model_;
-  const ContactPairs* pairs_ = nullptr;  ///< those that have a state are known
+  const ContactPairs* pairs_ = nullptr;  ///< those in front are in known_vf_, known_ee_
   std::span<const Vec3> x_start_;
   double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]
-  /// Distance when it was last evaluated (-1: never) and what the pair's vertices had gone then, at least [m].
-  struct PairState {
-    float distance, way;
-  };
-  std::vector<PairState> state_vf_, state_ee_;
+  /// Per pair: its distance when that was last evaluated and what its vertices had gone then, at least, together [m];
+  /// -1: never. What they have gone since is what is left of the sum less what they have gone now.
+  std::vector<float> known_vf_, known_ee_;
   std::vector<Contact> contacts_;
   std::vector<Lagged> lagged_;
   std::vector<std::vector<Contact>> block_contacts_;
-  std::vector<std::vector<Stencil>> block_pairs_;
   std::vector<float> reach_;  ///< per cloth vertex: pairs nearer than this may have to be truncated [m]
 };
 
