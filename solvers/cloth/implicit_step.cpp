@@ -214,7 +214,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     s.system.add_pair_terms(terms);
     for (Vec3& g : s.gradient) g = -g;
     const double before = of_cloth + contact.value(all);
-    give_back(terms, s.trial, s.cut);  // not for the linear solve
+    give_back(terms);
     contact.forget_contacts();
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
@@ -302,6 +302,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       contact.update(all, s.direction, 2 * factor);
       result.last_move = 0;
     }
+    give_back(s.direction, s.trial);
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = contact.smallest_gap();

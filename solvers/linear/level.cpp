@@ -43,6 +43,7 @@ void Level::make_room() {
 
 void Level::give_back() {
   ft::give_back(inverse, x, r, b);
+  if (pattern == &own_pattern) ft::give_back(matrix.blocks);
 }
 
 bool link_levels(Level& fine, Level& coarse, std::vector<Vec3>& rest) {

@@ -53,7 +53,7 @@ struct Level {
   int size() const { return pattern->vertex_count(); }
   /// For the vectors of a solve, and of coarse levels r and the matrix; what is in them is not defined.
   void make_room();
-  /// Frees the vectors.
+  /// Frees all that.
   void give_back();
   /// Row times v, with what is extra.
   Vec4f product(std::size_t row, std::span<const Vec4f> v) const;

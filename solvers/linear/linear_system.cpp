@@ -76,8 +76,7 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
 LinearSystem::~LinearSystem() = default;
 
 void LinearSystem::give_back() {
-  for (const auto& level : impl_->levels) ft::give_back(level->matrix.blocks, level->extra);
-  ft::give_back(impl_->added);
+  ft::give_back(impl_->fine().matrix.blocks, impl_->fine().extra, impl_->added);
 }
 
 BlockMatrix& LinearSystem::begin() {
