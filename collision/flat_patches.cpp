@@ -56,19 +56,12 @@ FlatPatches::FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> t
   std::erase_if(patches, [](const SpreadPatch& p) { return p.members.size() < 2; });
   for (SpreadPatch& p : patches)
     std::erase_if(p.cover, [&](int t) { return std::binary_search(p.members.begin(), p.members.end(), t); });
-  const auto rows_of = [&](Adjacency& rows, std::vector<int> SpreadPatch::*list) {
-    std::size_t count = 0;
-    for (const SpreadPatch& p : patches) count += (p.*list).size();
-    rows.start.assign(1, 0);
-    rows.start.reserve(patches.size() + 1);
-    rows.items.reserve(count);
-    for (const SpreadPatch& p : patches) {
-      rows.items.insert(rows.items.end(), (p.*list).begin(), (p.*list).end());
-      rows.start.push_back(static_cast<int>(rows.items.size()));
-    }
-  };
-  rows_of(members_, &SpreadPatch::members);
-  rows_of(beside_, &SpreadPatch::cover);
+  for (const SpreadPatch& p : patches) {
+    members_.push_back(p.members);
+    beside_.push_back(p.cover);
+  }
+  members_.shrink_to_fit();
+  beside_.shrink_to_fit();
   plane_.reserve(patches.size());
   least_.reserve(patches.size());
   for (const SpreadPatch& p : patches) {
@@ -107,8 +100,7 @@ float FlatPatches::flatness(std::size_t patch, RestOf&& rest_of, NowOf&& now_of)
     finite = finite && m > -k_infinity;
     least = std::min(least, m);
   };
-  for (const int t : members_.row(static_cast<int>(patch))) look(t);
-  for (const int t : beside_.row(static_cast<int>(patch))) look(t);
+  for (const AscendingRows* rows : {&members_, &beside_}) rows->for_each(static_cast<int>(patch), look);
   return finite ? least : -k_infinity;
 }
 
@@ -125,7 +117,7 @@ void FlatPatches::begin(std::span<const Vec3> x) {
     for (std::size_t p = begin; p < end; ++p) {
       const Eigen::Map<const Eigen::Matrix<float, 3, 2>> plane(plane_[p].data());
       Eigen::Matrix<double, 3, 2> sum = Eigen::Matrix<double, 3, 2>::Zero();
-      for (const int t : members(static_cast<int>(p))) {
+      members_.for_each(static_cast<int>(p), [&](int t) {
         const Sides &rest = rest_of(at(t)), &now = now_of(at(t));
         Eigen::Matrix2d d;
         d << dot(plane_[p].data(), rest.a), dot(plane_[p].data(), rest.b), dot(plane_[p].data() + 3, rest.a),
@@ -135,7 +127,7 @@ void FlatPatches::begin(std::span<const Vec3> x) {
         Eigen::Matrix<double, 3, 2> sides;
         for (int i = 0; i < 3; ++i) sides.row(i) << now.a[at(i)], now.b[at(i)];
         sum += sides * adjugate;  // weighted by area
-      }
+      });
       frame_[p] = nearest_frame(sum);
       first_flatness_[p] = flatness(p, rest_of, now_of);
       flat_[p] = first_flatness_[p] >= least_[p] + k_spare ? 1 : 0;
@@ -164,8 +156,8 @@ bool FlatPatches::keep(std::span<const Vec3> x, bool to_spare, std::vector<int>&
       if (flat_[p] == 0) continue;
       const float least = least_[p] + (to_spare ? k_spare : 0.f);
       float change = 0;
-      for (const Adjacency* rows : {&members_, &beside_})
-        for (const int t : rows->row(static_cast<int>(p))) change = std::max(change, changes[at(t)]);
+      for (const AscendingRows* rows : {&members_, &beside_})
+        rows->for_each(static_cast<int>(p), [&](int t) { change = std::max(change, changes[at(t)]); });
       // m is a Lipschitz function of the gradient, with constant 1: most patches are known to be flat by that.
       still[p] = first_flatness_[p] - change >= least || flatness(p, rest_of, now_of) >= least ? 1 : 0;
     }

@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/ascending_rows.h"
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 
@@ -32,8 +33,8 @@ class FlatPatches {
   FlatPatches(std::span<const Vec3> rest, std::span<const Triangle> triangles, double reach);
 
   /// Per patch: its triangles, ascending.
-  const Adjacency& members() const { return members_; }
-  std::span<const int> members(int patch) const { return members_.row(patch); }
+  const AscendingRows& members() const { return members_; }
+  std::vector<int> members(int patch) const { return members_.row(patch); }
   /// Per patch: whether no pairs are needed between its members.
   std::span<const char> flat() const { return flat_; }
 
@@ -54,7 +55,7 @@ class FlatPatches {
 
   std::span<const Vec3> rest_;
   std::span<const Triangle> triangles_;
-  Adjacency members_, beside_;               ///< per patch: triangles; both together cover it
+  AscendingRows members_, beside_;           ///< per patch: triangles; both together cover it
   std::vector<std::array<float, 6>> plane_;  ///< per patch: the axes of its plane, in the space of the rest shape
   std::vector<float> least_;                 ///< per patch: what m has to be at least
   std::vector<float> by_sides_;              ///< per triangle: how much m can change, by that of the sides [1/m]
