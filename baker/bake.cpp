@@ -88,17 +88,30 @@ Status remove_left_behind(const BakeFolder& folder, const Manifest& before, cons
   return {};
 }
 
-/// A try on some of the frames does not take the place of a finished bake of more of them, unless that is asked for.
-Status keep_whole_shot(const BakeOptions& options, const Standing& standing, const Manifest& now,
-                       const BakeFolder& folder) {
+bool is_preview(const Manifest& manifest) {
+  const auto found = std::ranges::find(manifest.settings, "shot.quality", &std::pair<std::string, std::string>::first);
+  return found != manifest.settings.end() && found->second.find("preview") != std::string::npos;
+}
+
+/// A try, on some of the frames or in preview quality, does not take the place of a finished bake of more of them or in
+/// final quality, unless that is asked for.
+Status keep_better_bake(const BakeOptions& options, const Standing& standing, const Manifest& now,
+                        const BakeFolder& folder) {
   const Manifest& before = standing.before;
-  if (!options.frames || options.force || standing.kind != Standing::Kind::k_stale || !before.complete) return {};
+  if (options.force || standing.kind != Standing::Kind::k_stale || !before.complete) return {};
+  const auto refused = [&](const std::string& what, const std::string& them) {
+    return usage_error("there is a finished bake " + what + " would replace", folder.path.string(),
+                       "bake " + them + " into a folder of " + (them == "it" ? "its" : "their") +
+                           " own with --out, or replace it with --force");
+  };
   const bool within = before.first_frame <= now.first_frame && now.last_frame <= before.last_frame;
-  if (!within || before.last_frame - before.first_frame == now.last_frame - now.first_frame) return {};
-  return usage_error(fmt::format("there is a finished bake of frames {}-{}, which frames {}-{} would replace",
-                                 before.first_frame, before.last_frame, now.first_frame, now.last_frame),
-                     folder.path.string(),
-                     "bake them into a folder of their own with --out, or replace it with --force");
+  const bool shorter = before.last_frame - before.first_frame != now.last_frame - now.first_frame;
+  if (options.frames && within && shorter)
+    return refused(fmt::format("of frames {}-{}, which frames {}-{}", before.first_frame, before.last_frame,
+                               now.first_frame, now.last_frame),
+                   "them");
+  if (is_preview(now) && !is_preview(before)) return refused("in final quality, which a preview", "it");
+  return {};
 }
 
 /// The checkpoint to go on from, if the user wants that and it can be.
@@ -214,7 +227,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   if (const Status apart = check_inputs_stay(*inputs, folder); !apart) return failed(apart.error());
   const Manifest now = manifest_of(*inputs);
   Standing standing = find_standing(folder, now);
-  const Status kept = keep_whole_shot(options, standing, now, folder);
+  const Status kept = keep_better_bake(options, standing, now, folder);
   if (options.explain) {
     BakeResult out{0, {describe(standing, folder)}, {}};
     if (!kept) out.lines.push_back("this bake would be refused: " + kept.error().text());

@@ -24,6 +24,28 @@ TEST(Quality, A_preview_says_so_and_is_stale_for_a_final_bake) {
   EXPECT_EQ(scene.manifest_text().find("preview quality"), std::string::npos);
 }
 
+TEST(Quality, A_preview_takes_the_place_of_a_finished_final_bake_only_when_forced) {
+  FakeScene scene;
+  scene.write_shot(4);
+  ASSERT_EQ(scene.run(scene.options()).exit_code, 0);
+  const auto before = scene.products();
+  BakeOptions preview = scene.options();
+  preview.overrides.push_back("shot.quality=preview");
+  const BakeResult refused = scene.run(preview);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(text(refused).find("there is a finished bake in final quality, which a preview would replace (bake it into "
+                               "a folder of its own with --out, or replace it with --force)"),
+            std::string::npos)
+      << text(refused);
+  EXPECT_EQ(scene.products(), before);
+  preview.explain = true;
+  EXPECT_NE(text(scene.run(preview)).find("this bake would be refused"), std::string::npos);
+  preview.explain = false;
+  preview.force = true;
+  EXPECT_EQ(scene.run(preview).exit_code, 0);
+  EXPECT_NE(scene.manifest_text().find("preview quality"), std::string::npos);
+}
+
 TEST(Quality, A_preview_is_coarser_in_everything_and_a_final_bake_in_nothing) {
   Shot shot;
   ClothSetup final_setup, preview_setup;
