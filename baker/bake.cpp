@@ -15,6 +15,7 @@
 #include "baker/lock_file.h"
 #include "baker/output_names.h"
 #include "baker/plan_text.h"
+#include "baker/quality.h"
 #include "baker/signals.h"
 #include "baker/standing.h"
 #include "baker/start_report.h"
@@ -88,29 +89,22 @@ Status remove_left_behind(const BakeFolder& folder, const Manifest& before, cons
   return {};
 }
 
-bool is_preview(const Manifest& manifest) {
-  const auto found = std::ranges::find(manifest.settings, "shot.quality", &std::pair<std::string, std::string>::first);
-  return found != manifest.settings.end() && found->second.find("preview") != std::string::npos;
-}
-
 /// A try, on some of the frames or in preview quality, does not take the place of a finished bake of more of them or in
 /// final quality, unless that is asked for.
 Status keep_better_bake(const BakeOptions& options, const Standing& standing, const Manifest& now,
                         const BakeFolder& folder) {
   const Manifest& before = standing.before;
   if (options.force || standing.kind != Standing::Kind::k_stale || !before.complete) return {};
-  const auto refused = [&](const std::string& what, const std::string& them) {
-    return usage_error("there is a finished bake " + what + " would replace", folder.path.string(),
-                       "bake " + them + " into a folder of " + (them == "it" ? "its" : "their") +
-                           " own with --out, or replace it with --force");
-  };
   const bool within = before.first_frame <= now.first_frame && now.last_frame <= before.last_frame;
   const bool shorter = before.last_frame - before.first_frame != now.last_frame - now.first_frame;
   if (options.frames && within && shorter)
-    return refused(fmt::format("of frames {}-{}, which frames {}-{}", before.first_frame, before.last_frame,
-                               now.first_frame, now.last_frame),
-                   "them");
-  if (is_preview(now) && !is_preview(before)) return refused("in final quality, which a preview", "it");
+    return usage_error(fmt::format("there is a finished bake of frames {}-{}, which frames {}-{} would replace",
+                                   before.first_frame, before.last_frame, now.first_frame, now.last_frame),
+                       folder.path.string(),
+                       "bake them into a folder of their own with --out, or replace it with --force");
+  if (is_preview(now) && !is_preview(before))
+    return usage_error("there is a finished bake in final quality, which a preview would replace", folder.path.string(),
+                       "bake the preview into a folder of its own with --out, or replace the bake with --force");
   return {};
 }
 

@@ -25,6 +25,12 @@ bool is_preview(const Shot& shot) {
   return shot.quality == "preview";
 }
 
+bool is_preview(const Manifest& manifest) {
+  return std::ranges::any_of(manifest.settings, [](const auto& setting) {
+    return setting.first == "shot.quality" && setting.second == "\"preview\"";
+  });
+}
+
 void apply_quality(const Shot& shot, ClothSetup& setup) {
   if (!is_preview(shot)) return;
   setup.coarsen = k_coarsen;

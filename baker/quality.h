@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "baker/manifest.h"
 #include "io/shot/shot.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/lockstep/lockstep_solver.h"
@@ -11,6 +12,8 @@
 namespace ft {
 
 bool is_preview(const Shot& shot);
+/// By the settings that a bake was made with.
+bool is_preview(const Manifest& manifest);
 
 /// Makes a setup, with its primary, a preview's; a final one stays as it is.
 void apply_quality(const Shot& shot, ClothSetup& setup);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/ascending_rows.h"
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 #include "collision/pair_geometry.h"
@@ -55,8 +56,8 @@ class PairFinder {
   /// have for the collider's sake; nothing at first.
   void set_self_margin(const BoxMargin& self_margin);
 
-  /// Patches: sets of cloth triangles, for `skipped`. Before the first search.
-  void set_patches(const Adjacency& members);
+  /// Patches: sets of cloth triangles, a row each, for `skipped`. Before the first search.
+  void set_patches(const AscendingRows& members);
 
   /// boxes: of one frame; they must stay where they are until the search is over.
   /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,

@@ -147,17 +147,17 @@ void PairFinder::set_self_margin(const BoxMargin& self_margin) {
   impl_->self_margin = self_margin;
 }
 
-void PairFinder::set_patches(const Adjacency& members) {
+void PairFinder::set_patches(const AscendingRows& members) {
   Impl& m = *impl_;
   CHECK(!m.cloth.built());
   std::vector<int>& start = m.patches_of.start;
   start.assign(m.features.cloth.size() + 1, 0);
-  for (const int t : members.items) ++start[at(t) + 1];
+  for (int p = 0; p < members.row_count(); ++p) members.for_each(p, [&](int t) { ++start[at(t) + 1]; });
   for (std::size_t t = 1; t < start.size(); ++t) start[t] += start[t - 1];
-  m.patches_of.items.resize(members.items.size());
+  m.patches_of.items.resize(at(start.back()));
   std::vector<int> next(start.begin(), start.end() - 1);
   for (int p = 0; p < members.row_count(); ++p)
-    for (const int t : members.row(p)) m.patches_of.items[at(next[at(t)]++)] = p;
+    members.for_each(p, [&](int t) { m.patches_of.items[at(next[at(t)]++)] = p; });
 }
 
 void PairFinder::build_trees(const std::function<Vec3f(int)>& place_of) {

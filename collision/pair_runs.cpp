@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
+#include "baker/core/give_back.h"
+
 namespace ft {
 namespace {
-
-constexpr std::size_t k_spare =
-    8;  ///< a list that has to grow gets room for one in so many more, not for twice as many
 
 /// First of sorted `list` that is not less than what; looks near its beginning first.
 std::size_t lower_bound_near(std::span<const Stencil> list, const Stencil& what) {
@@ -36,8 +35,7 @@ void PairRuns::add(std::span<const Stencil> fresh, std::span<const Stencil> but,
     mark_known(std::span(list).subspan(begins_[r], end - begins_[r]), fresh, known_);
   }
   const std::size_t before = list.size();
-  const std::size_t needed = before + static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 0));
-  if (needed > list.capacity()) list.reserve(needed + needed / k_spare);
+  reserve_sparingly(list, before + static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 0)));
   for (std::size_t i = 0; i < fresh.size(); ++i)
     if (known_[i] == 0) list.push_back(fresh[i]);
   if (list.size() > before) begins_.push_back(before);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "baker/core/check.h"
-#include "baker/core/mesh.h"
 #include "baker/core/types.h"
 
 namespace ft {
@@ -49,23 +48,18 @@ class AscendingRows {
       const int low = *next++;
       return low | *next++ << 16;
     };
-    for (int number = whole();; number = *next == k_far ? (++next, whole()) : number + *next++) {
+    int number = whole();
+    visit(number);
+    while (next < end) {
+      const Word step = *next++;
+      number = step == k_far ? whole() : number + step;
       visit(number);
-      if (next == end) return;
     }
   }
+  /// A copy.
   std::vector<int> row(int i) const {
     std::vector<int> out;
     for_each(i, [&](int number) { out.push_back(number); });
-    return out;
-  }
-  Adjacency unpacked() const {
-    Adjacency out;
-    out.start.assign(1, 0);
-    for (int i = 0; i < row_count(); ++i) {
-      for_each(i, [&](int number) { out.items.push_back(number); });
-      out.start.push_back(static_cast<int>(out.items.size()));
-    }
     return out;
   }
 

@@ -65,7 +65,7 @@ Candidates::Candidates(const ClothModel& model)
                k_patch_reach * ContactModel::self_radius(largest(model.contact.radius))) {
   radius_ = std::max(radius_, largest(model.contact.radius));
   self_radius_ = ContactModel::self_radius(largest(model.contact.radius));
-  finder_.set_patches(patches_.members().unpacked());
+  finder_.set_patches(patches_.members());
   for (const double edge : model.typical_edge) most_spare_.push_back(k_slack_edges * edge);
   any_self_ = std::any_of(model.self_collides.begin(), model.self_collides.end(), [](char c) { return c; });
 }

@@ -13,8 +13,6 @@ namespace {
 constexpr std::size_t k_block = 512;
 constexpr float k_rounding = 1.0001f;  ///< of float sums of ways
 constexpr float k_no_way = 1e30f;
-/// Lists that have to grow get room for one in so many more, not for twice as many.
-constexpr std::size_t k_spare = 8;
 constexpr float k_never = -1;  ///< that a pair's distance was evaluated
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
 constexpr double k_truncation_reach = 2.3;
@@ -179,7 +177,7 @@ void ContactPotential::extend(std::span<const Vec3> x) {
   const std::size_t first_vf = known_vf_.size(), first_ee = known_ee_.size(), first_contact = contacts_.size();
   CHECK(first_vf <= pairs_->vertex_face.size() && first_ee <= pairs_->edge_edge.size());
   const auto add = [](std::vector<float>& known, std::size_t count) {
-    if (count > known.capacity()) known.reserve(count + count / k_spare);
+    reserve_sparingly(known, count);
     known.resize(count, k_never);
   };
   add(known_vf_, pairs_->vertex_face.size());

@@ -103,7 +103,7 @@ class ContactPotential {
   double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]
   /// Per pair: its distance when that was last evaluated and what its vertices had gone then, at least, together [m];
-  /// -1: never. What they have gone since is what is left of the sum less what they have gone now.
+  /// -1: never. Less what they have gone by now it is no more than their distance.
   std::vector<float> known_vf_, known_ee_;
   std::vector<Contact> contacts_;
   std::vector<Lagged> lagged_;

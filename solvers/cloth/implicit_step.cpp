@@ -302,7 +302,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       contact.update(all, s.direction, 2 * factor);
       result.last_move = 0;
     }
-    give_back(s.direction, s.trial);
+    give_back(s.direction, s.trial);  // not while the next one is looked for
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = contact.smallest_gap();

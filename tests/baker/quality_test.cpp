@@ -33,8 +33,8 @@ TEST(Quality, A_preview_takes_the_place_of_a_finished_final_bake_only_when_force
   preview.overrides.push_back("shot.quality=preview");
   const BakeResult refused = scene.run(preview);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(text(refused).find("there is a finished bake in final quality, which a preview would replace (bake it into "
-                               "a folder of its own with --out, or replace it with --force)"),
+  EXPECT_NE(text(refused).find("there is a finished bake in final quality, which a preview would replace (bake the "
+                               "preview into a folder of its own with --out, or replace the bake with --force)"),
             std::string::npos)
       << text(refused);
   EXPECT_EQ(scene.products(), before);

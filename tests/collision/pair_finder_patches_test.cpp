@@ -36,19 +36,19 @@ TEST(PairFinderPatches, Pairs_inside_a_skipped_one_are_left_out_and_no_others) {
   test::Dice dice(9);
   const test::PairScene scene = wavy_sheet(14, 0.04, dice);
   const int triangles = static_cast<int>(scene.cloth.size());
-  Adjacency members;
-  members.start.assign(1, 0);
+  std::vector<std::vector<int>> rows(60);
+  AscendingRows members;
   std::vector<char> skipped;
-  for (int patch = 0; patch < 60; ++patch) {
+  for (std::vector<int>& row : rows) {
     const int first = dice.below(triangles), last = std::min(triangles, first + dice.below(60));
-    for (int t = first; t < last; ++t) members.items.push_back(t);
-    members.start.push_back(static_cast<int>(members.items.size()));
+    for (int t = first; t < last; ++t) row.push_back(t);
+    members.push_back(row);
     skipped.push_back(dice.below(3) != 0 ? 1 : 0);
   }
   // A feature that several triangles have is looked at in one of them: what is left out has to be inside the patch,
   // what is found must not be inside it with all of its triangles.
   const auto inside_by = [&](int patch, const Stencil& s, bool vertex_face, auto&& quantifier) {
-    const std::span<const int> row = members.row(patch);
+    const std::vector<int>& row = rows[at(patch)];
     const auto within = [&](std::span<const int> feature) {
       std::vector<int> with;
       for (int t = 0; t < triangles; ++t)
@@ -111,18 +111,19 @@ TEST(PairFinderPatches, Of_triangles_that_share_no_vertex_exactly_the_pairs_insi
           scene.boxes.push_back(k_frame.swept(p, p, 0.1));
         }
       }
-      Adjacency members;
-      members.start.assign(1, 0);
+      std::vector<std::vector<int>> rows(4);
+      AscendingRows members;
       std::vector<char> skipped;
       for (int patch = 0; patch < 4; ++patch) {
+        std::vector<int>& row = rows[at(patch)];
         for (int t = 0; t < triangles; ++t)
-          if (dice.below(3) == 0) members.items.push_back(t);
-        members.start.push_back(static_cast<int>(members.items.size()));
+          if (dice.below(3) == 0) row.push_back(t);
+        members.push_back(row);
         skipped.push_back(patch != 1 ? 1 : 0);
       }
       const auto is_inside = [&](const Stencil& s) {
         for (int patch = 0; patch < members.row_count(); ++patch) {
-          const std::span<const int> row = members.row(patch);
+          const std::vector<int>& row = rows[at(patch)];
           if (skipped[at(patch)] != 0 && std::binary_search(row.begin(), row.end(), s.v[0] / 3) &&
               std::binary_search(row.begin(), row.end(), s.v[3] / 3))
             return true;

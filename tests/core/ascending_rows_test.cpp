@@ -25,19 +25,11 @@ TEST(AscendingRows, Give_back_what_was_put_in) {
   for (const auto& row : rows) packed.push_back(row);
   packed.shrink_to_fit();
   ASSERT_EQ(packed.row_count(), 8);
-  const Adjacency unpacked = packed.unpacked();
-  ASSERT_EQ(unpacked.row_count(), 8);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_EQ(packed.row(static_cast<int>(i)), rows[i]) << i;
-    const std::span<const int> row = unpacked.row(static_cast<int>(i));
-    EXPECT_EQ(std::vector<int>(row.begin(), row.end()), rows[i]) << i;
-  }
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(packed.row(static_cast<int>(i)), rows[i]) << i;
 }
 
 TEST(AscendingRows, Without_rows_are_none) {
-  const AscendingRows none;
-  EXPECT_EQ(none.row_count(), 0);
-  EXPECT_EQ(none.unpacked().row_count(), 0);
+  EXPECT_EQ(AscendingRows().row_count(), 0);
 }
 
 TEST(AscendingRows, Give_back_rows_of_any_gaps) {
