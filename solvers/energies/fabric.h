@@ -26,6 +26,11 @@ struct Fabric {
   double limit_warp = 0, limit_weft = 0;
   /// Stiffness that straight yarns add beyond it [N/m].
   double limit_stretch = 1e4;
+  /// Angle by which warp and weft turn against each other until the yarns begin to jam [rad]; 0: never. Dense weaves
+  /// jam after a few degrees, loose ones after 0.5 and more.
+  double limit_shear = 0;
+  /// Shear stiffness that jammed yarns add beyond it [N/m].
+  double limit_jam = 1000;
   /// Strain-rate damping time of the membrane and of bending [s]: stress = C (strain + time * strain rate). 0 none,
   /// 0.01 dull.
   double damping = 2e-3;

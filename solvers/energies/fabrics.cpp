@@ -132,6 +132,8 @@ std::span<const Member> members() {
       {{"limit_warp", 0, 1, "1"}, &Fabric::limit_warp},
       {{"limit_weft", 0, 1, "1"}, &Fabric::limit_weft},
       {{"limit_stretch", 0, 1e6, "N/m"}, &Fabric::limit_stretch},
+      {{"limit_shear", 0, 1, "rad"}, &Fabric::limit_shear},
+      {{"limit_jam", 0, 1e6, "N/m"}, &Fabric::limit_jam},
       {{"damping", 0, 0.1, "s"}, &Fabric::damping},
       {{"drag_normal", 0, 10, "1"}, &Fabric::drag_normal},
       {{"drag_tangential", 0, 10, "1"}, &Fabric::drag_tangential},

@@ -46,21 +46,29 @@ void strain(const Deformation& d, Lane* e) {
 
 /// Strain over which the crimp goes out of yarns and their stiffness comes in [1].
 constexpr double k_straightening = 0.01;
+/// Shear over which yarns that begin to press against each other sideways jam [1]: flat where they meet, they give way.
+constexpr double k_jamming = 0.05;
 
 struct Taut {
   double value, slope, curvature;
 };
 
-/// Energy of unit stiffness at a strain past the limit: its curvature rises from 0 to 1, without a jump.
-inline Taut taut(double past) {
-  const double in = std::clamp(past, 0.0, k_straightening), out = std::max(past - k_straightening, 0.0);
-  constexpr double w = k_straightening;
+/// Energy of unit stiffness at a strain past the limit: its curvature rises from 0 to 1 over w, without a jump.
+inline Taut taut(double past, double w = k_straightening) {
+  const double in = std::clamp(past, 0.0, w), out = std::max(past - w, 0.0);
   return {in * in * in / (6 * w) + out * (0.5 * w + 0.5 * out), in * in / (2 * w) + out, in / w};
+}
+
+/// The same of a shear to either side.
+inline Taut jammed(double shear, double limit) {
+  Taut out = taut(std::abs(shear) - limit, k_jamming);
+  out.slope = std::copysign(out.slope, shear);
+  return out;
 }
 
 /// Materials of a group, times area where they are stiffnesses [N m].
 struct Constants {
-  alignas(32) Lane stiffness[4], damping_time, limit[2], limit_stiffness;
+  alignas(32) Lane stiffness[4], damping_time, limit[3], limit_stiffness, jam_stiffness;
 };
 
 void constants(const Membrane::Group& g, const std::uint16_t* material, std::span<const Membrane::Material> materials,
@@ -69,8 +77,9 @@ void constants(const Membrane::Group& g, const std::uint16_t* material, std::spa
     const Membrane::Material& m = materials[material[l]];
     for (int k = 0; k < 4; ++k) out.stiffness[k][l] = g.area[l] * m.stiffness[k];
     out.damping_time[l] = m.damping_time;
-    for (int k = 0; k < 2; ++k) out.limit[k][l] = m.limit[k];
+    for (int k = 0; k < 3; ++k) out.limit[k][l] = m.limit[k];
     out.limit_stiffness[l] = g.area[l] * m.limit_stiffness;
+    out.jam_stiffness[l] = g.area[l] * m.jam_stiffness;
   }
 }
 
@@ -85,7 +94,7 @@ void stress(const Constants& c, const Membrane::Reference& ref, double inverse_r
         c.stiffness[0][l] * e0 + c.stiffness[2][l] * e1 + c.limit_stiffness[l] * taut(e[0][l] - c.limit[0][l]).slope;
     s[1][l] =
         c.stiffness[2][l] * e0 + c.stiffness[1][l] * e1 + c.limit_stiffness[l] * taut(e[1][l] - c.limit[1][l]).slope;
-    s[2][l] = c.stiffness[3][l] * e2;
+    s[2][l] = c.stiffness[3][l] * e2 + c.jam_stiffness[l] * jammed(e[2][l], c.limit[2][l]).slope;
   }
 }
 
@@ -123,7 +132,7 @@ void element_block(const ElementParts& e, const Lanes& ax, const Lanes& ay, cons
 void element_blocks(const Membrane::Group& g, const Constants& c, const Deformation& d, const Lane* strain,
                     const Lane* s, double inverse_rate_time, ElementBlocks& out) {
   // Positive part of the 2x2 stress: alpha S + beta I, from the eigenvalues mean +- radius.
-  alignas(32) Lane p[3], more, straight[2];
+  alignas(32) Lane p[3], more, straight[3];
   for (int l = 0; l < k_lanes; ++l) {
     const double mean = 0.5 * (s[0][l] + s[1][l]), half = 0.5 * (s[0][l] - s[1][l]);
     const double radius = std::sqrt(half * half + s[2][l] * s[2][l]);
@@ -134,13 +143,15 @@ void element_blocks(const Membrane::Group& g, const Constants& c, const Deformat
     p[0][l] = alpha * s[0][l] + beta, p[1][l] = alpha * s[1][l] + beta, p[2][l] = alpha * s[2][l];
     more[l] = 1 + c.damping_time[l] * inverse_rate_time;
     for (int k = 0; k < 2; ++k) straight[k][l] = c.limit_stiffness[l] * taut(strain[k][l] - c.limit[k][l]).curvature;
+    straight[2][l] = c.jam_stiffness[l] * jammed(strain[2][l], c.limit[2][l]).curvature;
   }
   ElementParts e;
   for (int k = 0; k < 3; ++k) e.u[k] = as_lanes(d.f1[k]), e.w[k] = as_lanes(d.f2[k]);
   const Lanes factor = as_lanes(more);
   e.c11 = factor * as_lanes(c.stiffness[0]) + as_lanes(straight[0]);
   e.c22 = factor * as_lanes(c.stiffness[1]) + as_lanes(straight[1]);
-  e.c12 = factor * as_lanes(c.stiffness[2]), e.c33 = factor * as_lanes(c.stiffness[3]);
+  e.c12 = factor * as_lanes(c.stiffness[2]);
+  e.c33 = factor * as_lanes(c.stiffness[3]) + as_lanes(straight[2]);
   e.p11 = as_lanes(p[0]), e.p22 = as_lanes(p[1]), e.p12 = as_lanes(p[2]);
   const Lanes ax = as_lanes(g.rest_inverse[0]), ay = as_lanes(g.rest_inverse[1]);
   const Lanes bx = as_lanes(g.rest_inverse[2]), by = as_lanes(g.rest_inverse[3]);
@@ -175,9 +186,16 @@ void scatter(ElementBlocks& e, const Membrane::Vertices& vertices, const BlockPo
   add(b00, 0, 0), add(b01, 0, 1), add(b02, 0, 2), add(e.b11, 1, 1), add(e.b12, 1, 2), add(e.b22, 2, 2);
 }
 
+constexpr double k_no_limit = 1e30;
+
 /// Green strain of a line that is longer by this share; a limit of 0 is none.
 double green_limit(double strain) {
-  return strain > 0 ? strain + 0.5 * strain * strain : 1e30;
+  return strain > 0 ? strain + 0.5 * strain * strain : k_no_limit;
+}
+
+/// 2 E12 of yarns that have their length and turn by an angle against each other; a limit of 0 is none.
+double shear_limit(double angle) {
+  return angle > 0 ? std::sin(angle) : k_no_limit;
 }
 
 }  // namespace
@@ -193,10 +211,12 @@ Membrane::Membrane(const ClothTopology& topology) {
   for (const ClothPiece& piece : topology.pieces) {
     const Fabric& fabric = piece.fabric;
     const auto c = membrane_stiffness(fabric);
-    materials_.push_back({{c[0], c[1], c[2], c[3]},
-                          fabric.damping,
-                          {green_limit(fabric.limit_weft), green_limit(fabric.limit_warp)},
-                          fabric.limit_stretch});
+    materials_.push_back(
+        {{c[0], c[1], c[2], c[3]},
+         fabric.damping,
+         {green_limit(fabric.limit_weft), green_limit(fabric.limit_warp), shear_limit(fabric.limit_shear)},
+         fabric.limit_stretch,
+         fabric.limit_jam});
   }
   const TriangleOrder& order = triangle_order(topology);
   slots_ = order.slots;
@@ -272,7 +292,8 @@ double Membrane::value(std::span<const Vec3> x) const {
         const double viscous = c.stiffness[0][l] * r0 * r0 + c.stiffness[1][l] * r1 * r1 +
                                2 * c.stiffness[2][l] * r0 * r1 + c.stiffness[3][l] * r2 * r2;
         sum[l] += 0.5 * (elastic + damping * viscous) +
-                  c.limit_stiffness[l] * (taut(e[0][l] - c.limit[0][l]).value + taut(e[1][l] - c.limit[1][l]).value);
+                  c.limit_stiffness[l] * (taut(e[0][l] - c.limit[0][l]).value + taut(e[1][l] - c.limit[1][l]).value) +
+                  c.jam_stiffness[l] * jammed(e[2][l], c.limit[2][l]).value;
       }
     }
     double total = 0;

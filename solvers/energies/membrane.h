@@ -1,6 +1,7 @@
 // In-plane elasticity of cloth: constant-strain triangles, orthotropic St. Venant-Kirchhoff, with strain-rate damping.
 //   U = sum A/2 (E.CE + d (E - E_ref).C(E - E_ref)),   d = damping time / rate time of the integrator
 //       + sum A k (t(E11 - L1) + t(E22 - L2)),   t'' rising from 0 to 1 over a strain of 1 %: limits of a weave
+//       + sum A j t(|2 E12| - L3),   the same over a shear of 0.05: its yarns jam
 // E is the Green strain (E11, E22, 2 E12) in weft/warp axes, E_ref what the integrator's rate formula subtracts from E,
 // to seven digits: a body that moves rigidly does not feel the first term change, and of damping no more than that.
 // Hessian: Gauss-Newton plus the geometric term with the positive part of the 2x2 stress (closed form, no 9x9
@@ -37,8 +38,9 @@ class Membrane final : public Energy {
   struct Material {
     double stiffness[4] = {};    ///< C11, C22, C12, C33 [N/m]
     double damping_time = 0;     ///< s
-    double limit[2] = {};        ///< Green strain of weft and warp beyond which yarns are straight
+    double limit[3] = {};        ///< Green strain of weft and warp beyond which yarns are straight; shear, jammed
     double limit_stiffness = 0;  ///< of straight yarns [N/m]
+    double jam_stiffness = 0;    ///< of jammed yarns against shear [N/m]
   };
   /// k_lanes triangles; all zero in padding.
   struct Group {

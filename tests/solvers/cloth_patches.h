@@ -62,7 +62,7 @@ inline ClothTopology curved_patch(int columns, int rows) {
   jersey.stretch_warp = 120, jersey.stretch_weft = 60, jersey.shear = 30, jersey.poisson = 0.4, jersey.damping = 5e-3;
   denim.stretch_warp = 1500, denim.stretch_weft = 900, denim.shear = 200, denim.poisson = 0.2, denim.bend_warp = 2e-4;
   denim.bend_weft = 5e-5;
-  denim.limit_warp = 0.01, denim.limit_weft = 0.03;
+  denim.limit_warp = 0.01, denim.limit_weft = 0.03, denim.limit_shear = 0.01;
   const ClothPiece pieces[] = {{0, count, jersey}, {count, count, denim}};
   ClothTopology out = make_cloth_topology(rest, triangles, pieces);
   // Sewn border to border, wide open, below the force limit: as stiff as the membrane.

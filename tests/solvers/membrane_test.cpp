@@ -50,6 +50,29 @@ TEST(Membrane, Limits_of_warp_and_weft_do_not_feel_each_other) {
   EXPECT_GT(pull(fabric, 0.1), 3 * soft);
 }
 
+TEST(Membrane, Yarns_that_turn_beyond_their_limit_jam_to_either_side) {
+  constexpr double width = 0.2, length = 0.3;
+  auto rest = grid_points(4, 6, [](double s, double t) { return Vec3(width * s, length * t, 0); });
+  const auto triangles = grid_triangles(4, 6);
+  for (const double limit : {0.0, 0.08})
+    for (const double angle : {-0.2, -0.1, -0.07, 0.07, 0.1, 0.2}) {
+      Fabric fabric;
+      fabric.shear = 80, fabric.damping = 0, fabric.limit_shear = limit, fabric.limit_jam = 700;
+      const ClothPiece piece{0, static_cast<int>(rest.size()), fabric};
+      const Membrane membrane(make_cloth_topology(rest, triangles, {&piece, 1}));
+      // The warp turns by the angle and keeps its length: no strain but 2 E12 = sin(angle).
+      std::vector<Vec3> x = rest, gradient(rest.size(), Vec3::Zero());
+      for (Vec3& p : x) p = Vec3(p.x() + std::sin(angle) * p.y(), std::cos(angle) * p.y(), 0);
+      membrane.add_gradient(x, gradient);
+      double force = 0;
+      for (std::size_t i = gradient.size() - 5; i < gradient.size(); ++i) force += gradient[i].x();
+      const double past = limit > 0 ? std::max(0.0, std::abs(std::sin(angle)) - std::sin(limit)) : 0;
+      const double jammed = past < 0.05 ? past * past / 0.1 : past - 0.025;  // they jam over a shear of 0.05
+      const double stress = 80 * std::sin(angle) + std::copysign(700 * jammed, angle);
+      EXPECT_NEAR(force, width * stress, 1e-9) << limit << " " << angle;
+    }
+}
+
 /// Stiffness [N/m] against raising the top of a triangle whose base is `length` long, above `place` of it.
 double stiffness_of_top(double length, double height, double place) {
   const std::vector<Vec3> rest{{0, 0, 0}, {length, 0, 0}, {place * length, height, 0}};
