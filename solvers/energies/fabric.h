@@ -26,8 +26,8 @@ struct Fabric {
   double limit_warp = 0, limit_weft = 0;
   /// Stiffness that straight yarns add beyond it [N/m].
   double limit_stretch = 1e4;
-  /// Angle by which warp and weft turn against each other until the yarns begin to jam [rad]; 0: never. Dense weaves
-  /// jam after a few degrees, loose ones after 0.5 and more.
+  /// Angle by which warp and weft turn against each other before their yarns begin to jam, sideways against the next
+  /// ones [rad]; 0: never. See fabrics.cpp.
   double limit_shear = 0;
   /// Shear stiffness that jammed yarns add beyond it [N/m].
   double limit_jam = 1000;

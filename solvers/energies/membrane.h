@@ -36,9 +36,10 @@ class Membrane final : public Energy {
 
   /// Per area, as a fabric has it.
   struct Material {
-    double stiffness[4] = {};    ///< C11, C22, C12, C33 [N/m]
-    double damping_time = 0;     ///< s
-    double limit[3] = {};        ///< Green strain of weft and warp beyond which yarns are straight; shear, jammed
+    double stiffness[4] = {};  ///< C11, C22, C12, C33 [N/m]
+    double damping_time = 0;   ///< s
+    /// Of E11 and E22, beyond which yarns are straight, and of |2 E12|, beyond which they jam [1].
+    double limit[3] = {};
     double limit_stiffness = 0;  ///< of straight yarns [N/m]
     double jam_stiffness = 0;    ///< of jammed yarns against shear [N/m]
   };

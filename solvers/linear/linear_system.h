@@ -14,7 +14,7 @@ namespace ft {
 struct LinearSettings {
   enum class Preconditioner { k_block_jacobi, k_multigrid };
   Preconditioner preconditioner = Preconditioner::k_multigrid;
-  double tolerance = 3e-2;  ///< of the residual, as LinearReport has it; 1e-3 buys nothing (see tests/bench/RESULTS.md)
+  double tolerance = 3e-2;  ///< of the residual, as LinearReport has it; see tests/bench/RESULTS.md for what less buys
   int max_iterations = 200;
 };
 

@@ -10,20 +10,26 @@
 namespace ft {
 namespace {
 
-/// Force [N] that holds a sheet of 0.2 m x 0.3 m stretched by `strain` along its warp, its width kept; the warp is the
-/// pattern's v.
-double pull(const Fabric& fabric, double strain) {
-  auto rest = grid_points(4, 6, [](double s, double t) { return Vec3(0.2 * s, 0.3 * t, 0); });
+constexpr double k_width = 0.2, k_length = 0.3;  ///< of the sheet, along weft (x) and warp (y) [m]
+
+/// Force [N] with which its upper side holds a sheet whose points have gone from p to moved(p).
+template <class Moved>
+Vec3 holding_force(const Fabric& fabric, Moved&& moved) {
+  const auto rest = grid_points(4, 6, [](double s, double t) { return Vec3(k_width * s, k_length * t, 0); });
   const auto triangles = grid_triangles(4, 6);
   const ClothPiece piece{0, static_cast<int>(rest.size()), fabric};
-  const ClothTopology topology = make_cloth_topology(rest, triangles, {&piece, 1});
-  const Membrane membrane(topology);
-  std::vector<Vec3> x = rest, gradient(rest.size(), Vec3::Zero());
-  for (Vec3& p : x) p.y() *= 1 + strain;
+  const Membrane membrane(make_cloth_topology(rest, triangles, {&piece, 1}));
+  std::vector<Vec3> x, gradient(rest.size(), Vec3::Zero());
+  for (const Vec3& p : rest) x.push_back(moved(p));
   membrane.add_gradient(x, gradient);
-  double force = 0;
-  for (std::size_t i = gradient.size() - 5; i < gradient.size(); ++i) force += gradient[i].y();
+  Vec3 force = Vec3::Zero();
+  for (std::size_t i = gradient.size() - 5; i < gradient.size(); ++i) force += gradient[i];
   return force;
+}
+
+/// Force [N] that holds the sheet stretched by `strain` along its warp, its width kept.
+double pull(const Fabric& fabric, double strain) {
+  return holding_force(fabric, [&](const Vec3& p) { return Vec3(p.x(), (1 + strain) * p.y(), 0); }).y();
 }
 
 TEST(Membrane, A_weave_pulls_straight_beyond_its_limit_and_a_knit_does_not) {
@@ -36,7 +42,7 @@ TEST(Membrane, A_weave_pulls_straight_beyond_its_limit_and_a_knit_does_not) {
       const double past = limit > 0 ? std::max(0.0, green - bound) : 0;
       const double taut = past < 0.01 ? past * past / 0.02 : past - 0.005;  // the crimp goes out over 1 %
       const double stress = 500 / (1 - 0.3 * 0.3) * green + fabric.limit_stretch * taut;
-      EXPECT_NEAR(pull(fabric, strain), 0.2 * (1 + strain) * stress, 1e-9) << limit << " " << strain;
+      EXPECT_NEAR(pull(fabric, strain), k_width * (1 + strain) * stress, 1e-9) << limit << " " << strain;
     }
 }
 
@@ -51,25 +57,19 @@ TEST(Membrane, Limits_of_warp_and_weft_do_not_feel_each_other) {
 }
 
 TEST(Membrane, Yarns_that_turn_beyond_their_limit_jam_to_either_side) {
-  constexpr double width = 0.2, length = 0.3;
-  auto rest = grid_points(4, 6, [](double s, double t) { return Vec3(width * s, length * t, 0); });
-  const auto triangles = grid_triangles(4, 6);
+  Fabric fabric;
+  fabric.shear = 80, fabric.damping = 0, fabric.limit_jam = 700;
   for (const double limit : {0.0, 0.08})
     for (const double angle : {-0.2, -0.1, -0.07, 0.07, 0.1, 0.2}) {
-      Fabric fabric;
-      fabric.shear = 80, fabric.damping = 0, fabric.limit_shear = limit, fabric.limit_jam = 700;
-      const ClothPiece piece{0, static_cast<int>(rest.size()), fabric};
-      const Membrane membrane(make_cloth_topology(rest, triangles, {&piece, 1}));
-      // The warp turns by the angle and keeps its length: no strain but 2 E12 = sin(angle).
-      std::vector<Vec3> x = rest, gradient(rest.size(), Vec3::Zero());
-      for (Vec3& p : x) p = Vec3(p.x() + std::sin(angle) * p.y(), std::cos(angle) * p.y(), 0);
-      membrane.add_gradient(x, gradient);
-      double force = 0;
-      for (std::size_t i = gradient.size() - 5; i < gradient.size(); ++i) force += gradient[i].x();
+      fabric.limit_shear = limit;
+      // The warp turns and keeps its length: no strain but 2 E12 = sin(angle).
+      const Vec3 warp(std::sin(angle), std::cos(angle), 0);
+      const double force =
+          holding_force(fabric, [&](const Vec3& p) -> Vec3 { return Vec3(p.x(), 0, 0) + p.y() * warp; }).x();
       const double past = limit > 0 ? std::max(0.0, std::abs(std::sin(angle)) - std::sin(limit)) : 0;
       const double jammed = past < 0.05 ? past * past / 0.1 : past - 0.025;  // they jam over a shear of 0.05
       const double stress = 80 * std::sin(angle) + std::copysign(700 * jammed, angle);
-      EXPECT_NEAR(force, width * stress, 1e-9) << limit << " " << angle;
+      EXPECT_NEAR(force, k_width * stress, 1e-9) << limit << " " << angle;
     }
 }
 
