@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "baker/core/corner_uvs.h"
 #include "io/shot/mesh_file.h"
-#include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/sewing.h"
 
 namespace ft {

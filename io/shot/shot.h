@@ -181,7 +181,7 @@ struct WindSpec {
 struct SolverSpec {
   int min_substeps = 3, max_substeps = 32;  ///< a frame
   int newton_iterations = 3;
-  double linear_tolerance = 3e-2;
+  double linear_tolerance = 1e-2;
   std::string integrator = "bdf2";  ///< "bdf2" or "euler"
   double gap = 6e-3;                ///< room kept between body parts [m]
   bool carve = true;

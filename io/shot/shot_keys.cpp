@@ -166,7 +166,8 @@ std::span<const ShotKey<SolverSpec>> solver_keys() {
       {"newton_iterations", &SolverSpec::newton_iterations, 1, 100, "a substep", "", false, "iterations newton",
        "Newton iterations; up to five times as many where an iteration still strains the cloth"},
       {"linear_tolerance", &SolverSpec::linear_tolerance, 1e-10, 0.5, "1", "", false, "tolerance",
-       "Residual at which the linear solver stops, relative and in the norm of its preconditioner"},
+       "Residual at which the first linear solve of a substep stops, relative and in the norm of its preconditioner; "
+       "later ones may leave as much"},
       {"integrator", &SolverSpec::integrator, 0, 0, "", "bdf2 euler", false, "method",
        "`bdf2`, for cloth with a quarter of BDF3, keeps the swing; `euler` calms it"},
       {"gap", &SolverSpec::gap, 0, 0.05, "m", "", false, "", "Room kept between overlapping parts of the body"},

@@ -4,32 +4,17 @@
 #include <cmath>
 #include <limits>
 
+#include "baker/core/corner_uvs.h"
 #include "baker/core/give_back.h"
 #include "collision/carve_plan.h"
 #include "solvers/cloth/attach.h"
+#include "solvers/cloth/cloth_check.h"
+#include "solvers/cloth/pins.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/energies/registry.h"
 
 namespace ft {
 namespace {
-
-Status check_maps(const ClothGarment& garment) {
-  for (const NamedMap& map : k_vertex_maps) {
-    const std::vector<double>& values = garment.maps.*map.values;
-    const std::string owner = "cloth \"" + garment.name + "\": map of " + std::string(map.name);
-    if (values.empty()) continue;
-    if (values.size() != garment.mesh.positions.size())
-      return input_error(owner + " has " + std::to_string(values.size()) + " values for " +
-                         std::to_string(garment.mesh.positions.size()) + " vertices");
-    // Cloth folds without resistance where it likes, but it has mass, thickness and a length.
-    const bool may_vanish = map.values == &VertexMaps::bend;
-    for (std::size_t v = 0; v < values.size(); ++v)
-      if (!std::isfinite(values[v]) || values[v] < 0 || (values[v] == 0 && !may_vanish))
-        return input_error(owner + ": " + std::to_string(values[v]) + " at vertex " + std::to_string(v) + " is not " +
-                           (may_vanish ? "0 or above" : "above 0"));
-  }
-  return {};
-}
 
 /// Per garment the median of its edges at rest [m]; infinite without any.
 std::vector<double> median_edges(const ClothModel& model) {
@@ -127,95 +112,22 @@ void weigh(ClothModel& model) {
   model.carry_smooth = CarrySmooth(model.contact.rest, model.rest_edges, typical, k_very_near, model.clumps);
 }
 
-void place_and_pin(ClothModel& model) {
+/// Where the garments start: as the body at the start of the pre-roll has taken them along, or, what is pinned to the
+/// world, where they are.
+void place(ClothModel& model) {
   const ClothSetup& setup = model.setup;
-  std::vector<Vec3> bind;
-  std::vector<Triangle> body;
   model.start.assign(model.contact.rest.begin(), model.contact.rest.end());
-  if (setup.primary) {
-    bind = bind_pose_of(*setup.primary);
-    body = setup.primary->surface().triangles;
-    const Eigen::Isometry3d place = setup.primary->bind_to_start();
-    for (std::size_t g = 0; g < setup.garments.size(); ++g) {
-      const auto& pins = setup.garments[g].pins;
-      if (std::any_of(pins.begin(), pins.end(), [](const ClothPin& pin) { return pin.to_world; })) continue;
-      for (int v = model.first_vertex[g]; v < model.first_vertex[g + 1]; ++v)
-        model.start[at(v)] = place * model.start[at(v)];
-    }
+  if (!setup.primary) return;
+  const Eigen::Isometry3d place = setup.primary->bind_to_start();
+  for (std::size_t g = 0; g < setup.garments.size(); ++g) {
+    const auto& pins = setup.garments[g].pins;
+    if (std::any_of(pins.begin(), pins.end(), [](const ClothPin& pin) { return pin.to_world; })) continue;
+    for (int v = model.first_vertex[g]; v < model.first_vertex[g + 1]; ++v)
+      model.start[at(v)] = place * model.start[at(v)];
   }
-  for (std::size_t g = 0; g < setup.garments.size(); ++g)
-    for (const ClothPin& pin : setup.garments[g].pins) {
-      if (pin.to >= 0) continue;
-      const std::vector<HoldSpan> holds = hold_spans(pin, setup.garments[g].mesh.positions);
-      for (std::size_t k = 0; k < pin.vertices.size(); ++k) {
-        const int v = model.first_vertex[g] + pin.vertices[k];
-        const double weight = pin.weights.empty() ? 1.0 : pin.weights[k];
-        if (weight <= 0 || model.unused[at(v)]) continue;
-        const Vec3& x = model.contact.rest[at(v)];
-        PinPoint point = pin.to_world ? bind_pin(v, x, {}, {}) : bind_pin(v, x, bind, body);
-        const double area = model.contact.area[at(v)];
-        point.stiffness = weight * pin.stiffness * area;
-        point.max_pull = weight * pin.max_pull * area;
-        point.hold = holds[k];
-        point.to_world = pin.to_world;
-        model.pins.push_back(point);
-      }
-    }
 }
 
 }  // namespace
-
-std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles) {
-  std::vector<std::array<Vec2, 3>> out;
-  if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size()) return out;
-  out.reserve(triangles.size());
-  std::size_t begin = 0, next = 0;
-  for (const int size : mesh.face_sizes) {
-    for (int k = 0; k + 2 < size; ++k, ++next) {
-      std::array<Vec2, 3> uv;
-      for (std::size_t c = 0; c < 3; ++c) {
-        std::size_t corner = begin;
-        while (corner < begin + at(size) && mesh.face_vertices[corner] != triangles[next][c]) ++corner;
-        const int index = corner < begin + at(size) ? mesh.face_uvs[corner] : -1;
-        uv[c] = index >= 0 && at(index) < mesh.uvs.size() ? mesh.uvs[at(index)] : Vec2::Zero();
-      }
-      out.push_back(uv);
-    }
-    begin += at(size);
-  }
-  return out;
-}
-
-Status check(const ClothSetup& setup) {
-  if (setup.garments.empty()) return input_error("a cloth system needs at least one garment");
-  for (const ClothGarment& g : setup.garments) {
-    if (g.mesh.positions.empty() || g.mesh.face_sizes.empty())
-      return input_error("cloth \"" + g.name + "\" has no faces");
-    if (!all_finite(g.mesh.positions)) return input_error("cloth \"" + g.name + "\" has a vertex that is not a number");
-    for (const Stitch& s : g.mesh.stitches)
-      for (const int v : {s.vertex, s.edge[0], s.edge[1]})
-        if (v < 0 || v >= g.mesh.vertex_count() || s.vertex == s.edge[0] || s.vertex == s.edge[1] ||
-            !(s.place >= 0 && s.place <= 1))
-          return input_error("cloth \"" + g.name + "\": a stitch of vertex " + std::to_string(s.vertex) +
-                             " cannot be sewn");
-    if (const Status maps = check_maps(g); !maps) return maps;
-    for (const ClothPin& pin : g.pins) {
-      for (const int v : pin.vertices)
-        if (v < 0 || v >= g.mesh.vertex_count())
-          return input_error("cloth \"" + g.name + "\": pin names vertex " + std::to_string(v) + " of " +
-                             std::to_string(g.mesh.vertex_count()));
-      if (!pin.weights.empty() && pin.weights.size() != pin.vertices.size())
-        return input_error("cloth \"" + g.name + "\": a pin needs one weight per vertex");
-      if (pin.to >= static_cast<int>(setup.garments.size()))
-        return input_error("cloth \"" + g.name + "\": a pin holds to garment " + std::to_string(pin.to) + " of " +
-                           std::to_string(setup.garments.size()));
-    }
-  }
-  if (!(setup.fps > 0) || setup.min_substeps < 1 || setup.max_substeps < setup.min_substeps ||
-      setup.newton_iterations < 1 || !(setup.coarsen >= 1 && setup.coarsen <= 4) || !(setup.travel > 0))
-    return input_error("cloth settings are out of range");
-  return {};
-}
 
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   if (Status status = check(setup); !status) return status.error();
@@ -223,7 +135,8 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   model->setup = std::move(setup);
   concatenate(*model);
   weigh(*model);
-  place_and_pin(*model);
+  place(*model);
+  pin(*model);
   sew(*model);
   attach(*model);
   const ClothSetup& s = model->setup;

@@ -76,22 +76,6 @@ struct ClothModel {
   }
 };
 
-/// What is wrong with a setup, by garment and vertex.
-Status check(const ClothSetup& setup);
-
-/// Pattern coordinates of the corners of each triangle of triangulate(); empty when the mesh has none.
-std::vector<std::array<Vec2, 3>> corner_uvs(const Mesh& mesh, std::span<const Triangle> triangles);
-
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup);
-
-/// Orthonormal frame of a triangle: first edge, in-plane, normal. Identity for a degenerate one.
-Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c);
-
-/// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without
-/// a body.
-PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles);
-
-/// Where the pins are, from the drawn body's positions.
-void pin_targets(const ClothModel& model, std::span<const Vec3> drawn, std::span<Vec3> targets);
 
 }  // namespace ft

@@ -19,6 +19,7 @@
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/coarse_solver.h"
+#include "solvers/cloth/pins.h"
 #include "solvers/cloth/riding_solver.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/substep_count.h"

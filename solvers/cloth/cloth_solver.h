@@ -60,7 +60,7 @@ struct ClothSetup {
   int min_substeps = 3, max_substeps = 32;  ///< a frame
   double travel = 5.5;  ///< most that the body goes against the cloth in a substep, in contact radii; 16 is coarse
   int newton_iterations = 3;
-  double linear_tolerance = 3e-2;
+  double linear_tolerance = 1e-2;  ///< of the first linear solve of a step; later ones may leave as much
   /// What moves has edges this many times as long as the garments', 1..4; their vertices ride on it. For previews.
   double coarsen = 1;
   /// Edges that are absurdly short (coarse_garment.h) move like all others, and often blow up. For tests.

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
+#include "baker/core/corner_uvs.h"
 #include "collision/short_edges.h"
-#include "solvers/cloth/cloth_model.h"
 
 namespace ft {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "baker/core/parallel.h"
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/cloth_check.h"
 #include "solvers/cloth/coarse_garment.h"
 
 namespace ft {

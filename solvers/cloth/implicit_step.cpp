@@ -183,6 +183,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   double of_cloth = potential_of_cloth(cloth(all));
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
+  /// What the first solve may leave, later ones may too: they have less to solve for, and what takes long [sqrt(J)].
+  double enough = 0;
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     contact.lag_friction();
     contact.mark_touching(s.touches);
@@ -219,7 +221,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
     const auto find_direction = [&](std::span<const char> held) {
-      result.linear_iterations += s.system.solve(s.gradient, held, s.direction).iterations;
+      const LinearReport solved = s.system.solve(s.gradient, held, s.direction, enough);
+      if (result.linear_iterations == 0) enough = model_.setup.linear_tolerance * solved.start_norm;
+      result.linear_iterations += solved.iterations;
       for (Vec3& d : s.direction)
         if (!d.allFinite()) d.setZero(), result.finite = false;
       s.truncation.calm(all, s.direction);

@@ -1,8 +1,37 @@
-// Pins: where they are on the body, and where the body takes them.
+#include "solvers/cloth/pins.h"
+
 #include "collision/nearest_point.h"
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/attach.h"
 
 namespace ft {
+
+void pin(ClothModel& model) {
+  const ClothSetup& setup = model.setup;
+  std::vector<Vec3> bind;
+  std::vector<Triangle> body;
+  if (setup.primary) {
+    bind = bind_pose_of(*setup.primary);
+    body = setup.primary->surface().triangles;
+  }
+  for (std::size_t g = 0; g < setup.garments.size(); ++g)
+    for (const ClothPin& pin : setup.garments[g].pins) {
+      if (pin.to >= 0) continue;
+      const std::vector<HoldSpan> holds = hold_spans(pin, setup.garments[g].mesh.positions);
+      for (std::size_t k = 0; k < pin.vertices.size(); ++k) {
+        const int v = model.first_vertex[g] + pin.vertices[k];
+        const double weight = pin.weights.empty() ? 1.0 : pin.weights[k];
+        if (weight <= 0 || model.unused[at(v)]) continue;
+        const Vec3& x = model.contact.rest[at(v)];
+        PinPoint point = pin.to_world ? bind_pin(v, x, {}, {}) : bind_pin(v, x, bind, body);
+        const double area = model.contact.area[at(v)];
+        point.stiffness = weight * pin.stiffness * area;
+        point.max_pull = weight * pin.max_pull * area;
+        point.hold = holds[k];
+        point.to_world = pin.to_world;
+        model.pins.push_back(point);
+      }
+    }
+}
 
 Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 e = b - a, n = e.cross(c - a);

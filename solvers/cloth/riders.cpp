@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "baker/core/check.h"
+#include "baker/core/corner_uvs.h"
 #include "baker/core/parallel.h"
 #include "baker/core/rigid.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/pins.h"
 #include "solvers/cloth/sewing.h"
 
 namespace ft {

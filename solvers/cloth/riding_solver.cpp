@@ -5,7 +5,7 @@
 
 #include "baker/core/edge_strain.h"
 #include "collision/crossings.h"
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/cloth_check.h"
 #include "solvers/cloth/coarse_garment.h"
 #include "solvers/cloth/riders.h"
 

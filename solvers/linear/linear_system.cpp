@@ -19,6 +19,8 @@ constexpr std::size_t k_rows = 256;  ///< per block of a loop
 /// Where the cycle turns the residual so far that less is left along it than this share of its norm, it is made
 /// symmetric.
 constexpr double k_least_along = 0.1;
+/// Where a larger residual is enough, the tolerance is so many times as large at most.
+constexpr double k_most_loose = 5;
 
 /// Of what the preconditioner makes of the residual.
 struct Products {
@@ -276,8 +278,8 @@ void LinearSystem::Impl::advance(float beta) {
   });
 }
 
-LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed,
-                                 std::vector<Vec3>& out) {
+LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::vector<Vec3>& out,
+                                 double enough) {
   Impl& s = *impl_;
   ft::give_back(out);
   for (const auto& level : s.levels) level->make_room();
@@ -292,6 +294,9 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   double best_residual = report.converged ? 0 : 1;
   bool is_best = true;  // the solution so far, of all there were
   const Products first = s.precondition();
+  report.start_norm = std::sqrt(first.norm_squared);
+  const double loose = enough > 0 ? enough / (s.settings.tolerance * report.start_norm) : 1;
+  const double tolerance = s.settings.tolerance * std::clamp(loose, 1.0, k_most_loose);
   double rz = first.with_residual;
   s.direction = s.preconditioned();
   while (!report.converged && report.iterations < s.settings.max_iterations && std::isfinite(rz) && rz > 0) {
@@ -307,7 +312,7 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
     // Gradient and Steepest Descent Methods), so that the difference of two residuals stands for the new one alone.
     s.advance(-s.alpha * static_cast<float>(along_last / rz));
     if (!(next >= 0) || !std::isfinite(next)) break;
-    report.converged = residual <= s.settings.tolerance && sound;
+    report.converged = residual <= tolerance && sound;
     rz = next;
   }
   report.residual = best_residual;

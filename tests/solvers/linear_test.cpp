@@ -196,6 +196,30 @@ TEST(LinearSystem, needs_about_as_many_multigrid_iterations_for_a_fine_sheet_as_
   EXPECT_LT(iterations[1], 40);
 }
 
+TEST(LinearSystem, stops_where_what_is_left_is_enough_but_never_before_it_is_a_share_of_the_right_side) {
+  const Sheet sheet(25);
+  const std::vector<char> fixed(sheet.x.size(), 0);
+  LinearSystem system(sheet.pattern, sheet.rest, {.tolerance = 1e-3});
+  const auto solve = [&](double enough) {
+    sheet.fill(system.begin());
+    system.add_pair_terms({});
+    std::vector<Vec3> x;
+    return system.solve(sheet.load(), fixed, x, enough);
+  };
+  const LinearReport whole = solve(0);
+  ASSERT_GT(whole.start_norm, 0);
+  EXPECT_LE(whole.residual, 1e-3);
+  const LinearReport same = solve(0.9e-3 * whole.start_norm), less = solve(3e-3 * whole.start_norm);
+  EXPECT_EQ(same.iterations, whole.iterations);
+  EXPECT_LT(less.iterations, whole.iterations);
+  EXPECT_LE(less.residual, 3e-3);
+  EXPECT_GT(less.residual, 1e-3);
+  const LinearReport least = solve(10 * whole.start_norm);
+  EXPECT_TRUE(least.converged);
+  EXPECT_GE(least.iterations, 1);
+  EXPECT_LE(least.residual, 5e-3);
+}
+
 // Between vertices anywhere, so stiff that a cycle that is not symmetric turns residuals to the wrong side.
 TEST(LinearSystem, solves_sheets_with_contacts_a_thousand_times_stiffer_than_they_are) {
   const Sheet sheet(20);
