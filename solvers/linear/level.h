@@ -12,6 +12,7 @@
 #include "solvers/linear/galerkin_plan.h"
 #include "solvers/linear/interpolation.h"
 #include "solvers/linear/row_product.h"
+#include "solvers/linear/stiff_clusters.h"
 
 namespace ft {
 
@@ -39,7 +40,8 @@ struct Level {
   std::vector<Vec4f> probe;  ///< where estimate_damping() starts; not of the finest, whose damping is given
 
   BlockMatrix matrix;
-  ExtraRows extra;  ///< of the finest: what contacts couple besides
+  ExtraRows extra;         ///< of the finest: what contacts couple besides
+  StiffClusters clusters;  ///< of the finest: what the smoother takes as one
 
   // Of a solve.
   std::vector<SymmetricBlock> inverse;  ///< of the diagonal blocks; zero for rows that are held

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
@@ -12,13 +13,16 @@
 namespace ft {
 namespace {
 
-constexpr int k_dense_size = 64;     ///< vertices of the level that is factored densely
-constexpr int k_dense_limit = 400;   ///< no dense factor above this size: the coarsest level is only smoothed then
-constexpr std::size_t k_rows = 256;  ///< per block of a loop
+constexpr int k_dense_size = 64;        ///< vertices of the level that is factored densely
+constexpr int k_dense_limit = 400;      ///< no dense factor above this size: the coarsest level is only smoothed then
+constexpr std::size_t k_rows = 256;     ///< per block of a loop
+constexpr std::size_t k_clusters = 48;  ///< the same
 
 /// Where the cycle turns the residual so far that less is left along it than this share of its norm, it is made
 /// symmetric.
 constexpr double k_least_along = 0.1;
+/// And where the residual has grown so many times over the least there was: what is conjugate is lost by then.
+constexpr double k_most_grown = 1.5;
 /// Where a larger residual is enough, the tolerance is so many times as large at most.
 constexpr double k_most_loose = 5;
 
@@ -38,6 +42,7 @@ struct LinearSystem::Impl {
   Eigen::LLT<Eigen::MatrixXd> coarse_factor;
   bool coarse_is_factored = false;
   std::vector<ExtraBlock> added;
+  std::vector<StiffClusters::Coupling> couplings;  ///< of the terms, in the pattern
   std::vector<char> held;
   std::vector<Vec4f> direction;
   /// Of the matrix and the direction; then M^-1 residual, of which every entry wants that of the product alone.
@@ -55,7 +60,7 @@ struct LinearSystem::Impl {
   void advance(float beta);
   void correct(std::size_t depth);
   void solve_coarsest(Level& level);
-  Products precondition();
+  Products precondition(double most_norm_squared);
   Products apply_cycle();
 };
 
@@ -78,7 +83,8 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
 LinearSystem::~LinearSystem() = default;
 
 void LinearSystem::give_back() {
-  ft::give_back(impl_->fine().matrix.blocks, impl_->fine().extra, impl_->added);
+  ft::give_back(impl_->fine().matrix.blocks, impl_->fine().extra, impl_->fine().clusters, impl_->added,
+                impl_->couplings);
 }
 
 BlockMatrix& LinearSystem::begin() {
@@ -93,17 +99,22 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   BlockMatrix& matrix = s.fine().matrix;
   const BlockPattern& pattern = *matrix.pattern;
   s.added.clear();
+  s.couplings.clear();
   for (std::size_t t = 0; t < terms.size(); ++t) {
     const PairTerm& term = terms[t];
+    // What lies on the body is held by it: only what touches other cloth gains by clusters.
+    const bool is_of_cloth_alone = *std::min_element(term.vertex.begin(), term.vertex.end()) >= 0;
     for (std::uint8_t a = 0; a < 4; ++a)
       for (std::uint8_t b = 0; b < 4; ++b) {
         const int row = term.vertex[a], column = term.vertex[b];
         if (row < 0 || column < row) continue;
         const int place = row == column ? pattern.diagonal[at(row)] : pattern.find(row, column);
-        if (place >= 0)
+        if (place >= 0) {
           matrix.blocks[at(place)] += (term.weight[a] * term.weight[b]) * term.stiffness;
-        else
+          if (row != column && is_of_cloth_alone) s.couplings.push_back({row, column, place});
+        } else {
           s.added.push_back({row, column, static_cast<int>(t), a, b});
+        }
       }
   }
   s.fine().extra.gather(s.added, terms, at(s.fine().size()));
@@ -130,6 +141,7 @@ void LinearSystem::Impl::hold(std::span<const char> fixed) {
 
 void LinearSystem::Impl::refresh_hierarchy() {
   invert_diagonal(fine());
+  if (levels.size() > 1) fine().clusters.build(fine().matrix, fine().extra, held, couplings);
   for (std::size_t d = 1; d < levels.size(); ++d) {
     levels[d - 1]->plan.apply(levels[d - 1]->matrix, levels[d]->matrix);
     invert_diagonal(*levels[d]);
@@ -195,36 +207,58 @@ Products LinearSystem::Impl::apply_cycle() {
   const bool many = levels.size() > 1;
   if (many) correct(0);
   using Lanes = Eigen::Array4d;
-  const Vec3 sums =
-      parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
-        Lanes with_residual = Lanes::Zero(), with_product = with_residual, norm_squared = with_residual;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Vec4f last = product[i];
-          Vec4f& z = preconditioned()[i];
-          z.setZero();
-          if (held[i]) continue;
-          const Vec4f& b = level.b[i];
-          if (many) {
-            const Vec4f& corrected = level.x[i];
-            const Vec4f rest = b - level.product(i, level.x), smoothed = level.damping * (level.inverse[i] * rest);
-            z = corrected + smoothed;
-            norm_squared += (b.array() * corrected.array() + rest.array() * smoothed.array()).cast<double>();
-          } else {
-            z = level.inverse[i] * b;
-          }
-          with_residual += (b.array() * z.array()).cast<double>();
-          with_product += (last.array() * z.array()).cast<double>();
+  struct Sums {
+    Lanes with_residual = Lanes::Zero(), with_product = Lanes::Zero(), norm_squared = Lanes::Zero();
+    Vec3 total() const { return {with_residual.sum(), with_product.sum(), norm_squared.sum()}; }
+  };
+  const auto correct_by = [&](std::size_t i, const Vec4f& rest, const Vec4f& smoothed, Sums& sums) {
+    const Vec4f &b = level.b[i], &corrected = level.x[i], last = product[i], z = corrected + smoothed;
+    preconditioned()[i] = z;
+    sums.norm_squared += (b.array() * corrected.array() + rest.array() * smoothed.array()).cast<double>();
+    sums.with_residual += (b.array() * z.array()).cast<double>();
+    sums.with_product += (last.array() * z.array()).cast<double>();
+  };
+  Vec3 sums = parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
+    Sums own;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (held[i]) {
+        preconditioned()[i].setZero();
+      } else if (!many) {
+        const Vec4f &b = level.b[i], last = product[i], z = level.inverse[i] * b;
+        preconditioned()[i] = z;
+        own.with_residual += (b.array() * z.array()).cast<double>();
+        own.with_product += (last.array() * z.array()).cast<double>();
+      } else if (!level.clusters.has(i)) {
+        const Vec4f rest = level.b[i] - level.product(i, level.x);
+        correct_by(i, rest, level.damping * (level.inverse[i] * rest), own);
+      }
+    }
+    return own.total();
+  });
+  const StiffClusters& clusters = level.clusters;
+  sums +=
+      parallel_sum(at(clusters.count()), k_clusters, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
+        Sums own;
+        std::array<Vec4f, StiffClusters::k_most_vertices> rest, smoothed;
+        for (int c = static_cast<int>(begin); c < static_cast<int>(end); ++c) {
+          const std::span<const int> members = clusters.members(c);
+          for (std::size_t k = 0; k < members.size(); ++k)
+            rest[k] = level.b[at(members[k])] - level.product(at(members[k]), level.x);
+          clusters.solve(c, rest, smoothed);
+          for (std::size_t k = 0; k < members.size(); ++k)
+            correct_by(at(members[k]), rest[k], level.damping * smoothed[k], own);
         }
-        return {with_residual.sum(), with_product.sum(), norm_squared.sum()};
+        return own.total();
       });
   return {sums[0], sums[1], symmetric || !many ? sums[0] : sums[2]};
 }
 
 /// V(0,1) can turn a residual to the wrong side. For the rest of the solve the cycle is symmetric then, which cannot;
 /// without a product with the last direction the next is its own alone.
-Products LinearSystem::Impl::precondition() {
+Products LinearSystem::Impl::precondition(double most_norm_squared) {
   const Products first = apply_cycle();
-  if (first.with_residual >= k_least_along * first.norm_squared || symmetric) return first;
+  const bool sound = first.with_residual >= k_least_along * first.norm_squared;
+  if (symmetric || (sound && first.norm_squared <= most_norm_squared)) return first;
   symmetric = true;
   fine().r.resize(fine().b.size());
   Products second = apply_cycle();
@@ -293,7 +327,7 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
       std::all_of(s.fine().b.begin(), s.fine().b.end(), [](const Vec4f& v) { return v == Vec4f::Zero(); });
   double best_residual = report.converged ? 0 : 1;
   bool is_best = true;  // the solution so far, of all there were
-  const Products first = s.precondition();
+  const Products first = s.precondition(std::numeric_limits<double>::infinity());
   report.start_norm = std::sqrt(first.norm_squared);
   const double loose = enough > 0 ? enough / (s.settings.tolerance * report.start_norm) : 1;
   const double tolerance = s.settings.tolerance * std::clamp(loose, 1.0, k_most_loose);
@@ -302,7 +336,8 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   while (!report.converged && report.iterations < s.settings.max_iterations && std::isfinite(rz) && rz > 0) {
     if (!s.step(rz)) break;
     ++report.iterations;
-    const auto [next, along_last, norm_squared] = s.precondition();
+    const double most_residual = k_most_grown * best_residual;
+    const auto [next, along_last, norm_squared] = s.precondition(most_residual * most_residual * first.norm_squared);
     const double residual = std::sqrt(norm_squared / first.norm_squared);
     const bool better = residual < best_residual;
     if (is_best && !better) s.best = s.solution;
