@@ -61,16 +61,16 @@ class Pace {
 class Walk {
  public:
   Walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
-       Progress& progress)
+       Progress& progress, const WriteReport& report)
       : plan_(plan),
         solvers_(solvers),
         caches_(caches),
         folder_(folder),
         manifest_(std::move(manifest)),
-        progress_(progress) {}
+        progress_(progress),
+        report_(report) {}
 
   WalkResult run(std::optional<Checkpoint> from) {
-    const auto clock = Clock::now();
     Status status = start(std::move(from));
     if (status) status = frames();
     // What was computed is kept, whatever happened; the first fault is the one that counts.
@@ -79,9 +79,12 @@ class Walk {
     if (status)
       status = complete();
     else if (status.error().kind != ErrorKind::k_output) {
+      const bool interrupted = status.error().kind == ErrorKind::k_interrupted;
       if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) status = written;
+      if (interrupted)
+        if (const Status written = report_(manifest_, since(clock_)); !written) status = written;
     }
-    return {std::move(manifest_), status, since(clock)};
+    return {std::move(manifest_), status, since(clock_)};
   }
 
  private:
@@ -101,6 +104,8 @@ class Walk {
   const BakeFolder& folder_;
   Manifest manifest_;
   Progress& progress_;
+  const WriteReport& report_;
+  const Clock::time_point clock_ = Clock::now();
   std::vector<State> states_;
   WriterThread writer_;
 };
@@ -199,6 +204,7 @@ Status Walk::frames() {
 Status Walk::complete() {
   if (const Status closed = caches_.close(); !closed) return closed;
   manifest_.systems = caches_.systems();
+  if (const Status written = report_(manifest_, since(clock_)); !written) return written;
   manifest_.complete = true;
   if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
   std::error_code ignored;  // a checkpoint of a complete bake does no harm
@@ -242,15 +248,16 @@ FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::spa
 }
 
 WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder,
-                Manifest manifest, std::optional<Checkpoint> from, Progress& progress) {
-  return Walk(plan, solvers, caches, folder, std::move(manifest), progress).run(std::move(from));
+                Manifest manifest, std::optional<Checkpoint> from, Progress& progress, const WriteReport& report) {
+  return Walk(plan, solvers, caches, folder, std::move(manifest), progress, report).run(std::move(from));
 }
 
-Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomReport& room, const WalkResult& result) {
+Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomReport& room, const Manifest& manifest,
+                    double seconds) {
   FrameProfile sum;
   std::vector<double> totals;
   Json frames = Json::array();
-  for (const FrameReport& frame : result.manifest.frames) {
+  for (const FrameReport& frame : manifest.frames) {
     frames.push_back(
         {{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
     if (frame.substeps > 0) totals.push_back(frame.profile.total);
@@ -261,13 +268,13 @@ Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomRe
   getrusage(RUSAGE_SELF, &usage);
   Json out = Json::object();
   out["threads"] = thread_count();
-  out["wall_seconds"] = result.seconds;
+  out["wall_seconds"] = seconds;
   out["import_seconds"] = plan.import_seconds;
   out["median_frame_seconds"] = totals.empty() ? 0.0 : totals[totals.size() / 2];
   out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   out["profile"] = to_json(sum);
   out["room"] = to_json(room);
-  out["interaction"] = to_json(interactions(result.manifest, plan.primaries), plan.primaries);
+  out["interaction"] = to_json(interactions(manifest, plan.primaries), plan.primaries);
   out["frames"] = std::move(frames);
   return write_text_durably(folder.report(), to_text(out));
 }

@@ -1,6 +1,7 @@
 // Solves H dx = -g for one Newton step: flexible conjugate gradients with one multigrid cycle as preconditioner, V(0,1)
-// on the finest level and V(1,1) below (hierarchy from the rest shape), or block Jacobi. Matrix, hierarchy and vectors
-// in float, dot products accumulated in double. Deterministic for any thread count.
+// on the finest level and V(1,1) below (hierarchy from the rest shape), or block Jacobi. What contact ties together is
+// smoothed as one (stiff_clusters.h). Matrix, hierarchy and vectors in float, dot products accumulated in double.
+// Deterministic for any thread count.
 #pragma once
 
 #include <memory>

@@ -74,6 +74,21 @@ TEST(Resume, Finished_frames_of_an_interrupted_bake_can_be_read) {
   }
 }
 
+TEST(Resume, No_bake_is_complete_without_its_report) {
+  FakeScene scene;
+  const auto expected = undisturbed(scene);
+  const auto report = scene.folder().report();
+  std::filesystem::create_directories(report /
+                                      "in_the_way");  // no file takes the place of a folder with something in it
+  EXPECT_EQ(scene.run(scene.options()).exit_code, 6);
+  std::filesystem::remove_all(report);
+  BakeOptions options = scene.options();
+  options.resume = true;
+  EXPECT_EQ(scene.run(options).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(report));
+  EXPECT_EQ(scene.products(), expected);
+}
+
 TEST(Resume, Without_resume_an_unfinished_bake_starts_anew) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
