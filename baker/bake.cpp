@@ -194,11 +194,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   if (!*checkpoint)
     if (const Status removed = remove_left_behind(folder, standing.before, caches.systems(), manifest.files); !removed)
       return failed(removed.error());
-  const WriteReport report = [&](const Manifest& of, double seconds) {
-    return write_report(folder, *plan, room, of, seconds);
-  };
   WalkResult result =
-      walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), progress, report);
+      walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), room, progress);
   Status status = result.status;
   if (status) status = judge(result.manifest, {plan->shot().gate_p99_strain, plan->shot().gate_crossings});
   BakeResult out;

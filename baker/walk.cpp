@@ -61,14 +61,14 @@ class Pace {
 class Walk {
  public:
   Walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
-       Progress& progress, const WriteReport& report)
+       const RoomReport& room, Progress& progress)
       : plan_(plan),
         solvers_(solvers),
         caches_(caches),
         folder_(folder),
         manifest_(std::move(manifest)),
-        progress_(progress),
-        report_(report) {}
+        room_(room),
+        progress_(progress) {}
 
   WalkResult run(std::optional<Checkpoint> from) {
     Status status = start(std::move(from));
@@ -79,10 +79,9 @@ class Walk {
     if (status)
       status = complete();
     else if (status.error().kind != ErrorKind::k_output) {
-      const bool interrupted = status.error().kind == ErrorKind::k_interrupted;
       if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) status = written;
-      if (interrupted)
-        if (const Status written = report_(manifest_, since(clock_)); !written) status = written;
+      if (status.error().kind == ErrorKind::k_interrupted)
+        if (const Status written = write_report(); !written) status = written;
     }
     return {std::move(manifest_), status, since(clock_)};
   }
@@ -91,6 +90,7 @@ class Walk {
   Status start(std::optional<Checkpoint> from);
   Status frames();
   Status complete();
+  Status write_report() const;
   FrameReport advance();
   using SharedSnapshot = std::shared_ptr<const Snapshot>;
   SharedSnapshot take() const { return std::make_shared<const Snapshot>(caches_.take(states_)); }
@@ -103,8 +103,8 @@ class Walk {
   CacheSet& caches_;
   const BakeFolder& folder_;
   Manifest manifest_;
+  const RoomReport& room_;
   Progress& progress_;
-  const WriteReport& report_;
   const Clock::time_point clock_ = Clock::now();
   std::vector<State> states_;
   WriterThread writer_;
@@ -204,12 +204,38 @@ Status Walk::frames() {
 Status Walk::complete() {
   if (const Status closed = caches_.close(); !closed) return closed;
   manifest_.systems = caches_.systems();
-  if (const Status written = report_(manifest_, since(clock_)); !written) return written;
+  if (const Status written = write_report(); !written) return written;
   manifest_.complete = true;
   if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
   std::error_code ignored;  // a checkpoint of a complete bake does no harm
   std::filesystem::remove(folder_.checkpoint(), ignored);
   return {};
+}
+
+Status Walk::write_report() const {
+  FrameProfile sum;
+  std::vector<double> totals;
+  Json frames = Json::array();
+  for (const FrameReport& frame : manifest_.frames) {
+    frames.push_back(
+        {{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
+    if (frame.substeps > 0) totals.push_back(frame.profile.total);
+    sum += frame.profile;
+  }
+  std::sort(totals.begin(), totals.end());
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  Json out = Json::object();
+  out["threads"] = thread_count();
+  out["wall_seconds"] = since(clock_);
+  out["import_seconds"] = plan_.import_seconds;
+  out["median_frame_seconds"] = totals.empty() ? 0.0 : totals[totals.size() / 2];
+  out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  out["profile"] = to_json(sum);
+  out["room"] = to_json(room_);
+  out["interaction"] = to_json(interactions(manifest_, plan_.primaries), plan_.primaries);
+  out["frames"] = std::move(frames);
+  return write_text_durably(folder_.report(), to_text(out));
 }
 
 }  // namespace
@@ -248,35 +274,8 @@ FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::spa
 }
 
 WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder,
-                Manifest manifest, std::optional<Checkpoint> from, Progress& progress, const WriteReport& report) {
-  return Walk(plan, solvers, caches, folder, std::move(manifest), progress, report).run(std::move(from));
-}
-
-Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomReport& room, const Manifest& manifest,
-                    double seconds) {
-  FrameProfile sum;
-  std::vector<double> totals;
-  Json frames = Json::array();
-  for (const FrameReport& frame : manifest.frames) {
-    frames.push_back(
-        {{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
-    if (frame.substeps > 0) totals.push_back(frame.profile.total);
-    sum += frame.profile;
-  }
-  std::sort(totals.begin(), totals.end());
-  struct rusage usage {};
-  getrusage(RUSAGE_SELF, &usage);
-  Json out = Json::object();
-  out["threads"] = thread_count();
-  out["wall_seconds"] = seconds;
-  out["import_seconds"] = plan.import_seconds;
-  out["median_frame_seconds"] = totals.empty() ? 0.0 : totals[totals.size() / 2];
-  out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-  out["profile"] = to_json(sum);
-  out["room"] = to_json(room);
-  out["interaction"] = to_json(interactions(manifest, plan.primaries), plan.primaries);
-  out["frames"] = std::move(frames);
-  return write_text_durably(folder.report(), to_text(out));
+                Manifest manifest, std::optional<Checkpoint> from, const RoomReport& room, Progress& progress) {
+  return Walk(plan, solvers, caches, folder, std::move(manifest), room, progress).run(std::move(from));
 }
 
 }  // namespace ft

@@ -1,7 +1,6 @@
 // The walk over the frames of one plan, from its start or from a checkpoint.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "baker/bake_folder.h"
@@ -19,19 +18,13 @@ struct WalkResult {
   double seconds = 0;  ///< wall
 };
 
-/// Writes what else belongs to a bake, of its manifest and the seconds that it took so far.
-using WriteReport = std::function<Status(const Manifest&, double)>;
-
 /// manifest: inputs and settings filled in. from: a checkpoint of this very bake. The caches of `caches` are opened
-/// here. The report is written before the manifest says that the bake is complete, so that no complete bake lacks it.
+/// here. Writes report.json (times, per frame and phase, and the memory that was used; room goes into it) before the
+/// manifest says that the bake is complete, so that no complete bake lacks it, and when interrupted.
 WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder,
-                Manifest manifest, std::optional<Checkpoint> from, Progress& progress, const WriteReport& report);
+                Manifest manifest, std::optional<Checkpoint> from, const RoomReport& room, Progress& progress);
 
 /// Certificate of a state that no solver has reported on (the first one, when there is no pre-roll).
 FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states);
-
-/// Writes report.json: times, per frame and phase; and the memory that was used.
-Status write_report(const BakeFolder& folder, const BakePlan& plan, const RoomReport& room, const Manifest& manifest,
-                    double seconds);
 
 }  // namespace ft

@@ -26,20 +26,10 @@ VertexClumps::VertexClumps(const RestEdges& edges, std::span<const double> size)
     const double joined = way[at(a)] + edges.lengths[k] + way[at(b)];
     if (joined <= std::min(size[at(a)], size[at(b)])) way[at(sets.join(a, b))] = joined;
   }
+  clumps_ = sets.groups();
   of_.assign(size.size(), -1);
-  std::vector<int> count(size.size(), 0), index(size.size(), -1);
-  for (std::size_t v = 0; v < size.size(); ++v) ++count[at(sets.root(static_cast<int>(v)))];
-  start_.push_back(0);
-  for (std::size_t v = 0; v < size.size(); ++v)
-    if (count[v] > 1) index[v] = this->count(), start_.push_back(start_.back() + count[v]);
-  members_.resize(at(start_.back()));
-  std::vector<int> next(start_.begin(), start_.end() - 1);
-  for (std::size_t v = 0; v < size.size(); ++v) {
-    const int clump = index[at(sets.root(static_cast<int>(v)))];
-    if (clump < 0) continue;
-    of_[v] = clump;
-    members_[at(next[at(clump)]++)] = static_cast<int>(v);
-  }
+  for (int c = 0; c < count(); ++c)
+    for (const int v : members(c)) of_[at(v)] = c;
 }
 
 template <class Value, class Before>

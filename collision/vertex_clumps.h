@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "baker/core/edge_strain.h"
+#include "baker/core/mesh.h"
 
 namespace ft {
 
@@ -17,14 +18,12 @@ class VertexClumps {
   /// its vertices [m], which has one entry per vertex.
   VertexClumps(const RestEdges& edges, std::span<const double> size);
 
-  bool empty() const { return members_.empty(); }
-  int count() const { return start_.empty() ? 0 : static_cast<int>(start_.size()) - 1; }
+  bool empty() const { return clumps_.items.empty(); }
+  int count() const { return clumps_.row_count(); }
   /// The clump of a vertex, -1: it is alone.
   int of(int vertex) const { return empty() || at(vertex) >= of_.size() ? -1 : of_[at(vertex)]; }
   /// At least two vertices, ascending.
-  std::span<const int> members(int clump) const {
-    return std::span<const int>(members_).subspan(at(start_[at(clump)]), at(start_[at(clump) + 1] - start_[at(clump)]));
-  }
+  std::span<const int> members(int clump) const { return clumps_.row(clump); }
   /// The vertices of its clump, or itself: the number has to live as long as what is returned.
   std::span<const int> with(const int& vertex) const {
     const int clump = of(vertex);
@@ -43,7 +42,8 @@ class VertexClumps {
   template <class Value, class Before>
   void take_first(std::span<Value> values, const Before& before) const;
 
-  std::vector<int> of_, start_, members_;
+  std::vector<int> of_;
+  Adjacency clumps_{{0}, {}};
 };
 
 }  // namespace ft

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "baker/core/types.h"
+#include "baker/core/mesh.h"
 
 namespace ft {
 
@@ -30,6 +30,18 @@ class DisjointSets {
     a = halve_path(a), b = halve_path(b);
     if (a > b) std::swap(a, b);
     return parent_[at(b)] = a;
+  }
+  /// The sets of more than one, a row each: by their smallest number, and ascending.
+  Adjacency groups() const {
+    std::vector<int> size(count(), 0), next(count(), -1);
+    for (int i = 0; i < static_cast<int>(count()); ++i) ++size[at(root(i))];
+    Adjacency out{{0}, {}};
+    for (std::size_t i = 0; i < count(); ++i)
+      if (size[i] > 1) next[i] = out.start.back(), out.start.push_back(next[i] + size[i]);
+    out.items.resize(at(out.start.back()));
+    for (int i = 0; i < static_cast<int>(count()); ++i)
+      if (int& place = next[at(root(i))]; place >= 0) out.items[at(place++)] = i;
+    return out;
   }
 
  private:

@@ -118,12 +118,12 @@ void place(ClothModel& model) {
   const ClothSetup& setup = model.setup;
   model.start.assign(model.contact.rest.begin(), model.contact.rest.end());
   if (!setup.primary) return;
-  const Eigen::Isometry3d place = setup.primary->bind_to_start();
+  const Eigen::Isometry3d to_start = setup.primary->bind_to_start();
   for (std::size_t g = 0; g < setup.garments.size(); ++g) {
     const auto& pins = setup.garments[g].pins;
     if (std::any_of(pins.begin(), pins.end(), [](const ClothPin& pin) { return pin.to_world; })) continue;
     for (int v = model.first_vertex[g]; v < model.first_vertex[g + 1]; ++v)
-      model.start[at(v)] = place * model.start[at(v)];
+      model.start[at(v)] = to_start * model.start[at(v)];
   }
 }
 

@@ -94,11 +94,12 @@ void estimate_damping(Level& level) {
 }
 
 void smooth_first(Level& level) {
-  parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) level.x[i] = level.damping * (level.inverse[i] * level.b[i]);
-  });
   const StiffClusters& clusters = level.clusters;
-  parallel_for(at(clusters.count()), k_rows / StiffClusters::k_most_vertices, [&](std::size_t begin, std::size_t end) {
+  parallel_for(at(level.size()), k_rows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (!clusters.has(i)) level.x[i] = level.damping * (level.inverse[i] * level.b[i]);
+  });
+  parallel_for(at(clusters.count()), StiffClusters::k_block, [&](std::size_t begin, std::size_t end) {
     std::array<Vec4f, StiffClusters::k_most_vertices> r, z;
     for (int c = static_cast<int>(begin); c < static_cast<int>(end); ++c) {
       const std::span<const int> members = clusters.members(c);

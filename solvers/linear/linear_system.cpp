@@ -13,18 +13,20 @@
 namespace ft {
 namespace {
 
-constexpr int k_dense_size = 64;        ///< vertices of the level that is factored densely
-constexpr int k_dense_limit = 400;      ///< no dense factor above this size: the coarsest level is only smoothed then
-constexpr std::size_t k_rows = 256;     ///< per block of a loop
-constexpr std::size_t k_clusters = 48;  ///< the same
+constexpr int k_dense_size = 64;     ///< vertices of the level that is factored densely
+constexpr int k_dense_limit = 400;   ///< no dense factor above this size: the coarsest level is only smoothed then
+constexpr std::size_t k_rows = 256;  ///< per block of a loop
 
 /// Where the cycle turns the residual so far that less is left along it than this share of its norm, it is made
 /// symmetric.
 constexpr double k_least_along = 0.1;
-/// And where the residual has grown so many times over the least there was: what is conjugate is lost by then.
+/// And where the residual has grown so many times over the least there was: what is conjugate is lost by then. Solves
+/// of S1, S2 and the sewn dress hardly ever come that far.
 constexpr double k_most_grown = 1.5;
-/// Where a larger residual is enough, the tolerance is so many times as large at most.
+/// Where a larger residual is enough, the tolerance is so many times as large at most, and no more than this share of
+/// the right side.
 constexpr double k_most_loose = 5;
+constexpr double k_most_left = 0.5;
 
 /// Of what the preconditioner makes of the residual.
 struct Products {
@@ -32,6 +34,13 @@ struct Products {
   /// Of the residual, near the energy of the error, never negative: what the coarse correction meets of it, and the
   /// last smoothing step of the rest.
   double norm_squared;
+};
+
+/// The same, while they are summed up over vertices.
+struct ProductLanes {
+  using Lanes = Eigen::Array4d;
+  Lanes with_residual = Lanes::Zero(), with_product = Lanes::Zero(), norm_squared = Lanes::Zero();
+  Vec3 sums() const { return {with_residual.sum(), with_product.sum(), norm_squared.sum()}; }
 };
 
 }  // namespace
@@ -61,7 +70,10 @@ struct LinearSystem::Impl {
   void correct(std::size_t depth);
   void solve_coarsest(Level& level);
   Products precondition(double most_norm_squared);
+  void take(std::size_t i, const Vec4f& z, ProductLanes& lanes);
+  void take_smoothed(std::size_t i, const Vec4f& rest, const Vec4f& by_rest, ProductLanes& lanes);
   Products apply_cycle();
+  Products apply_jacobi();
 };
 
 LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> rest_positions,
@@ -200,57 +212,70 @@ void LinearSystem::Impl::correct(std::size_t depth) {
     add_interpolated(level, coarse);
 }
 
+/// z: of M^-1 residual; what it replaces is of the product.
+void LinearSystem::Impl::take(std::size_t i, const Vec4f& z, ProductLanes& lanes) {
+  const Vec4f last = product[i];
+  preconditioned()[i] = z;
+  lanes.with_residual += (fine().b[i].array() * z.array()).cast<double>();
+  lanes.with_product += (last.array() * z.array()).cast<double>();
+}
+
+/// The last smoothing step, which goes on from what the coarse levels made of the residual. rest: what they left of it;
+/// by_rest: the inverse of the diagonal block, or of the cluster's, times that.
+void LinearSystem::Impl::take_smoothed(std::size_t i, const Vec4f& rest, const Vec4f& by_rest, ProductLanes& lanes) {
+  const Vec4f &corrected = fine().x[i], smoothed = fine().damping * by_rest;
+  lanes.norm_squared += (fine().b[i].array() * corrected.array() + rest.array() * smoothed.array()).cast<double>();
+  take(i, corrected + smoothed, lanes);
+}
+
 /// preconditioned() = M^-1 residual, which is the finest level's b. Held rows have a zero inverse, yet interpolation
 /// writes to them.
 Products LinearSystem::Impl::apply_cycle() {
-  Level& level = fine();
-  const bool many = levels.size() > 1;
-  if (many) correct(0);
-  using Lanes = Eigen::Array4d;
-  struct Sums {
-    Lanes with_residual = Lanes::Zero(), with_product = Lanes::Zero(), norm_squared = Lanes::Zero();
-    Vec3 total() const { return {with_residual.sum(), with_product.sum(), norm_squared.sum()}; }
-  };
-  const auto correct_by = [&](std::size_t i, const Vec4f& rest, const Vec4f& smoothed, Sums& sums) {
-    const Vec4f &b = level.b[i], &corrected = level.x[i], last = product[i], z = corrected + smoothed;
-    preconditioned()[i] = z;
-    sums.norm_squared += (b.array() * corrected.array() + rest.array() * smoothed.array()).cast<double>();
-    sums.with_residual += (b.array() * z.array()).cast<double>();
-    sums.with_product += (last.array() * z.array()).cast<double>();
-  };
-  Vec3 sums = parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
-    Sums own;
+  if (levels.size() == 1) return apply_jacobi();
+  const Level& level = fine();
+  const StiffClusters& clusters = level.clusters;
+  correct(0);
+  const auto left = [&](std::size_t i) -> Vec4f { return level.b[i] - level.product(i, level.x); };
+  Vec3 sums = parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) {
+    ProductLanes own;
     for (std::size_t i = begin; i < end; ++i) {
       if (held[i]) {
         preconditioned()[i].setZero();
-      } else if (!many) {
-        const Vec4f &b = level.b[i], last = product[i], z = level.inverse[i] * b;
-        preconditioned()[i] = z;
-        own.with_residual += (b.array() * z.array()).cast<double>();
-        own.with_product += (last.array() * z.array()).cast<double>();
-      } else if (!level.clusters.has(i)) {
-        const Vec4f rest = level.b[i] - level.product(i, level.x);
-        correct_by(i, rest, level.damping * (level.inverse[i] * rest), own);
+      } else if (!clusters.has(i)) {
+        const Vec4f rest = left(i);
+        take_smoothed(i, rest, level.inverse[i] * rest, own);
       }
     }
-    return own.total();
+    return own.sums();
   });
-  const StiffClusters& clusters = level.clusters;
-  sums +=
-      parallel_sum(at(clusters.count()), k_clusters, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) -> Vec3 {
-        Sums own;
-        std::array<Vec4f, StiffClusters::k_most_vertices> rest, smoothed;
-        for (int c = static_cast<int>(begin); c < static_cast<int>(end); ++c) {
-          const std::span<const int> members = clusters.members(c);
-          for (std::size_t k = 0; k < members.size(); ++k)
-            rest[k] = level.b[at(members[k])] - level.product(at(members[k]), level.x);
-          clusters.solve(c, rest, smoothed);
-          for (std::size_t k = 0; k < members.size(); ++k)
-            correct_by(at(members[k]), rest[k], level.damping * smoothed[k], own);
-        }
-        return own.total();
-      });
-  return {sums[0], sums[1], symmetric || !many ? sums[0] : sums[2]};
+  sums += parallel_sum(at(clusters.count()), clusters.k_block, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) {
+    ProductLanes own;
+    std::array<Vec4f, StiffClusters::k_most_vertices> rest, by_rest;
+    for (int c = static_cast<int>(begin); c < static_cast<int>(end); ++c) {
+      const std::span<const int> members = clusters.members(c);
+      for (std::size_t k = 0; k < members.size(); ++k) rest[k] = left(at(members[k]));
+      clusters.solve(c, rest, by_rest);
+      for (std::size_t k = 0; k < members.size(); ++k) take_smoothed(at(members[k]), rest[k], by_rest[k], own);
+    }
+    return own.sums();
+  });
+  return {sums[0], sums[1], symmetric ? sums[0] : sums[2]};
+}
+
+/// The same without coarse levels.
+Products LinearSystem::Impl::apply_jacobi() {
+  const Level& level = fine();
+  const Vec3 sums = parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) {
+    ProductLanes own;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (held[i])
+        preconditioned()[i].setZero();
+      else
+        take(i, level.inverse[i] * level.b[i], own);
+    }
+    return own.sums();
+  });
+  return {sums[0], sums[1], sums[0]};
 }
 
 /// V(0,1) can turn a residual to the wrong side. For the rest of the solve the cycle is symmetric then, which cannot;
@@ -329,8 +354,8 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   bool is_best = true;  // the solution so far, of all there were
   const Products first = s.precondition(std::numeric_limits<double>::infinity());
   report.start_norm = std::sqrt(first.norm_squared);
-  const double loose = enough > 0 ? enough / (s.settings.tolerance * report.start_norm) : 1;
-  const double tolerance = s.settings.tolerance * std::clamp(loose, 1.0, k_most_loose);
+  const double least = s.settings.tolerance, most = std::max(least, std::min(k_most_loose * least, k_most_left));
+  const double tolerance = std::clamp(enough / report.start_norm, least, most);
   double rz = first.with_residual;
   s.direction = s.preconditioned();
   while (!report.converged && report.iterations < s.settings.max_iterations && std::isfinite(rz) && rz > 0) {

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "baker/core/disjoint_sets.h"
 #include "baker/core/parallel.h"
 
 namespace ft {
 namespace {
 
-constexpr std::size_t k_block = 32;        ///< clusters per block of a loop
 constexpr std::size_t k_couplings = 1024;  ///< couplings, or rows of them
 /// Of the off-diagonal block, by the geometric mean of the two diagonal ones (Frobenius) [1]: 1 where nothing but one
-/// contact holds both, and a third between neighbours in a sheet without any, more at its border.
+/// contact holds both, and a third between neighbours in a sheet without any, more at its border. With 0.5 the sewn
+/// dress needs a quarter more iterations.
 constexpr float k_least_strength = 0.3f;
 /// Added to the diagonal, of its trace, as to single blocks.
 constexpr double k_shift = 1e-7;
@@ -22,8 +22,7 @@ constexpr double k_shift = 1e-7;
 }  // namespace
 
 void StiffClusters::clear() {
-  start_.assign(1, 0);
-  vertices_.clear();
+  clusters_ = {{0}, {}};
   inverse_start_.clear();
   inverse_.clear();
   clustered_.clear();
@@ -35,46 +34,25 @@ void StiffClusters::join(std::vector<Tie>& ties, std::size_t vertices) {
     if (a.strength != b.strength) return a.strength > b.strength;
     return a.row != b.row ? a.row < b.row : a.column < b.column;
   });
-  // Numbers of the vertices that have ties, so that nothing here grows with the mesh but for one look-up.
-  clustered_.assign(vertices, 0);
-  for (const Tie& t : ties) clustered_[at(t.row)] = clustered_[at(t.column)] = 1;
-  std::vector<int> vertex;
-  for (std::size_t i = 0; i < vertices; ++i)
-    if (clustered_[i] != 0) vertex.push_back(static_cast<int>(i));
+  std::vector<int> tied;
+  for (const Tie& t : ties) tied.push_back(t.row), tied.push_back(t.column);
+  std::sort(tied.begin(), tied.end());
+  tied.erase(std::unique(tied.begin(), tied.end()), tied.end());
   const auto number = [&](int v) {
-    return static_cast<int>(std::lower_bound(vertex.begin(), vertex.end(), v) - vertex.begin());
+    return static_cast<int>(std::lower_bound(tied.begin(), tied.end(), v) - tied.begin());
   };
-  std::vector<int> parent(vertex.size()), size(vertex.size(), 1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
+  DisjointSets sets(tied.size());
+  std::vector<int> size(tied.size(), 1);  // per root
   for (const Tie& t : ties) {
-    int a = root(number(t.row)), b = root(number(t.column));
-    if (a == b || size[at(a)] + size[at(b)] > k_most_vertices) continue;
-    if (b < a) std::swap(a, b);
-    parent[at(b)] = a;
-    size[at(a)] += size[at(b)];
+    const int a = sets.root(number(t.row)), b = sets.root(number(t.column)), together = size[at(a)] + size[at(b)];
+    if (a != b && together <= k_most_vertices) size[at(sets.join(a, b))] = together;
   }
-  // Clusters by their first vertex, their members ascending.
-  std::vector<int> cluster(vertex.size(), -1), end;
-  for (std::size_t i = 0; i < vertex.size(); ++i) {
-    const std::size_t r = at(root(static_cast<int>(i)));
-    if (size[r] == 1) {
-      clustered_[at(vertex[i])] = 0;
-      continue;
-    }
-    if (cluster[r] < 0) {
-      cluster[r] = count();
-      start_.push_back(start_.back() + size[r]);
-      end.push_back(start_[start_.size() - 2]);
-    }
-    cluster[i] = cluster[r];
+  clusters_ = sets.groups();
+  clustered_.assign(vertices, 0);
+  for (int& v : clusters_.items) {
+    v = tied[at(v)];
+    clustered_[at(v)] = 1;
   }
-  vertices_.resize(at(start_.back()));
-  for (std::size_t i = 0; i < vertex.size(); ++i)
-    if (cluster[i] >= 0) vertices_[at(end[at(cluster[i])]++)] = vertex[i];
 }
 
 void StiffClusters::invert(int cluster, const BlockMatrix& matrix, const ExtraRows& extra) {

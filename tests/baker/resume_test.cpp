@@ -78,8 +78,8 @@ TEST(Resume, No_bake_is_complete_without_its_report) {
   FakeScene scene;
   const auto expected = undisturbed(scene);
   const auto report = scene.folder().report();
-  std::filesystem::create_directories(report /
-                                      "in_the_way");  // no file takes the place of a folder with something in it
+  // No file takes the place of a folder with something in it.
+  std::filesystem::create_directories(report / "in_the_way");
   EXPECT_EQ(scene.run(scene.options()).exit_code, 6);
   std::filesystem::remove_all(report);
   BakeOptions options = scene.options();
