@@ -57,7 +57,7 @@ struct LinearSystem::Impl {
   /// Of the matrix and the direction; then M^-1 residual, of which every entry wants that of the product alone.
   std::vector<Vec4f> product;
   std::vector<Vec3f> solution, best;  ///< best: where later ones are worse
-  bool symmetric = false;             ///< the finest level smooths before the correction too
+  bool symmetric = false;             ///< the finest level smooths before the correction too, or there is no correction
   float alpha = 0;                    ///< of the last step: the residual has lost so much of product
 
   Level& fine() { return *levels.front(); }
@@ -278,8 +278,8 @@ Products LinearSystem::Impl::apply_jacobi() {
   return {sums[0], sums[1], sums[0]};
 }
 
-/// V(0,1) can turn a residual to the wrong side. For the rest of the solve the cycle is symmetric then, which cannot;
-/// without a product with the last direction the next is its own alone.
+/// V(0,1) can turn a residual to the wrong side, or make it grow beyond most_norm_squared. For the rest of the solve
+/// the cycle is symmetric then, which cannot; without a product with the last direction the next is its own alone.
 Products LinearSystem::Impl::precondition(double most_norm_squared) {
   const Products first = apply_cycle();
   const bool sound = first.with_residual >= k_least_along * first.norm_squared;
@@ -296,7 +296,7 @@ Products LinearSystem::Impl::precondition(double most_norm_squared) {
 bool LinearSystem::Impl::start(std::span<const Vec3> right_side) {
   Level& level = fine();
   bool sound = true;
-  symmetric = false;
+  symmetric = levels.size() == 1;
   for (std::size_t i = 0; i < at(level.size()); ++i) {
     level.b[i].setZero();
     if (held[i]) continue;

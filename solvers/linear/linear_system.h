@@ -44,8 +44,8 @@ class LinearSystem {
   /// Rows of fixed[i] != 0 are held at zero, and leave the matrix for good: what is solved before it is filled anew may
   /// hold more of them, but not less.
   /// solution: room is made for it when the solve's own vectors are gone.
-  /// enough: a residual that need not be made smaller, in the norm of LinearReport [sqrt(J)]; yet some of the right
-  /// side is always solved for.
+  /// enough: a residual that need not be made smaller, in the norm of LinearReport [sqrt(J)]: it stands for a tolerance
+  /// of up to five times the settings', and of half of the right side at most.
   LinearReport solve(std::span<const Vec3> right_side, std::span<const char> fixed, std::vector<Vec3>& solution,
                      double enough = 0);
   /// Frees the matrices until the next begin(). What else a solve needs is there only while it runs.
