@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "baker/core/check.h"
+#include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/clump_retreat.h"
 
@@ -172,7 +173,12 @@ void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int m
                         double floor, const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common) {
   const Problem problem{x, dx, at(movable_count), floor, clumps, common};
   CHECK(common.size() >= problem.movable_end && dx.size() >= problem.movable_end && x.size() >= problem.movable_end);
-  std::copy_n(dx.begin(), problem.movable_end, common.begin());
+  relax_all(problem, pairs, bounds);
+  give_back(changed_, changing_, tight_, found_);  // in folds there are many
+}
+
+void CommonMotion::relax_all(const Problem& problem, const ContactPairs& pairs, const MotionBounds& bounds) {
+  std::copy_n(problem.dx.begin(), problem.movable_end, problem.common.begin());
   changed_.assign(problem.movable_end, 1);
   for (rounds_ = 1; rounds_ <= k_most_rounds; ++rounds_) {
     look_at_all(problem, pairs);
@@ -183,13 +189,13 @@ void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int m
     stay_inside(problem, bounds);
     changed_.swap(changing_);
   }
-  zones_.clear(movable_count, clumps);
+  zones_.clear(static_cast<int>(problem.movable_end), problem.clumps);
   for (; rounds_ <= k_most_rounds + k_most_joins; ++rounds_) {
     look_at_all(problem, pairs);
     if (tight_.empty()) return;
     join(problem, bounds);
   }
-  std::fill_n(common.begin(), problem.movable_end, Vec3::Zero());
+  std::fill_n(problem.common.begin(), problem.movable_end, Vec3::Zero());
 }
 
 }  // namespace ft

@@ -52,12 +52,14 @@ class CommonMotion {
     PairRoom room;
   };
   struct Problem;
+  void relax_all(const Problem& problem, const ContactPairs& pairs, const MotionBounds& bounds);
   void look_at_all(const Problem& problem, const ContactPairs& pairs);
   void look(const Problem& problem, PairKind kind, std::span<const Stencil> stencils);
   void relax(const Problem& problem, const TightPair& pair);
   void join(const Problem& problem, const MotionBounds& bounds);
   void stay_inside(const Problem& problem, const MotionBounds& bounds);
 
+  // While there are displacements to look at.
   std::vector<char> changed_;  ///< per vertex: in the last round
   std::vector<char> changing_;
   std::vector<TightPair> tight_;

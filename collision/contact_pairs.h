@@ -38,6 +38,8 @@ struct ContactPairs {
 /// order, so that lists never hold what nobody wants. May be empty: all are.
 using PairSieve = std::function<bool(PairKind, const Stencil&)>;
 
+struct PairList;  // pair_list.h
+
 class PairFinder {
  public:
   /// Triangles index the common numbering; collider_triangles' indices are all >= cloth_vertex_count. A triangle with
@@ -59,25 +61,26 @@ class PairFinder {
   /// Patches: sets of cloth triangles, a row each, for `skipped`. Before the first search.
   void set_patches(const AscendingRows& members);
 
-  /// boxes: of one frame; they must stay where they are until the search is over.
+  /// boxes: of one frame; they must stay where they are until the search is over. Lists are in ascending order, each
+  /// pair once, and see the finder's features: it has to stay.
   /// All vertex-face and edge-edge pairs whose feature boxes (union of vertex boxes) overlap: cloth against collider,
   /// and with self also cloth against cloth. Complete: a pair that can meet while every vertex stays in its box is in
   /// the list. Pairs that share a vertex are left out. Vertices that are VertexBox::nowhere() take part in nothing.
   /// skipped (per patch; empty: none): where it is not 0, pairs of features of two triangles in the patch are left out.
-  void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped = {},
+  void find(std::span<const VertexBox> boxes, bool self, PairList& out, std::span<const char> skipped = {},
             const PairSieve& sieve = {});
   /// The vertex-face pairs of find() alone; leaves no edge-edge pairs.
-  void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out, const PairSieve& sieve = {});
+  void find_vertex_face(std::span<const VertexBox> boxes, bool self, PairList& out, const PairSieve& sieve = {});
   /// The pairs of find() that have a vertex whose `changed` (per vertex) is not 0: what a list of before lacks when
   /// only their boxes have grown or moved. All other boxes must be those of the last search. Costs little where few
   /// have changed.
-  void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out,
+  void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, PairList& out,
                     std::span<const char> skipped = {}, const PairSieve& sieve = {});
 
  private:
   void build_trees(const std::function<Vec3f(int)>& place_of);
   void search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
-              std::span<const char> skipped, const PairSieve& sieve, ContactPairs& out);
+              std::span<const char> skipped, const PairSieve& sieve, PairList& out);
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

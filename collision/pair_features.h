@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "baker/core/mesh.h"
-#include "collision/contact_pairs.h"
+#include "collision/pair_list.h"
 
 namespace ft {
 
@@ -40,10 +40,8 @@ struct PairFeatures {
                std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges);
   PairFeatures(PairFeatures&&) noexcept = default;  // no copies: cloth_edges may see its own list
   std::size_t edge_count() const { return cloth_edges.size() + collider_edges.size(); }
-  const Edge& edge(int rank) const {
-    const std::size_t k = at(rank);
-    return k < cloth_edges.size() ? cloth_edges[k] : collider_edges[k - cloth_edges.size()];
-  }
+  FeatureNumbers numbers() const { return {faces, cloth_edges, collider_edges}; }
+  const Edge& edge(int rank) const { return numbers().edge(rank); }
   void set_boxes(std::span<const VertexBox> boxes);
   bool present(int v) const { return all_present || !vertex_boxes[at(v)].is_nowhere(); }
   BoxLanes box(int v) const { return BoxLanes::load(vertex_boxes[at(v)]); }

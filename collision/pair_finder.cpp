@@ -12,6 +12,7 @@
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "collision/contact_pairs.h"
+#include "collision/pair_sort.h"
 #include "collision/pair_tree.h"
 #include "collision/pair_walk.h"
 
@@ -19,7 +20,6 @@ namespace ft {
 namespace {
 
 constexpr std::size_t k_task_goal = 256;  // sub-tree pairs that the search is split into
-constexpr std::size_t k_block = 4096;
 
 /// A piece of the search: two nodes that overlap, or a node of the cloth (a) against itself (b -1).
 struct Task {
@@ -41,21 +41,12 @@ struct PairFinder::Impl {
 
   // Scratch, kept from search to search.
   std::vector<Task> tasks, next_tasks;
-  PairSorter sort_vertex_face, sort_edge_edge;
 
   void refit(std::span<const char> changed);
   void split_tasks(bool self);
   template <bool k_some>
-  void run_task(const Task& task, const char* changed, FoundPairs& out) const;
-  Stencil vertex_face(std::uint64_t key) const {
-    const Triangle& f = features.faces[at(key_second(key))];
-    return {{key_first(key), f[0], f[1], f[2]}};
-  }
-  Stencil edge_edge(std::uint64_t key) const {
-    const Edge &a = features.edge(key_first(key)), &b = features.edge(key_second(key));
-    return {{a[0], a[1], b[0], b[1]}};
-  }
-  void sift(const PairSieve& sieve, FoundPairs& pairs) const;
+  void run_task(const Task& task, const char* changed, PairKeys& out) const;
+  void sift(const PairSieve& sieve, PairKeys& pairs) const;
 };
 
 void PairFinder::Impl::refit(std::span<const char> changed) {
@@ -109,7 +100,7 @@ void PairFinder::Impl::split_tasks(bool self) {
 }
 
 template <bool k_some>
-void PairFinder::Impl::run_task(const Task& task, const char* changed, FoundPairs& out) const {
+void PairFinder::Impl::run_task(const Task& task, const char* changed, PairKeys& out) const {
   out.vertex_face.clear();
   out.edge_edge.clear();
   const PairTree& other = task.self ? cloth : collider;
@@ -127,13 +118,14 @@ void PairFinder::Impl::run_task(const Task& task, const char* changed, FoundPair
 }
 
 /// Leaves what is wanted, in no more room than it needs.
-void PairFinder::Impl::sift(const PairSieve& sieve, FoundPairs& pairs) const {
-  const auto is_unwanted_face = [&](std::uint64_t k) { return !sieve(PairKind::k_vertex_face, vertex_face(k)); };
-  const auto is_unwanted_edge = [&](std::uint64_t k) { return !sieve(PairKind::k_edge_edge, edge_edge(k)); };
-  std::erase_if(pairs.vertex_face, is_unwanted_face);
-  std::erase_if(pairs.edge_edge, is_unwanted_edge);
-  pairs.vertex_face.shrink_to_fit();
-  pairs.edge_edge.shrink_to_fit();
+void PairFinder::Impl::sift(const PairSieve& sieve, PairKeys& pairs) const {
+  const FeatureNumbers numbers = features.numbers();
+  const auto sift_kind = [&](PairKind kind, std::vector<PairKey>& keys) {
+    std::erase_if(keys, [&](PairKey key) { return !sieve(kind, numbers.stencil(kind, key)); });
+    keys.shrink_to_fit();
+  };
+  sift_kind(PairKind::k_vertex_face, pairs.vertex_face);
+  sift_kind(PairKind::k_edge_edge, pairs.edge_edge);
 }
 
 PairFinder::PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
@@ -172,30 +164,31 @@ void PairFinder::arrange(std::span<const Vec3> x) {
   build_trees([&](int v) { return x[at(v)].cast<float>(); });
 }
 
-void PairFinder::find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped,
+void PairFinder::find(std::span<const VertexBox> boxes, bool self, PairList& out, std::span<const char> skipped,
                       const PairSieve& sieve) {
   search(boxes, self, true, {}, skipped, sieve, out);
 }
 
-void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out,
-                                  const PairSieve& sieve) {
+void PairFinder::find_vertex_face(std::span<const VertexBox> boxes, bool self, PairList& out, const PairSieve& sieve) {
   search(boxes, self, false, {}, {}, sieve, out);
 }
 
-void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed,
-                              ContactPairs& out, std::span<const char> skipped, const PairSieve& sieve) {
+void PairFinder::find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, PairList& out,
+                              std::span<const char> skipped, const PairSieve& sieve) {
   CHECK(changed.size() == boxes.size());
   search(boxes, self, true, changed, skipped, sieve, out);
 }
 
 /// changed empty: all pairs. Not empty: the boxes of all others are those of the last search.
 void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges, std::span<const char> changed,
-                        std::span<const char> skipped, const PairSieve& sieve, ContactPairs& out) {
+                        std::span<const char> skipped, const PairSieve& sieve, PairList& out) {
   Impl& m = *impl_;
   m.want_edges = edges;
   m.skipped = skipped;
   const PairFeatures& features = m.features;
   m.features.set_boxes(boxes);
+  give_back(out.vertex_face, out.edge_edge);  // their room is needed for the search
+  out.features = features.numbers();
   build_trees([&](int v) -> Vec3f {
     const VertexBox& box = boxes[at(v)];
     Vec3f middle;
@@ -206,39 +199,24 @@ void PairFinder::search(std::span<const VertexBox> boxes, bool self, bool edges,
   m.refit(changed);
 
   m.split_tasks(self);
-  std::vector<FoundPairs> found(m.tasks.size());
+  std::vector<PairKeys> found(m.tasks.size());
   parallel_tasks(found.size(), [&](std::size_t i) {
     changed.empty() ? m.run_task<false>(m.tasks[i], nullptr, found[i])
                     : m.run_task<true>(m.tasks[i], changed.data(), found[i]);
     if (sieve) m.sift(sieve, found[i]);
   });
 
-  const auto sort = [&](PairSorter& sorter, std::size_t first_count, auto keys_of) {
-    sorter.begin(static_cast<int>(first_count));
-    for (const FoundPairs& f : found) sorter.add(f.*keys_of);
-    sorter.sort();
+  const auto sort = [&](std::vector<PairKey> PairKeys::*kind, std::size_t first_count) {
+    std::vector<std::span<const PairKey>> parts;
+    for (const PairKeys& keys : found) parts.emplace_back(keys.*kind);
+    out.*kind = sorted_keys(parts, first_count);
   };
   parallel_tasks(2, [&](std::size_t task) {
     if (task == 0)
-      sort(m.sort_vertex_face, at(features.vertex_count), &FoundPairs::vertex_face);
+      sort(&PairKeys::vertex_face, at(features.vertex_count));
     else
-      sort(m.sort_edge_edge, features.edge_count(), &FoundPairs::edge_edge);
+      sort(&PairKeys::edge_edge, features.edge_count());
   });
-  give_back(found);
-
-  const auto write = [&](PairSorter& sorter, auto stencil_of, std::vector<Stencil>& pairs) {
-    const std::span<const std::uint64_t> keys = sorter.sorted();
-    if (pairs.capacity() < keys.size()) give_back(pairs);  // so that there are never two of them
-    pairs.resize(keys.size());
-    parallel_for(keys.size(), k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) pairs[i] = stencil_of(keys[i]);
-    });
-    sorter.give_back();
-  };
-  write(
-      m.sort_vertex_face, [&](std::uint64_t key) { return m.vertex_face(key); }, out.vertex_face);
-  write(
-      m.sort_edge_edge, [&](std::uint64_t key) { return m.edge_edge(key); }, out.edge_edge);
 }
 
 }  // namespace ft

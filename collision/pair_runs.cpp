@@ -8,7 +8,7 @@ namespace ft {
 namespace {
 
 /// First of sorted `list` that is not less than what; looks near its beginning first.
-std::size_t lower_bound_near(std::span<const Stencil> list, const Stencil& what) {
+std::size_t lower_bound_near(std::span<const PairKey> list, PairKey what) {
   std::size_t from = 0, stride = 1;
   while (from + stride < list.size() && list[from + stride] < what) from += stride, stride *= 2;
   const auto end = list.begin() + static_cast<std::ptrdiff_t>(std::min(from + stride + 1, list.size()));
@@ -17,7 +17,7 @@ std::size_t lower_bound_near(std::span<const Stencil> list, const Stencil& what)
 }
 
 /// Marks what of sorted `wanted` is in sorted `list`.
-void mark_known(std::span<const Stencil> list, std::span<const Stencil> wanted, std::vector<char>& known) {
+void mark_known(std::span<const PairKey> list, std::span<const PairKey> wanted, std::vector<char>& known) {
   for (std::size_t i = 0; i < wanted.size() && !list.empty(); ++i) {
     list = list.subspan(lower_bound_near(list, wanted[i]));
     if (!list.empty() && list.front() == wanted[i]) known[i] = 1;
@@ -26,10 +26,9 @@ void mark_known(std::span<const Stencil> list, std::span<const Stencil> wanted, 
 
 }  // namespace
 
-void PairRuns::add(std::span<const Stencil> fresh, std::span<const Stencil> but, std::vector<Stencil>& list) {
+void PairRuns::add(std::span<const PairKey> fresh, std::vector<PairKey>& list) {
   if (fresh.empty()) return;
   known_.assign(fresh.size(), 0);
-  mark_known(but, fresh, known_);
   for (std::size_t r = 0; r < begins_.size(); ++r) {
     const std::size_t end = r + 1 < begins_.size() ? begins_[r + 1] : list.size();
     mark_known(std::span(list).subspan(begins_[r], end - begins_[r]), fresh, known_);

@@ -1,5 +1,5 @@
-// A list of pairs that grows at its end: sorted runs, one behind the other, no pair twice. What is added costs a look
-// at the list and no copy of it, and whoever keeps something per pair keeps it.
+// A list of keys of pairs that grows at its end: sorted runs, one behind the other, no pair twice. What is added costs
+// a look at the list and no copy of it, and whoever keeps something per pair keeps it.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "baker/core/parallel.h"
-#include "collision/contact_pairs.h"
+#include "collision/pair_list.h"
 
 namespace ft {
 
@@ -17,12 +17,12 @@ class PairRuns {
   /// The list is sorted, as one run.
   void begin() { begins_.assign(1, 0); }
 
-  /// Appends as a run what of sorted `fresh` is neither in the list nor in sorted `but`.
-  void add(std::span<const Stencil> fresh, std::span<const Stencil> but, std::vector<Stencil>& list);
+  /// Appends as a run what of sorted `fresh` is not in the list.
+  void add(std::span<const PairKey> fresh, std::vector<PairKey>& list);
 
-  /// Drops the pairs for which drop(pair) is true. It is called from several threads, more than once per pair.
+  /// Drops the pairs for which drop(key) is true. It is called from several threads, more than once per pair.
   template <class Drop>
-  void erase_if(std::vector<Stencil>& list, Drop&& drop) {
+  void erase_if(std::vector<PairKey>& list, Drop&& drop) {
     const std::size_t blocks = block_count(list.size(), k_block);
     place_.assign(blocks + 1, 0);
     const auto kept = [&](std::size_t begin, std::size_t end) {

@@ -1,21 +1,14 @@
 // The walk of pair_finder.cpp over box trees, down to pairs of features whose boxes overlap.
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "collision/node_patches.h"
 #include "collision/pair_features.h"
+#include "collision/pair_list.h"
 #include "collision/pair_node.h"
-#include "collision/pair_sort.h"
 
 namespace ft {
-
-/// Keys of feature pairs (pair_sort.h), by rank.
-struct FoundPairs {
-  std::vector<std::uint64_t> vertex_face, edge_edge;
-};
 
 /// Walks two trees, or one against itself, and writes down the feature pairs of leaves that overlap. k_some: only those
 /// with a changed vertex. k_self: both trees are one, and there may be a margin and patches.
@@ -30,7 +23,7 @@ struct PairWalk {
   BoxMargin margin;            ///< boxes of ta are taken for smaller by so much
   const NodePatches* patches;  ///< of ta and tb; null: none
   std::span<const char> skipped;
-  FoundPairs& out;
+  PairKeys& out;
 
   BoxLanes smaller(const BoxLanes& box) const { return k_self ? box.shrunk(margin) : box; }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/give_back.h"
 #include "collision/contact_pairs.h"
 #include "collision/pair_room.h"
 #include "collision/vertex_clumps.h"
@@ -16,7 +17,7 @@ namespace ft {
 
 class ApproachLimits {
  public:
-  void clear() { limits_.clear(); }
+  void clear() { give_back(limits_); }
   /// Limits the pairs, which start at x and would move by d (all vertices) [m]. What no plane separates at the start is
   /// left out.
   void add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3> d);

@@ -64,6 +64,7 @@ double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   s.candidates.carry(cloth, h, s.piece);
   double t = s.candidates.collect(cloth, h, s.piece);
   for (int round = 0; t < 1 && round < k_parting_rounds; ++round) t = s.candidates.part_blocked(cloth, s.piece);
+  s.candidates.end_parting();
   const double parted = t;
   for (int round = 0; t < 1 && round < k_joining_rounds; ++round) t = s.candidates.join_blocked(cloth, s.piece);
   return std::max(t, parted);

@@ -97,7 +97,7 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
 
 void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
-  near_body_.vertex_face.clear();
+  give_back(near_body_.vertex_face);
   finder_.arrange(piece.start);
   fastest_ = 0;
   if (nb == 0) return;
@@ -133,7 +133,6 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   zones_.clear(static_cast<int>(cloth.x.size()), model_.clumps);
-  limits_.clear();
   inertia_.resize(cloth.x.size());
   for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = h * cloth.v[i];
   piece.carry = inertia_;
@@ -256,13 +255,14 @@ bool Candidates::cloth_blocks_cloth() const {
   return any(blocked_.vertex_face) || any(blocked_.edge_edge);
 }
 
+bool Candidates::is_blocked(PairKind kind, PairKey key) const {
+  const auto& blocked = kind == PairKind::k_vertex_face ? blocked_.vertex_face : blocked_.edge_edge;
+  return !blocked.empty() && std::binary_search(blocked.begin(), blocked.end(), pairs_.features.stencil(kind, key));
+}
+
 void Candidates::drop_blocked() {
-  const auto drop = [](PairRuns& runs, std::vector<Stencil>& pairs, const std::vector<Stencil>& blocked) {
-    if (blocked.empty()) return;
-    runs.erase_if(pairs, [&](const Stencil& s) { return std::binary_search(blocked.begin(), blocked.end(), s); });
-  };
-  drop(runs_vertex_face_, pairs_.vertex_face, blocked_.vertex_face);
-  drop(runs_edge_edge_, pairs_.edge_edge, blocked_.edge_edge);
+  runs_vertex_face_.erase_if(pairs_.vertex_face, [&](PairKey key) { return is_blocked(PairKind::k_vertex_face, key); });
+  runs_edge_edge_.erase_if(pairs_.edge_edge, [&](PairKey key) { return is_blocked(PairKind::k_edge_edge, key); });
 }
 
 }  // namespace ft

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "collision/contact_pairs.h"
 #include "collision/flat_patches.h"
 #include "collision/motion_zones.h"
 #include "collision/pair_geometry.h"
+#include "collision/pair_list.h"
 #include "collision/pair_runs.h"
 #include "solvers/cloth/approach_limits.h"
 #include "solvers/cloth/body_advance.h"
@@ -51,6 +51,8 @@ class Candidates {
   /// After a collect() that gave less than 1: carries the cloth of all pairs that would have touched since then so that
   /// they keep apart, if that can be, brings pairs() up to it, no longer in order, and returns the share anew.
   double part_blocked(const ClothMotion& cloth, PieceMotion& piece);
+  /// Frees what part_blocked() knows, before a solve. There is no part_blocked() until the next carry().
+  void end_parting() { limits_.clear(); }
   /// After collect(), part_blocked() or join_blocked() that gave less than 1: carries the cloth of the pairs that would
   /// touch as one, brings pairs() up to it, no longer in order, and returns the share anew.
   double join_blocked(const ClothMotion& cloth, PieceMotion& piece);
@@ -72,7 +74,7 @@ class Candidates {
   /// already, follows it. Returns how many vertices.
   int release_beside(ClothMotion& cloth, const PieceMotion& piece);
 
-  const ContactPairs& pairs() const { return pairs_; }
+  const PairList& pairs() const { return pairs_; }
 
  private:
   struct Touching;
@@ -83,10 +85,11 @@ class Candidates {
   void set_box(std::size_t vertex, const PieceMotion& piece);
   double renew(const ClothMotion& cloth, const PieceMotion& piece);
   double renew_carried(const ClothMotion& cloth, PieceMotion& piece);
-  void add_touching(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs, Touching& touching) const;
+  void add_touching(PairKind kind, const PieceMotion& piece, Touching& touching) const;
   void begin_flat(const PieceMotion& piece);
   void mark_lost();
   void add_missing(const ClothMotion& cloth, const PieceMotion& piece);
+  bool is_blocked(PairKind kind, PairKey key) const;
   void drop_blocked();
   void join_zones(const PieceMotion& piece);
   std::vector<int> pinched_through() const;
@@ -108,7 +111,7 @@ class Candidates {
   std::vector<char> moved_;    ///< per vertex: whose carried way has changed
   BoxFrame box_frame_;
   std::vector<VertexBox> boxes_;
-  ContactPairs near_body_, pairs_;
+  PairList near_body_, pairs_;
   PairRuns runs_vertex_face_, runs_edge_edge_;  ///< of pairs_
   std::vector<Vec3> inertia_;                   ///< h v, from carry() to collect() [m]
   ContactPairs blocked_;

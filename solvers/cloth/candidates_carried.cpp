@@ -20,23 +20,25 @@ double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
   const auto any_of = [](const std::vector<char>& marks, const Stencil& s) {
     return (marks[at(s.v[0])] | marks[at(s.v[1])] | marks[at(s.v[2])] | marks[at(s.v[3])]) != 0;
   };
-  const auto is_changed = [&](const Stencil& s) { return any_of(changed_, s); };
   Touching touching;
-  const auto look_again = [&](PairKind kind, std::span<const Stencil> pairs, std::span<const Stencil> blocked) {
+  const auto look_again = [&](PairKind kind, std::span<const Stencil> blocked) {
     for (const Stencil& s : blocked)
-      if (!is_changed(s) && !any_of(moved_, s))
+      if (!any_of(changed_, s) && !any_of(moved_, s))
         touching.take(kind, s, ccd_time(kind, gather(piece.start, s), gather(piece.all, s)));
-    add_touching(kind, piece, pairs, touching);
+    add_touching(kind, piece, touching);
   };
-  look_again(PairKind::k_vertex_face, pairs_.vertex_face, blocked_.vertex_face);
-  look_again(PairKind::k_edge_edge, pairs_.edge_edge, blocked_.edge_edge);
+  look_again(PairKind::k_vertex_face, blocked_.vertex_face);
+  look_again(PairKind::k_edge_edge, blocked_.edge_edge);
   if (std::any_of(changed_.begin(), changed_.end(), [](char c) { return c != 0; })) {
-    ContactPairs found;
+    PairList found;
     finder_.find_changed(boxes_, any_self_, changed_, found, patches_.flat(), sieve(cloth, piece, &touching));
-    runs_vertex_face_.erase_if(pairs_.vertex_face, is_changed);
-    runs_edge_edge_.erase_if(pairs_.edge_edge, is_changed);
-    runs_vertex_face_.add(found.vertex_face, {}, pairs_.vertex_face);
-    runs_edge_edge_.add(found.edge_edge, {}, pairs_.edge_edge);
+    const auto is_changed = [&](PairKind kind) {
+      return [&, kind](PairKey key) { return any_of(changed_, pairs_.features.stencil(kind, key)); };
+    };
+    runs_vertex_face_.erase_if(pairs_.vertex_face, is_changed(PairKind::k_vertex_face));
+    runs_edge_edge_.erase_if(pairs_.edge_edge, is_changed(PairKind::k_edge_edge));
+    runs_vertex_face_.add(found.vertex_face, pairs_.vertex_face);
+    runs_edge_edge_.add(found.edge_edge, pairs_.edge_edge);
   }
   touching.sort();
   blocked_ = std::move(touching.pairs);
@@ -44,19 +46,19 @@ double Candidates::renew(const ClothMotion& cloth, const PieceMotion& piece) {
 }
 
 /// Those of the pairs with a vertex in moved_ and none in changed_ that touch.
-void Candidates::add_touching(PairKind kind, const PieceMotion& piece, std::span<const Stencil> pairs,
-                              Touching& touching) const {
+void Candidates::add_touching(PairKind kind, const PieceMotion& piece, Touching& touching) const {
   const VertexWays ways{piece.start, piece.all, piece.centre, piece.slack};
-  parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pairs_.of(kind).size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
+      const Stencil pair = pairs_.stencil(kind, p);
       char moved = 0, changed = 0;
-      for (const int v : pairs[p].v) moved |= moved_[at(v)], changed |= changed_[at(v)];
+      for (const int v : pair.v) moved |= moved_[at(v)], changed |= changed_[at(v)];
       if (moved == 0 || changed != 0) continue;
-      const PairWay way(kind, pairs[p], ways, 0, k_clear);
+      const PairWay way(kind, pair, ways, 0, k_clear);
       if (way.judge(way.between_centres()) != PairWay::Verdict::k_open ||
           way.judge(way.flat()) != PairWay::Verdict::k_open)
         continue;
-      touching.take(kind, pairs[p], ccd_time(kind, gather(piece.start, pairs[p]), gather(piece.all, pairs[p])));
+      touching.take(kind, pair, ccd_time(kind, gather(piece.start, pair), gather(piece.all, pair)));
     }
   });
 }

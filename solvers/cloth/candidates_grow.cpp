@@ -35,10 +35,12 @@ bool Candidates::keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, co
 
 /// The pairs of changed_ vertices that pairs_ lacks. What was let pass stays out.
 void Candidates::add_missing(const ClothMotion& cloth, const PieceMotion& piece) {
-  ContactPairs found;
+  PairList found;
   finder_.find_changed(boxes_, any_self_, changed_, found, patches_.flat(), sieve(cloth, piece, nullptr));
-  runs_vertex_face_.add(found.vertex_face, blocked_.vertex_face, pairs_.vertex_face);
-  runs_edge_edge_.add(found.edge_edge, blocked_.edge_edge, pairs_.edge_edge);
+  std::erase_if(found.vertex_face, [&](PairKey key) { return is_blocked(PairKind::k_vertex_face, key); });
+  std::erase_if(found.edge_edge, [&](PairKey key) { return is_blocked(PairKind::k_edge_edge, key); });
+  runs_vertex_face_.add(found.vertex_face, pairs_.vertex_face);
+  runs_edge_edge_.add(found.edge_edge, pairs_.edge_edge);
 }
 
 }  // namespace ft

@@ -28,14 +28,14 @@ struct Pull {
 std::vector<Pull> find_pulls(const CarryInput& in) {
   const int n = in.cloth_vertex_count;
   const double g = 1.0 / (in.range * in.range);
-  const auto& pairs = in.pairs->vertex_face;
+  const std::vector<PairKey>& pairs = in.pairs->vertex_face;
   std::vector<std::vector<Pull>> blocks(block_count(pairs.size(), k_block));
   parallel_for(pairs.size(), k_block, [&](std::size_t begin, std::size_t end) {
     std::vector<Pull>& mine = blocks[begin / k_block];
     std::size_t run = 0;  // pulls of the vertex at hand begin here
     for (std::size_t k = begin; k < end; ++k) {
-      const auto& v = pairs[k].v;
-      if (k > begin && v[0] != pairs[k - 1].v[0]) run = mine.size();
+      const auto v = in.pairs->stencil(PairKind::k_vertex_face, k).v;
+      if (k > begin && v[0] != key_first(pairs[k - 1])) run = mine.size();
       const PairGeometry geo = vertex_face_geometry(in.x[at(v[0])], in.x[at(v[1])], in.x[at(v[2])], in.x[at(v[3])]);
       if (geo.distance >= in.range || geo.distance <= 0) continue;
       // A body vertex beside a cloth face, not behind it, says nothing: its slanted normal would lift cloth that glides

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "baker/core/mesh.h"
-#include "collision/contact_pairs.h"
+#include "collision/pair_list.h"
 #include "collision/vertex_clumps.h"
 #include "solvers/cloth/carry_smooth.h"
 
@@ -22,7 +22,7 @@ struct CarryInput {
   std::span<const Vec3> body_motion;         ///< per body vertex [m]
   std::span<const Vec3> inertia;             ///< beta h v per cloth vertex [m]
   const Adjacency* neighbours = nullptr;     ///< of each cloth vertex along edges
-  const ContactPairs* pairs = nullptr;       ///< cloth-body pairs at least within `range`
+  const PairList* pairs = nullptr;           ///< cloth-body pairs at least within `range`
   std::span<const int> part_of_body_vertex;  ///< of each body vertex: the nearest face of each part pulls
   double range = 0;                          ///< R: 2 r + largest body motion [m]
   const CarrySmooth* smooth = nullptr;       ///< what has short edges; null: nothing has

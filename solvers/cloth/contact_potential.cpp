@@ -54,8 +54,7 @@ ContactLaw contact_law(double d, double r, double k) {
           a / (safe * safe) * (factor + 6 * taut)};
 }
 
-void ContactPotential::begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h,
-                             double friction_share) {
+void ContactPotential::begin(const PairList& pairs, std::span<const Vec3> x_start, double h, double friction_share) {
   pairs_ = &pairs;
   friction_share_ = friction_share;
   x_start_ = x_start;
@@ -121,16 +120,16 @@ bool ContactPotential::may_be_within(const std::array<int, 4>& v, bool vertex_fa
 
 /// The pairs from the first on.
 void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first) {
-  const auto& list = vertex_face ? pairs_->vertex_face : pairs_->edge_edge;
+  const PairKind kind = vertex_face ? PairKind::k_vertex_face : PairKind::k_edge_edge;
   auto& known = vertex_face ? known_vf_ : known_ee_;
   const int n = model_.cloth_vertex_count;
-  const std::size_t count = list.size() - first, blocks = block_count(count, k_block);
+  const std::size_t count = pairs_->of(kind).size() - first, blocks = block_count(count, k_block);
   if (block_contacts_.size() < blocks) block_contacts_.resize(blocks);
   parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
     auto& out = block_contacts_[begin / k_block];
     out.clear();
     for (std::size_t p = first + begin; p < first + end; ++p) {
-      const auto& v = list[p].v;
+      const auto v = pairs_->stencil(kind, p).v;
       const bool self = v[0] < n && v[3] < n;
       double largest = 0;
       for (const int i : v)
@@ -308,17 +307,17 @@ void ContactPotential::near_pairs(std::span<const double> lengths, double floor,
       reach_[i] = static_cast<float>(k_truncation_reach * lengths[i] + floor) + 1e-6f;
   });
   std::vector<char> near;  // per pair
-  const auto take = [&](const std::vector<Stencil>& list, const std::vector<float>& known, bool vertex_face,
-                        std::vector<Stencil>& to) {
+  const auto take = [&](PairKind kind, const std::vector<float>& known, std::vector<Stencil>& to) {
     near.assign(known.size(), 0);
     std::vector<std::size_t> place(block_count(known.size(), k_block) + 1, 0);
     parallel_for(known.size(), k_block, [&](std::size_t begin, std::size_t end) {
       std::size_t count = 0;
       for (std::size_t p = begin; p < end; ++p) {
         float reach = 0;
-        for (const int i : list[p].v)
+        const auto v = pairs_->stencil(kind, p).v;
+        for (const int i : v)
           if (i < n) reach = std::max(reach, reach_[at(i)]);
-        near[p] = may_be_within(list[p].v, vertex_face, known[p], reach) ? 1 : 0;
+        near[p] = may_be_within(v, kind == PairKind::k_vertex_face, known[p], reach) ? 1 : 0;
         count += near[p] != 0 ? 1 : 0;
       }
       place[begin / k_block + 1] = count;
@@ -329,11 +328,11 @@ void ContactPotential::near_pairs(std::span<const double> lengths, double floor,
     parallel_for(known.size(), k_block, [&](std::size_t begin, std::size_t end) {
       std::size_t next = place[begin / k_block];
       for (std::size_t p = begin; p < end; ++p)
-        if (near[p] != 0) to[next++] = list[p];
+        if (near[p] != 0) to[next++] = pairs_->stencil(kind, p);
     });
   };
-  take(pairs_->vertex_face, known_vf_, true, out.vertex_face);
-  take(pairs_->edge_edge, known_ee_, false, out.edge_edge);
+  take(PairKind::k_vertex_face, known_vf_, out.vertex_face);
+  take(PairKind::k_edge_edge, known_ee_, out.edge_edge);
 }
 
 double ContactPotential::smallest_gap() const {

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
+#include "collision/pair_list.h"
 #include "solvers/linear/block_matrix.h"
 
 namespace ft {
@@ -50,7 +50,7 @@ class ContactPotential {
 
   /// Takes the pairs of one solve. x_start: all positions at the start of the step (friction measures slip from there),
   /// h: its length [s], friction_share: of all friction [1].
-  void begin(const ContactPairs& pairs, std::span<const Vec3> x_start, double h, double friction_share = 1);
+  void begin(const PairList& pairs, std::span<const Vec3> x_start, double h, double friction_share = 1);
 
   /// Finds the active contacts at x (all vertices): where the cloth was at the last update, and on by `share` of the
   /// move (per cloth vertex [m]); empty: nothing has moved, or it is the first. Distances are evaluated anew only where
@@ -98,7 +98,7 @@ class ContactPotential {
   bool may_be_within(const std::array<int, 4>& v, bool vertex_face, float known, float reach) const;
 
   const ContactModel& model_;
-  const ContactPairs* pairs_ = nullptr;  ///< those in front are in known_vf_, known_ee_
+  const PairList* pairs_ = nullptr;  ///< those in front are in known_vf_, known_ee_
   std::span<const Vec3> x_start_;
   double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]

@@ -21,14 +21,14 @@ struct StepInput {
   std::span<const Vec3> x_t0, v_t0, x_tm1, v_tm1, x_tm2, v_tm2;  ///< cloth
   double h = 0, h_previous = 0, h_older = 0;                     ///< s
   double time = 0;                                               ///< at the end [s]
-  std::span<const Vec3> all_start;      ///< cloth and body at the start: slip is measured from here
-  std::span<const Vec3> pin_target;     ///< per pin, at the end of the step
-  std::span<const Vec3> pin_motion;     ///< per pin: how far its target moves in the step [m]
-  MotionBounds balls;                   ///< what each cloth vertex has to stay in; it starts inside
-  std::span<const Vec3> push;           ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
-  double friction_share = 1;            ///< of all friction [1]
-  const ContactPairs* pairs = nullptr;  ///< complete within the slack, but for what pairs_suffice adds
-  int newton_iterations = 3;            ///< at least, unless nothing moves; more where the cloth is still strained
+  std::span<const Vec3> all_start;   ///< cloth and body at the start: slip is measured from here
+  std::span<const Vec3> pin_target;  ///< per pin, at the end of the step
+  std::span<const Vec3> pin_motion;  ///< per pin: how far its target moves in the step [m]
+  MotionBounds balls;                ///< what each cloth vertex has to stay in; it starts inside
+  std::span<const Vec3> push;        ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
+  double friction_share = 1;         ///< of all friction [1]
+  const PairList* pairs = nullptr;   ///< complete within the slack, but for what pairs_suffice adds
+  int newton_iterations = 3;         ///< at least, unless nothing moves; more where the cloth is still strained
   /// Root mean square of what an iteration may still change the edges' lengths by at the end, over their rest lengths.
   double settled_strain = 5e-3;
   /// Called when an iteration wants to take a vertex farther past its slack than enough_room: how far, per vertex,

@@ -96,10 +96,12 @@ void LockstepContact::find(std::span<const Vec3> x, std::span<const Vec3> dx) {
   for (std::size_t i = 0; i < from_.size(); ++i)
     boxes_.push_back(frame.swept(from_[i], from_[i] + way_[i], 0.5 * widest_reach_));
   finder_.arrange(from_);
-  finder_.find(boxes_, self_, found_);
+  PairList list;
+  finder_.find(boxes_, self_, list);
+  const ContactPairs found = stencils_of(list);
   pairs_.clear();
-  push_pairs(found_.vertex_face, PairKind::k_vertex_face);
-  push_pairs(found_.edge_edge, PairKind::k_edge_edge);
+  push_pairs(found.vertex_face, PairKind::k_vertex_face);
+  push_pairs(found.edge_edge, PairKind::k_edge_edge);
 }
 
 std::array<Vec3, 4> LockstepContact::corners(const Pair& pair, std::span<const Vec3> places) const {

@@ -10,6 +10,7 @@
 #include "baker/core/wrench.h"
 #include "collision/crossings.h"
 #include "collision/pair_geometry.h"
+#include "collision/pair_list.h"
 #include "solvers/lockstep/lockstep_model.h"
 
 namespace ft {
@@ -78,7 +79,6 @@ class LockstepContact {
   mutable std::vector<Vec3> places_;
   mutable double smallest_gap_ = 0;
   std::vector<VertexBox> boxes_;
-  ContactPairs found_;
 };
 
 }  // namespace ft

@@ -6,6 +6,7 @@
 #include "collision/contact_pairs.h"
 #include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"
+#include "tests/support/numbered_pairs.h"
 #include "tests/support/pair_brute_force.h"
 
 namespace ft {
@@ -70,7 +71,7 @@ TEST(PairFinderPatches, Pairs_inside_a_skipped_one_are_left_out_and_no_others) {
     return false;
   };
 
-  PairFinder finder(scene.cloth_vertices, scene.cloth, 0, {});
+  test::StencilFinder finder(scene.cloth_vertices, scene.cloth, 0, {});
   finder.set_patches(members);
   ContactPairs found;
   finder.find(scene.boxes, true, found);
@@ -130,7 +131,7 @@ TEST(PairFinderPatches, Of_triangles_that_share_no_vertex_exactly_the_pairs_insi
         }
         return false;
       };
-      PairFinder finder(scene.cloth_vertices, scene.cloth, 0, {});
+      test::StencilFinder finder(scene.cloth_vertices, scene.cloth, 0, {});
       finder.set_patches(members);
       ContactPairs found, wanted = test::brute_force(scene, true);
       finder.find(scene.boxes, true, found, skipped);

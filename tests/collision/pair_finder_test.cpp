@@ -12,6 +12,7 @@
 #include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"
 #include "tests/support/assets.h"
+#include "tests/support/numbered_pairs.h"
 #include "tests/support/pair_brute_force.h"
 
 namespace ft {
@@ -81,14 +82,14 @@ void expect_same(const ContactPairs& a, const ContactPairs& b) {
   EXPECT_TRUE(a.edge_edge == b.edge_edge);
 }
 
-PairFinder finder_of(const Scene& s) {
+test::StencilFinder finder_of(const Scene& s) {
   return {s.cloth_vertices, s.cloth, s.collider_vertices, s.collider};
 }
 
 TEST(PairFinder, Finds_what_brute_force_finds_between_two_wavy_sheets) {
   for (const double reach : {0.001, 0.02, 0.08}) {
     const Scene scene = two_sheets(14, reach, 3);
-    PairFinder finder = finder_of(scene);
+    test::StencilFinder finder = finder_of(scene);
     for (const bool self : {false, true}) {
       ContactPairs found;
       finder.find(scene.boxes, self, found);
@@ -116,7 +117,7 @@ Scene with_smaller_cloth(Scene scene, double by, int steps) {
 TEST(PairFinder, A_margin_leaves_out_cloth_that_hardly_overlaps_cloth_and_nothing_else) {
   constexpr double k_margin = 0.02;
   const Scene scene = two_sheets(14, 0.04, 3);
-  PairFinder finder = finder_of(scene);
+  test::StencilFinder finder = finder_of(scene);
   finder.set_self_margin(k_frame.margin(k_margin));
   ContactPairs found, all;
   finder.find(scene.boxes, true, found);
@@ -145,7 +146,7 @@ TEST(PairFinder, Finds_what_brute_force_finds_in_random_soups_of_triangles) {
   int pairs = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     Scene scene = soup(seed);
-    PairFinder finder = finder_of(scene);
+    test::StencilFinder finder = finder_of(scene);
     ContactPairs found;
     for (int again = 0; again < 3; ++again) {
       const bool self = seed % 2 == 0 || again == 1;
@@ -212,7 +213,7 @@ TEST(PairFinder, Lists_are_sorted_single_and_equal_for_every_number_of_threads) 
   EXPECT_EQ(std::adjacent_find(first.edge_edge.begin(), first.edge_edge.end()), first.edge_edge.end());
   for (const int threads : {1, 2, 3, 8}) {
     const ThreadLimit limit(threads);
-    PairFinder finder = finder_of(scene);
+    test::StencilFinder finder = finder_of(scene);
     for (int again = 0; again < 2; ++again) {
       ContactPairs found;
       finder.find(scene.boxes, true, found);
@@ -229,7 +230,7 @@ TEST(PairFinder, A_search_does_not_depend_on_the_searches_before_it) {
     const Vec3 p = dice.cube(3);
     elsewhere.push_back(k_frame.swept(p, p, 0.1));
   }
-  PairFinder seasoned = finder_of(scene), fresh = finder_of(scene);
+  test::StencilFinder seasoned = finder_of(scene), fresh = finder_of(scene);
   ContactPairs a, b;
   seasoned.find(elsewhere, true, a);
   seasoned.find(scene.boxes, true, a);
@@ -239,7 +240,7 @@ TEST(PairFinder, A_search_does_not_depend_on_the_searches_before_it) {
 
 TEST(PairFinder, A_search_without_edges_finds_the_same_vertices_and_faces) {
   const Scene scene = two_sheets(20, 0.02, 4);
-  PairFinder finder = finder_of(scene);
+  test::StencilFinder finder = finder_of(scene);
   ContactPairs all, some;
   for (const bool self : {true, false}) {
     finder.find_vertex_face(scene.boxes, self, some);
@@ -253,7 +254,7 @@ TEST(PairFinder, A_search_without_edges_finds_the_same_vertices_and_faces) {
 
 TEST(PairFinder, A_search_for_changed_vertices_finds_their_pairs_and_no_others) {
   Scene scene = two_sheets(20, 0.02, 4);
-  PairFinder finder = finder_of(scene);
+  test::StencilFinder finder = finder_of(scene);
   ContactPairs all, some;
   finder.find(scene.boxes, true, all);  // the trees are of before
   Dice dice(11);
@@ -348,19 +349,20 @@ TEST(PairFinder, Nothing_meets_nothing) {
   ContactPairs found;
   found.vertex_face.resize(3);
   const std::vector<VertexBox> three(3, k_frame.swept({0, 0, 0}, {1, 1, 1}, 0));
-  PairFinder(0, {}, 0, {}).find({}, true, found);
+  test::StencilFinder(0, {}, 0, {}).find({}, true, found);
   EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
   const std::vector<Triangle> one{{0, 1, 2}};
-  PairFinder(3, one, 0, {}).find(three, true, found);
+  test::StencilFinder(3, one, 0, {}).find(three, true, found);
   EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
-  PairFinder(0, {}, 3, one).find(three, true, found);
+  test::StencilFinder(0, {}, 3, one).find(three, true, found);
   EXPECT_TRUE(found.vertex_face.empty() && found.edge_edge.empty());
 }
 
 TEST(PairFinder, A_cord_meets_faces_with_its_ends_and_edges_with_its_length) {
   const std::vector<Triangle> cord{{0, 1, 1}}, face{{2, 3, 4}};
   ContactPairs found;
-  PairFinder(2, cord, 3, face).find(std::vector<VertexBox>(5, k_frame.swept({0, 0, 0}, {1, 1, 1}, 0)), true, found);
+  test::StencilFinder(2, cord, 3, face)
+      .find(std::vector<VertexBox>(5, k_frame.swept({0, 0, 0}, {1, 1, 1}, 0)), true, found);
   EXPECT_EQ(found.vertex_face, (std::vector<Stencil>{{{0, 2, 3, 4}}, {{1, 2, 3, 4}}}));
   EXPECT_EQ(found.edge_edge, (std::vector<Stencil>{{{0, 1, 2, 3}}, {{0, 1, 2, 4}}, {{0, 1, 3, 4}}}));
 }

@@ -60,6 +60,10 @@ std::vector<Vec3> somewhere_in_reach(const TwoSheets& s, std::uint64_t draw) {
   return out;
 }
 
+ContactPairs pairs_of(const Candidates& candidates) {
+  return stencils_of(candidates.pairs());
+}
+
 std::vector<Stencil> sorted(std::vector<Stencil> pairs) {
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -125,7 +129,7 @@ TEST(Candidates, lists_neighbours_only_where_the_cloth_is_about_to_bend) {
     return std::count_if(pairs.begin(), pairs.end(),
                          [&](const Stencil& p) { return (p.v[0] < half) == (p.v[3] < half); });
   };
-  EXPECT_EQ(of_one_sheet(candidates.pairs().edge_edge) + of_one_sheet(candidates.pairs().vertex_face), 0);
+  EXPECT_EQ(of_one_sheet(pairs_of(candidates).edge_edge) + of_one_sheet(pairs_of(candidates).vertex_face), 0);
   std::vector<Vec3> x = s.cloth.x;
   for (Vec3& p : x) p.y() += 1e-4 * std::sin(300 * p.x());
   EXPECT_TRUE(candidates.keep_flat(s.cloth, x, s.piece));
@@ -136,9 +140,10 @@ TEST(Candidates, lists_neighbours_only_where_the_cloth_is_about_to_bend) {
   }
   EXPECT_FALSE(candidates.keep_flat(s.cloth, x, s.piece));
   EXPECT_TRUE(candidates.keep_flat(s.cloth, x, s.piece));
-  EXPECT_GT(of_one_sheet(candidates.pairs().edge_edge), 1000);
-  EXPECT_GT(of_one_sheet(candidates.pairs().vertex_face), 300);
-  for (const Stencil& p : candidates.pairs().edge_edge) {
+  EXPECT_GT(of_one_sheet(pairs_of(candidates).edge_edge), 1000);
+  EXPECT_GT(of_one_sheet(pairs_of(candidates).vertex_face), 300);
+  const ContactPairs pairs = pairs_of(candidates);
+  for (const Stencil& p : pairs.edge_edge) {
     const bool near_the_pleat = std::abs(s.cloth.x[at(p.v[0])].x() - 0.03) < 0.05;
     EXPECT_TRUE(near_the_pleat || p.v[0] < half || p.v[3] < half);
   }
@@ -148,8 +153,8 @@ TEST(Candidates, are_complete_before_and_after_vertices_get_other_room) {
   TwoSheets s(0);
   Candidates candidates(*s.model);
   EXPECT_EQ(s.collect(candidates), 1);
-  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
-  const ContactPairs before = candidates.pairs();
+  EXPECT_EQ(missing_in(pairs_of(candidates), touching(s)), 0);
+  const ContactPairs before = pairs_of(candidates);
   // Every third vertex wants to leave its ball, then every third but one, and some of these twice; none comes near
   // others of its sheet.
   const auto ask = [&](std::uint64_t round, auto&& asks) {
@@ -169,13 +174,13 @@ TEST(Candidates, are_complete_before_and_after_vertices_get_other_room) {
   };
   ask(0, [](std::size_t i) { return i % 3 == 0; });
   const ContactPairs needed = touching(s);
-  EXPECT_EQ(missing_in(candidates.pairs(), needed), 0);
+  EXPECT_EQ(missing_in(pairs_of(candidates), needed), 0);
   EXPECT_GT(missing_in(before, needed), 100) << "the list of before would have done";
 
-  const ContactPairs some = candidates.pairs();
+  const ContactPairs some = pairs_of(candidates);
   ask(1, [](std::size_t i) { return i % 3 == 1 || i % 9 == 0; });
-  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
-  expect_all_new_behind(some, candidates.pairs());
+  EXPECT_EQ(missing_in(pairs_of(candidates), touching(s)), 0);
+  expect_all_new_behind(some, pairs_of(candidates));
 }
 
 TEST(Candidates, are_complete_when_what_would_meet_is_carried_as_one) {
@@ -185,7 +190,7 @@ TEST(Candidates, are_complete_when_what_would_meet_is_carried_as_one) {
   double t = 0;
   for (int round = 0; t < 1 && round < 4; ++round) t = candidates.join_blocked(s.cloth, s.piece);
   EXPECT_EQ(t, 1);
-  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
+  EXPECT_EQ(missing_in(pairs_of(candidates), touching(s)), 0);
 }
 
 TEST(Candidates, are_complete_when_what_would_meet_is_kept_apart) {
@@ -198,7 +203,7 @@ TEST(Candidates, are_complete_when_what_would_meet_is_kept_apart) {
   int rounds = 0;
   for (; t < 1 && rounds < 8; ++rounds) t = candidates.part_blocked(s.cloth, s.piece);
   EXPECT_EQ(t, 1);
-  EXPECT_EQ(missing_in(candidates.pairs(), touching(s)), 0);
+  EXPECT_EQ(missing_in(pairs_of(candidates), touching(s)), 0);
   for (std::size_t i = 0; i < wanted.size(); ++i)
     EXPECT_NEAR(s.piece.carry[i].x(), wanted[i].x(), 1e-4) << "only what they approach by is taken";
 }
@@ -207,9 +212,9 @@ TEST(Candidates, that_were_let_pass_stay_out_when_vertices_get_other_room) {
   TwoSheets s(-2);
   Candidates candidates(*s.model);
   ASSERT_LT(s.collect(candidates), 1);
-  const ContactPairs all = sorted(candidates.pairs());
+  const ContactPairs all = sorted(pairs_of(candidates));
   EXPECT_EQ(candidates.release_blocked(s.cloth, s.piece), 0) << "there is no body to be let through";
-  const ContactPairs left = sorted(candidates.pairs());
+  const ContactPairs left = sorted(pairs_of(candidates));
   ASSERT_LT(left.vertex_face.size(), all.vertex_face.size());
   ASSERT_LT(left.edge_edge.size(), all.edge_edge.size());
   std::vector<RoomRequest> requests;
@@ -218,7 +223,7 @@ TEST(Candidates, that_were_let_pass_stay_out_when_vertices_get_other_room) {
     requests.push_back({static_cast<int>(i), carried, carried + Vec3(0, -1e-3, 0), 1e-3});
   }
   candidates.give_room(s.cloth, requests, s.piece);
-  const ContactPairs grown = sorted(candidates.pairs());
+  const ContactPairs grown = sorted(pairs_of(candidates));
   const auto back = [](const std::vector<Stencil>& before, const std::vector<Stencil>& without,
                        const std::vector<Stencil>& now) {
     return std::count_if(before.begin(), before.end(),

@@ -5,6 +5,7 @@
 
 #include "baker/core/parallel.h"
 #include "tests/collision/grid.h"
+#include "tests/support/numbered_pairs.h"
 
 namespace ft {
 namespace {
@@ -34,7 +35,8 @@ std::vector<Vec3> carried(const Vec3& motion, const Vec3& inertia_of_all, int th
   in.body_motion = body_motion;
   in.inertia = inertia;
   in.neighbours = &neighbours;
-  in.pairs = &pairs;
+  const test::NumberedPairs numbered(pairs);
+  in.pairs = &numbered.list;
   in.part_of_body_vertex = part;
   in.range = 6e-3 + motion.norm();
   std::vector<Vec3> carry(at(n));

@@ -4,6 +4,7 @@
 
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
+#include "tests/support/numbered_pairs.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {
@@ -165,11 +166,12 @@ TEST(ClothMaps, The_radius_of_a_contact_runs_linearly_over_a_triangle_and_is_exa
   model.garment.assign(3, 0);
   ContactPairs pairs;
   pairs.vertex_face.push_back({{3, 0, 1, 2}});  // a point of the body over a triangle of cloth
+  const test::NumberedPairs numbered(pairs);
   const auto radius_at = [&](double u, double v) {
     std::vector<Vec3> x = rest;
     x.push_back(Vec3(u, 1e-3, -v));
     ContactPotential contact(model);
-    contact.begin(pairs, x, 0.01);
+    contact.begin(numbered.list, x, 0.01);
     contact.update(x);
     EXPECT_EQ(contact.contacts().size(), 1u);
     return contact.contacts().empty() ? 0 : contact.contacts()[0].radius;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "baker/core/random.h"
+#include "tests/support/numbered_pairs.h"
 
 namespace ft {
 namespace {
@@ -56,8 +57,9 @@ struct Outcome {
 
 /// The last pairs come when all are at `moved`.
 Outcome walk(const Heap& heap, double come_late) {
-  ContactPairs pairs = heap.pairs, late;
-  const auto hold_back = [&](std::vector<Stencil>& list, std::vector<Stencil>& rest) {
+  const test::NumberedPairs numbered(heap.pairs);
+  PairList pairs = numbered.list, late;
+  const auto hold_back = [&](std::vector<PairKey>& list, std::vector<PairKey>& rest) {
     const auto from = list.end() - static_cast<std::ptrdiff_t>(come_late * static_cast<double>(list.size()));
     rest.assign(from, list.end());
     list.erase(from, list.end());
@@ -122,9 +124,10 @@ TEST(ContactPotential, Has_one_term_for_a_contact_and_the_friction_lagged_there_
   const Heap heap;
   std::vector<Vec3> next = heap.moved;
   for (std::size_t i = 0; i < k_cloth; ++i) next[i] += heap.displacement[i];
+  const test::NumberedPairs numbered(heap.pairs);
   ContactPotential rough(heap.model), smooth(heap.model);
   for (ContactPotential* contact : {&rough, &smooth}) {
-    contact->begin(heap.pairs, heap.start, 0.01);
+    contact->begin(numbered.list, heap.start, 0.01);
     contact->update(heap.moved);
   }
   rough.lag_friction();
