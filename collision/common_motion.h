@@ -27,10 +27,12 @@ struct MotionBounds {
   Vec3 centre_of(std::size_t i) const { return from[i] + centre[i].cast<double>(); }
 };
 
-/// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it.
+/// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it or, by
+/// rounding, on it: what does not move stays where it is.
 inline double share_inside_ball(const Vec3& from, const Vec3& d, double radius) {
-  if ((from + d).squaredNorm() <= radius * radius) return 1;
-  const double dd = d.squaredNorm(), fd = from.dot(d), outside = from.squaredNorm() - radius * radius;
+  const double dd = d.squaredNorm();
+  if (!(dd > 0) || (from + d).squaredNorm() <= radius * radius) return 1;
+  const double fd = from.dot(d), outside = from.squaredNorm() - radius * radius;
   return std::clamp((-fd + std::sqrt(std::max(0.0, fd * fd - dd * outside))) / dd, 0.0, 1.0);
 }
 

@@ -189,6 +189,20 @@ TEST(CommonMotion, Bounds_hold) {
   }
 }
 
+TEST(CommonMotion, The_share_that_stays_in_a_ball_ends_on_it_and_is_a_number_for_what_rounding_left_outside) {
+  const Vec3 from(0.6, 0, 0.8);  // outside of a ball of radius 1, by a bit
+  const double radius = std::nextafter(from.norm(), 0);
+  EXPECT_EQ(share_inside_ball(from, Vec3::Zero(), radius), 1);
+  EXPECT_EQ(share_inside_ball(from, 0.1 * from, radius), 0);
+  EXPECT_EQ(share_inside_ball(from, -0.1 * from, radius), 1);
+  EXPECT_NEAR(share_inside_ball({0.5, 0, 0}, {2, 0, 0}, 1), 0.25, 1e-15);
+  for (const double size : {1e-8, 1e-100, 1e-160, 1e-200, 1e-320})
+    for (const Vec3& d : {Vec3(size, 0, 0), Vec3(-size, size, 0), Vec3(0, size, 0)}) {
+      const double share = share_inside_ball(from, d, radius);
+      EXPECT_TRUE(share >= 0 && share <= 1) << d.transpose();
+    }
+}
+
 /// Clumps of vertices of a cloth that are joined by edges, however long; each of a few vertices.
 VertexClumps some_clumps(const Cloth& cloth, std::uint64_t seed) {
   RestEdges edges;
