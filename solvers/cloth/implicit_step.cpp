@@ -40,13 +40,15 @@ constexpr int k_most_halvings = 4;
 constexpr double k_tolerated_rise = 1e-3;
 constexpr double k_energy_noise = 1e-9;  ///< rounding of the potential [J]
 
-/// Root mean square, over all edges, of the change of length between two states by the length at rest.
-double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::span<const Vec3> to) {
+/// Root mean square, over all edges, of the change of length by the length at rest, when their ends move from where
+/// they are [m].
+double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::span<const Vec3> move) {
   const double squares = parallel_sum(rest.edges.size(), 1024, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t k = begin; k < end; ++k) {
       const auto [a, b] = rest.edges[k];
-      const double change = ((to[at(a)] - to[at(b)]).norm() - (from[at(a)] - from[at(b)]).norm()) / rest.lengths[k];
+      const Vec3 edge = from[at(a)] - from[at(b)];
+      const double change = ((edge + move[at(a)] - move[at(b)]).norm() - edge.norm()) / rest.lengths[k];
       sum += change * change;
     }
     return sum;
@@ -230,6 +232,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       result.seconds_linear += watch.lap();
     };
     find_direction(model_.unused);
+    // What truncation leaves of a direction is small because it was truncated, and settles nothing.
+    const bool may_settle = iteration + 1 >= in.newton_iterations &&
+                            strain_change(model_.rest_edges, all, s.direction) < in.settled_strain;
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
     const auto missing_of = [&](std::size_t i) {
       return std::max(0.0, (all[i] + s.direction[i] - in.balls.centre_of(i)).norm() - in.balls.radius[i]);
@@ -296,8 +301,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     }
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
-              (iteration + 1 >= in.newton_iterations && whole &&
-               strain_change(model_.rest_edges, all, s.trial) < in.settled_strain &&
+              (may_settle && whole && strain_change(model_.rest_edges, all, s.direction) < in.settled_strain &&
                largest_drift(model_, s.touches, cloth(all), cloth(s.trial)) <= settled_drift);
     if (finite) {
       std::copy_n(s.trial.begin(), n, all.begin());
