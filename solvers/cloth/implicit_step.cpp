@@ -233,8 +233,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     };
     find_direction(model_.unused);
     // What truncation leaves of a direction is small because it was truncated, and settles nothing.
-    const bool may_settle = iteration + 1 >= in.newton_iterations &&
-                            strain_change(model_.rest_edges, all, s.direction) < in.settled_strain;
+    const bool may_settle =
+        iteration + 1 >= in.newton_iterations && strain_change(model_.rest_edges, all, s.direction) < in.settled_strain;
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
     const auto missing_of = [&](std::size_t i) {
       return std::max(0.0, (all[i] + s.direction[i] - in.balls.centre_of(i)).norm() - in.balls.radius[i]);
