@@ -25,12 +25,10 @@ std::vector<std::string> names(Which&& which) {
 const auto k_survived = [](const Scene& s) { return s.fails_today.empty(); };
 const auto k_strained = [](const Scene& s) { return !s.strained_today.empty(); };
 
-constexpr double k_torn = 1.2;  ///< p99 strain [1]
-
 void expect_no_explosion(const Scene& scene, const CheckedFrame& f) {
   EXPECT_TRUE(f.report.finite) << f.report.frame;
-  // What is strained beyond its bar today is not torn all the same.
-  EXPECT_LT(f.report.strain_p99, scene.strained_today.empty() ? scene.strain_bar : k_torn) << f.report.frame;
+  const double times = scene.strained_today.empty() ? 1 : torture::k_times_strained;
+  EXPECT_LT(f.report.strain_p99, times * scene.strain_bar) << f.report.frame;
   EXPECT_LT(f.speed, scene.speed_bar) << f.report.frame;
 }
 

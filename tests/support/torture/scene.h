@@ -12,6 +12,9 @@
 
 namespace ft::torture {
 
+/// What misses its strain_bar today may strain by so many times as much: beyond that it is torn [1].
+constexpr double k_times_strained = 4;
+
 struct Scene {
   std::string name;
   std::string what;  ///< one sentence
@@ -23,7 +26,7 @@ struct Scene {
       10;  ///< root mean square speed that no frame may exceed [m/s]: twice what drives the scene, and 3 m/s
   bool has_room = true;  ///< false: for some frames there is none, cloth must be let through, named, and come back
   /// What is seen, where today something fails that is then listed and not run by default. Where only strain_bar is
-  /// missed, all else is tested.
+  /// missed, all else is tested, and that strain stays below k_times_strained times it.
   std::string fails_today = {}, strained_today = {};
 };
 
