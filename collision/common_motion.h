@@ -27,8 +27,8 @@ struct MotionBounds {
   Vec3 centre_of(std::size_t i) const { return from[i] + centre[i].cast<double>(); }
 };
 
-/// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it or, by
-/// rounding, on it: what does not move stays where it is.
+/// The largest share in [0, 1] of a displacement d that stays in the ball around the origin, from a place in it or,
+/// by rounding, just outside: what does not move stays where it is.
 inline double share_inside_ball(const Vec3& from, const Vec3& d, double radius) {
   const double dd = d.squaredNorm();
   if (!(dd > 0) || (from + d).squaredNorm() <= radius * radius) return 1;
@@ -61,7 +61,7 @@ class CommonMotion {
   void join(const Problem& problem, const MotionBounds& bounds);
   void stay_inside(const Problem& problem, const MotionBounds& bounds);
 
-  // While there are displacements to look at.
+  // Of a find(), and freed with it.
   std::vector<char> changed_;  ///< per vertex: in the last round
   std::vector<char> changing_;
   std::vector<TightPair> tight_;

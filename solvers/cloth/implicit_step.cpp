@@ -17,10 +17,10 @@ namespace {
 constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
-/// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration still strains the edges
-/// by more than StepInput::settled_strain, or had to be halved, or moves a garment that the body does not hold by more
-/// than k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it, and cloth that falls along
-/// cloth would hang in the air.
+/// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration strains the edges by
+/// more than StepInput::settled_strain, or would without truncation, or had to be halved, or moves a garment that the
+/// body does not hold by more than k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it,
+/// and cloth that falls along cloth would hang in the air.
 constexpr int k_most_times = 5;
 /// Of what gravity moves in the step, h2 g: the force on the garment as a whole is then right to a tenth of its weight.
 /// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
