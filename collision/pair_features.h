@@ -12,6 +12,7 @@
 
 #include "baker/core/mesh.h"
 #include "collision/pair_list.h"
+#include "collision/vertex_box.h"
 
 namespace ft {
 

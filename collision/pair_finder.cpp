@@ -5,13 +5,14 @@
 // Caution: the trees are arranged for the first places or boxes seen, since only then is there a place for every
 // vertex. They decide how long a search takes and nothing else: the result is complete for any tree and sorted, so it
 // depends on boxes alone.
+#include "collision/pair_finder.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "baker/core/check.h"
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
-#include "collision/contact_pairs.h"
 #include "collision/pair_sort.h"
 #include "collision/pair_tree.h"
 #include "collision/pair_walk.h"

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/types.h"
 #include "collision/contact_pairs.h"
 
 namespace ft {
@@ -56,8 +57,5 @@ struct PairList : PairKeys {
 
   Stencil stencil(PairKind kind, std::size_t i) const { return features.stencil(kind, of(kind)[i]); }
 };
-
-/// The same, as stencils.
-ContactPairs stencils_of(const PairList& list);
 
 }  // namespace ft

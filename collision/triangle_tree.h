@@ -1,7 +1,7 @@
 // A box tree over the triangles of one surface, for crossings, penetration depths and the feasible collider. Built once
 // by median splits, refitted to new positions by one backward loop (children have larger indices than parents). Boxes
 // are single precision rounded outwards, so nothing is lost; decisions are made on the double positions. The candidate
-// pairs of the solver are not found here but with FCL's trees (contact_pairs.h).
+// pairs of the solver are not found here but with FCL's trees (pair_finder.h).
 #pragma once
 
 #include <limits>

@@ -8,8 +8,8 @@
 
 #include "collision/flat_patches.h"
 #include "collision/motion_zones.h"
+#include "collision/pair_finder.h"
 #include "collision/pair_geometry.h"
-#include "collision/pair_list.h"
 #include "collision/pair_runs.h"
 #include "solvers/cloth/approach_limits.h"
 #include "solvers/cloth/body_advance.h"
@@ -51,7 +51,7 @@ class Candidates {
   /// After a collect() that gave less than 1: carries the cloth of all pairs that would have touched since then so that
   /// they keep apart, if that can be, brings pairs() up to it, no longer in order, and returns the share anew.
   double part_blocked(const ClothMotion& cloth, PieceMotion& piece);
-  /// Frees what part_blocked() knows, before a solve. There is no part_blocked() until the next carry().
+  /// After the last part_blocked() of a carry(), however that ended: frees what it knows.
   void end_parting() { limits_.clear(); }
   /// After collect(), part_blocked() or join_blocked() that gave less than 1: carries the cloth of the pairs that would
   /// touch as one, brings pairs() up to it, no longer in order, and returns the share anew.

@@ -59,9 +59,10 @@ void LockstepContact::forget_gap() {
   smallest_gap_ = std::numeric_limits<double>::infinity();
 }
 
-void LockstepContact::push_pairs(const std::vector<Stencil>& from, PairKind kind) {
+void LockstepContact::push_pairs(const PairList& from, PairKind kind) {
   const int points = model_.point_count(), split = first_feature_size(kind);
-  for (const Stencil& s : from) {
+  for (const PairKey key : from.of(kind)) {
+    const Stencil s = from.features.stencil(kind, key);
     Pair pair{kind, s.v, 0, 0, false};
     // One side may be the prop; the other, or both, are cords.
     int first = s.v[0], second = s.v[at(split)];
@@ -96,12 +97,11 @@ void LockstepContact::find(std::span<const Vec3> x, std::span<const Vec3> dx) {
   for (std::size_t i = 0; i < from_.size(); ++i)
     boxes_.push_back(frame.swept(from_[i], from_[i] + way_[i], 0.5 * widest_reach_));
   finder_.arrange(from_);
-  PairList list;
-  finder_.find(boxes_, self_, list);
-  const ContactPairs found = stencils_of(list);
+  PairList found;
+  finder_.find(boxes_, self_, found);
   pairs_.clear();
-  push_pairs(found.vertex_face, PairKind::k_vertex_face);
-  push_pairs(found.edge_edge, PairKind::k_edge_edge);
+  push_pairs(found, PairKind::k_vertex_face);
+  push_pairs(found, PairKind::k_edge_edge);
 }
 
 std::array<Vec3, 4> LockstepContact::corners(const Pair& pair, std::span<const Vec3> places) const {

@@ -9,8 +9,8 @@
 
 #include "baker/core/wrench.h"
 #include "collision/crossings.h"
+#include "collision/pair_finder.h"
 #include "collision/pair_geometry.h"
-#include "collision/pair_list.h"
 #include "solvers/lockstep/lockstep_model.h"
 
 namespace ft {
@@ -61,7 +61,7 @@ class LockstepContact {
     Mat3 across;   ///< takes the part along the normal away
     double limit;  ///< friction times normal force [N]
   };
-  void push_pairs(const std::vector<Stencil>& from, PairKind kind);
+  void push_pairs(const PairList& from, PairKind kind);
   std::array<Vec3, 4> corners(const Pair& pair, std::span<const Vec3> places) const;
   NodeTerm combination(const Pair& pair, const PairGeometry& geometry) const;
   Vec3 slip(const Slide& slide, std::span<const Vec3> x) const;

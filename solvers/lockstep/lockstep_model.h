@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "collision/contact_pairs.h"
+#include "baker/core/types.h"
 #include "solvers/lockstep/cord_elements.h"
 #include "solvers/lockstep/equimomental.h"
 #include "solvers/lockstep/lockstep_solver.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "collision/contact_pairs.h"
 #include "collision/pair_geometry.h"
 #include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"

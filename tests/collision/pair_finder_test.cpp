@@ -1,5 +1,7 @@
 // The pair finder against brute force over all features, on tame and untamed meshes: the same list, element for
 // element.
+#include "collision/pair_finder.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <sstream>
 
 #include "baker/core/parallel.h"
-#include "collision/contact_pairs.h"
 #include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"
 #include "tests/support/assets.h"

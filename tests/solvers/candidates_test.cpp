@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "baker/core/random.h"
+#include "tests/support/numbered_pairs.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {
@@ -61,7 +62,7 @@ std::vector<Vec3> somewhere_in_reach(const TwoSheets& s, std::uint64_t draw) {
 }
 
 ContactPairs pairs_of(const Candidates& candidates) {
-  return stencils_of(candidates.pairs());
+  return test::stencils_of(candidates.pairs());
 }
 
 std::vector<Stencil> sorted(std::vector<Stencil> pairs) {

@@ -2,10 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
-#include "collision/pair_list.h"
+#include "collision/pair_finder.h"
 
 namespace ft::test {
+
+inline ContactPairs stencils_of(const PairList& list) {
+  ContactPairs out;
+  for (const PairKey key : list.vertex_face)
+    out.vertex_face.push_back(list.features.stencil(PairKind::k_vertex_face, key));
+  for (const PairKey key : list.edge_edge) out.edge_edge.push_back(list.features.stencil(PairKind::k_edge_edge, key));
+  return out;
+}
 
 /// Features have the numbers that they have among those of all pairs. The list sees them: no copies.
 struct NumberedPairs {

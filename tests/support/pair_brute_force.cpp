@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "baker/core/mesh.h"
+
 namespace ft::test {
 namespace {
 

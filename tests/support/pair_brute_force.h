@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/contact_pairs.h"
+#include "collision/vertex_box.h"
 
 namespace ft::test {
 
