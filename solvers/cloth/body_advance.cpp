@@ -57,17 +57,19 @@ BodyAdvance::~BodyAdvance() = default;
 
 /// Carries the cloth and collects candidates; cloth that would touch is carried at a distance, and where that does not
 /// do, as one, which costs candidates and not time. Returns the share of the motion that is free then; where that is
-/// not all of it, the larger one that either has found, for a shorter piece is carried anew.
+/// not all of it, the largest that any way of carrying left free, for a shorter piece is carried anew.
 double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   Scratch& s = *scratch_;
   s.candidates.find_near(cloth, h, s.piece);
   s.candidates.carry(cloth, h, s.piece);
   double t = s.candidates.collect(cloth, h, s.piece);
-  for (int round = 0; t < 1 && round < k_parting_rounds; ++round) t = s.candidates.part_blocked(cloth, s.piece);
+  double most = t;
+  for (int round = 0; t < 1 && round < k_parting_rounds; ++round)
+    most = std::max(most, t = s.candidates.part_blocked(cloth, s.piece));
   s.candidates.end_parting();
-  const double parted = t;
-  for (int round = 0; t < 1 && round < k_joining_rounds; ++round) t = s.candidates.join_blocked(cloth, s.piece);
-  return std::max(t, parted);
+  for (int round = 0; t < 1 && round < k_joining_rounds; ++round)
+    most = std::max(most, t = s.candidates.join_blocked(cloth, s.piece));
+  return most;
 }
 
 /// Solves for the cloth at the end of a piece and moves its history on.

@@ -18,10 +18,13 @@ constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 /// Newton stops when nothing moves further than this share of the contact radius.
 constexpr double k_still = 1e-4;
 /// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration strains the edges by
-/// more than StepInput::settled_strain, or would without truncation, or had to be halved, or moves a garment that the
-/// body does not hold by more than k_settled_drift: cloth that is pulled tight or has edges of all lengths needs it,
-/// and cloth that falls along cloth would hang in the air.
+/// more than StepInput::settled_strain, or would without truncation and is not stuck, or had to be halved, or moves a
+/// garment that the body does not hold by more than k_settled_drift: cloth that is pulled tight or has edges of all
+/// lengths needs it, and cloth that falls along cloth would hang in the air.
 constexpr int k_most_times = 5;
+/// Stuck is what wins less than this share of the energy that its direction promised before truncation, to the first
+/// order, of which a step that is done whole wins half: cloth jammed against cloth, which no iteration frees [1].
+constexpr double k_stuck = 0.05;
 /// Of what gravity moves in the step, h2 g: the force on the garment as a whole is then right to a tenth of its weight.
 /// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
 /// keeps the momentum.
@@ -232,9 +235,9 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       result.seconds_linear += watch.lap();
     };
     find_direction(model_.unused);
-    // What truncation leaves of a direction is small because it was truncated, and settles nothing.
-    const bool may_settle =
-        iteration + 1 >= in.newton_iterations && strain_change(model_.rest_edges, all, s.direction) < in.settled_strain;
+    // What truncation leaves of a direction is small because it was truncated, and settles nothing while it gets on.
+    const bool wants_little = strain_change(model_.rest_edges, all, s.direction) < in.settled_strain;
+    const double wanted = descent(s.direction);
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
     const auto missing_of = [&](std::size_t i) {
       return std::max(0.0, (all[i] + s.direction[i] - in.balls.centre_of(i)).norm() - in.balls.radius[i]);
@@ -280,7 +283,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     s.direction.swap(s.cut);
     give_back(s.cut, s.gradient);
 
-    double factor = 1, of_trial = 0;
+    double factor = 1, of_trial = 0, after = 0;
     bool accepted = false, finite = true, whole = true;
     for (int halving = 0; halving <= k_most_halvings && !accepted; ++halving, factor *= 0.5) {
       result.last_move = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -294,14 +297,16 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       });
       contact.update(s.trial, s.direction, factor);  // from where it was, or back by half
       of_trial = potential_of_cloth(cloth(s.trial));
-      const double after = of_trial + contact.value(s.trial);
+      after = of_trial + contact.value(s.trial);
       finite = std::isfinite(after);
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
       if (!accepted) whole = false;
     }
+    const bool stuck = before - after < k_stuck * wanted;
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
-              (may_settle && whole && strain_change(model_.rest_edges, all, s.direction) < in.settled_strain &&
+              (iteration + 1 >= in.newton_iterations && (stuck || wants_little) && whole &&
+               strain_change(model_.rest_edges, all, s.direction) < in.settled_strain &&
                largest_drift(model_, s.touches, cloth(all), cloth(s.trial)) <= settled_drift);
     if (finite) {
       std::copy_n(s.trial.begin(), n, all.begin());

@@ -29,8 +29,8 @@ struct StepInput {
   double friction_share = 1;         ///< of all friction [1]
   const PairList* pairs = nullptr;   ///< complete within the slack, but for what pairs_suffice adds
   int newton_iterations = 3;         ///< at least, unless nothing moves; more where the cloth is still strained
-  /// Root mean square of what an iteration may still change the edges' lengths by at the end, before it is truncated
-  /// and after, over their rest lengths [1].
+  /// Root mean square of what an iteration may still change the edges' lengths by at the end, after it is truncated and
+  /// also before unless it is stuck, over their rest lengths [1].
   double settled_strain = 5e-3;
   /// Called when an iteration wants to take a vertex farther past its slack than enough_room: how far, per vertex,
   /// where the cloth is, and by what it wants to move [m]. It may give other balls that hold the places, and pairs
