@@ -102,4 +102,14 @@ void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> a
   give_back(share_, length_, near_.vertex_face, near_.edge_edge);
 }
 
+std::vector<PairObstacle> StepTruncation::obstacles(ContactPotential& contact, std::span<const Vec3> all,
+                                                    std::span<const Vec3> direction) {
+  length_.resize(direction.size());
+  for (std::size_t i = 0; i < direction.size(); ++i) length_[i] = direction[i].norm();
+  contact.near_pairs(length_, k_floor, near_);
+  std::vector<PairObstacle> out = find_obstacles(all, direction, model_.vertex_count(), near_, k_floor);
+  give_back(length_, near_.vertex_face, near_.edge_edge);
+  return out;
+}
+
 }  // namespace ft

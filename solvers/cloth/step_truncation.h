@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collision/common_motion.h"
+#include "collision/pair_obstacles.h"
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
@@ -25,6 +26,10 @@ class StepTruncation {
   void truncate(ContactPotential& contact, std::span<const Vec3> all, const MotionBounds& balls,
                 const PairsSuffice& pairs_suffice, std::span<Vec3> direction, std::span<Vec3> cut,
                 std::span<Vec3> trial);
+
+  /// What is in the way of a direction that truncate() has shortened.
+  std::vector<PairObstacle> obstacles(ContactPotential& contact, std::span<const Vec3> all,
+                                      std::span<const Vec3> direction);
 
  private:
   /// A vertex of a triangle that at rest lies very near the opposite edge, in no clump with its ends.

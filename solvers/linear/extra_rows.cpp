@@ -22,9 +22,39 @@ void ExtraRows::clear() {
   value.clear();
 }
 
-void ExtraRows::gather(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows) {
-  clear();
+void ExtraRows::add(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows) {
   if (blocks.empty()) return;
+  if (empty()) return gather(blocks, terms, rows);
+  ExtraRows more;
+  more.gather(blocks, terms, rows);
+  merge(more);
+}
+
+/// Row by row, both ascending.
+void ExtraRows::merge(const ExtraRows& more) {
+  ExtraRows sum;
+  sum.start.assign(start.size(), 0);
+  sum.used.assign(used.size(), 0);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    sum.start[i] = static_cast<int>(sum.column.size());
+    int a = start[i], b = more.start[i];
+    const int a_end = a + used[i], b_end = b + more.used[i];
+    while (a < a_end || b < b_end) {
+      const bool of_this = b == b_end || (a < a_end && column[at(a)] <= more.column[at(b)]);
+      const bool of_both = of_this && b < b_end && column[at(a)] == more.column[at(b)];
+      sum.column.push_back(of_this ? column[at(a)] : more.column[at(b)]);
+      sum.value.push_back(of_this ? value[at(a)] : more.value[at(b)]);
+      if (of_both) sum.value.back() += more.value[at(b)];
+      if (of_this) ++a;
+      if (of_both || !of_this) ++b;
+    }
+    sum.used[i] = static_cast<int>(sum.column.size()) - sum.start[i];
+  }
+  sum.start.back() = static_cast<int>(sum.column.size());
+  *this = std::move(sum);
+}
+
+void ExtraRows::gather(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows) {
   start.assign(rows + 1, 0);
   used.assign(rows, 0);
   for (const ExtraBlock& b : blocks) ++start[at(b.row) + 1], ++start[at(b.column) + 1];

@@ -27,10 +27,14 @@ struct ExtraRows {
 
   bool empty() const { return start.empty(); }
   void clear();
-  /// Blocks of one place are added up in the order in which they come.
-  void gather(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows);
+  /// Adds blocks to those there are, of the same number of rows. Blocks of one place are added up in the order in which
+  /// they come.
+  void add(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows);
 
  private:
+  void gather(std::span<const ExtraBlock> blocks, std::span<const PairTerm> terms, std::size_t rows);
+  void merge(const ExtraRows& more);
+
   std::vector<int> order_;
 };
 

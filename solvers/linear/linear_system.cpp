@@ -103,6 +103,7 @@ BlockMatrix& LinearSystem::begin() {
   Level& level = impl_->fine();
   level.matrix.reset(*level.pattern);
   level.extra.clear();
+  impl_->couplings.clear();
   return level.matrix;
 }
 
@@ -111,7 +112,6 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
   BlockMatrix& matrix = s.fine().matrix;
   const BlockPattern& pattern = *matrix.pattern;
   s.added.clear();
-  s.couplings.clear();
   for (std::size_t t = 0; t < terms.size(); ++t) {
     const PairTerm& term = terms[t];
     // What lies on the body is held by it: only what touches other cloth gains by clusters.
@@ -129,7 +129,13 @@ void LinearSystem::add_pair_terms(std::span<const PairTerm> terms) {
         }
       }
   }
-  s.fine().extra.gather(s.added, terms, at(s.fine().size()));
+  s.fine().extra.add(s.added, terms, at(s.fine().size()));
+}
+
+double LinearSystem::stiffness_along(int vertex, const Vec3& direction) const {
+  const BlockMatrix& matrix = impl_->fine().matrix;
+  const Vec3f along = direction.cast<float>();
+  return static_cast<double>(along.dot(matrix.blocks[at(matrix.pattern->diagonal[at(vertex)])] * along));
 }
 
 /// Rows and columns that are held become zero, so that nothing couples to them.

@@ -39,8 +39,11 @@ class LinearSystem {
   /// The matrix to fill: zeroed by begin(). Energies and the mass add to it.
   BlockMatrix& begin();
   /// Contact, friction and pins. Terms whose vertices share the pattern go into the matrix, the others are kept aside
-  /// as an extra sparse block matrix (sorted, so that the sum order is fixed). Call once, after the energies.
+  /// as an extra sparse block matrix (sorted, so that the sum order is fixed). After the energies; what comes in
+  /// further calls is added.
   void add_pair_terms(std::span<const PairTerm> terms);
+  /// Of a vertex alone, if all others stood still, along a unit vector [N/m].
+  double stiffness_along(int vertex, const Vec3& direction) const;
   /// Rows of fixed[i] != 0 are held at zero, and leave the matrix for good: what is solved before it is filled anew may
   /// hold more of them, but not less.
   /// solution: room is made for it when the solve's own vectors are gone.

@@ -136,7 +136,9 @@ TEST(ExtraRows, Have_both_halves_of_what_is_added_up_in_each_place) {
     expected.block<3, 3>(3 * column, 3 * row) += block;
   }
   ExtraRows rows;
-  rows.gather(blocks, terms, 12);
+  rows.add(std::span(blocks).first(20), terms, 12);
+  rows.add({}, terms, 12);
+  rows.add(std::span(blocks).subspan(20), terms, 12);
   Eigen::MatrixXd found = Eigen::MatrixXd::Zero(36, 36);
   for (int i = 0; i < 12; ++i) {
     int last = -1;
@@ -147,7 +149,7 @@ TEST(ExtraRows, Have_both_halves_of_what_is_added_up_in_each_place) {
     }
   }
   EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
-  rows.gather({}, terms, 12);
+  rows.clear();
   EXPECT_TRUE(rows.empty());
 }
 
@@ -245,6 +247,39 @@ TEST(LinearSystem, makes_less_of_what_is_left_however_loose_the_tolerance_is) {
   EXPECT_TRUE(report.converged);
   EXPECT_GT(report.iterations, 1);
   EXPECT_LE(report.residual, 0.5);
+}
+
+TEST(LinearSystem, takes_further_terms_between_two_solves) {
+  const Sheet sheet(12);
+  std::vector<char> fixed(sheet.x.size(), 0);
+  fixed[0] = fixed[40] = 1;
+  auto terms = contacts(sheet);
+  const auto more = contacts_anywhere(sheet, 3);
+  LinearSystem system(sheet.pattern, sheet.rest, {.tolerance = 1e-5, .max_iterations = 2000});
+  sheet.fill(system.begin());
+  std::vector<Vec3> x;
+  for (const auto& part : {terms, more}) {
+    system.add_pair_terms(part);
+    EXPECT_TRUE(system.solve(sheet.load(), fixed, x).converged);
+  }
+  terms.insert(terms.end(), more.begin(), more.end());
+  EXPECT_LT(relative_error(x, dense_solution(sheet, terms, fixed)), 1e-3);
+}
+
+TEST(LinearSystem, knows_how_stiff_a_vertex_is_alone) {
+  const Sheet sheet(5);
+  LinearSystem system(sheet.pattern, sheet.rest, {});
+  BlockMatrix& matrix = system.begin();
+  sheet.fill(matrix);
+  const Vec3 along = Vec3(1, 2, -1).normalized();
+  const Mat3 block = matrix.blocks[at(sheet.pattern.diagonal[7])].cast<double>();
+  EXPECT_NEAR(system.stiffness_along(7, along), along.dot(block * along), 1e-5 * block.norm());
+  PairTerm term;
+  term.vertex[0] = 7;
+  term.weight[0] = 1;
+  term.stiffness = 100 * Mat3f::Identity();
+  system.add_pair_terms(std::vector{term});
+  EXPECT_NEAR(system.stiffness_along(7, along), 100 + along.dot(block * along), 1e-5 * (100 + block.norm()));
 }
 
 TEST(LinearSystem, solves_sheets_with_contacts_a_thousand_times_stiffer_than_they_are) {

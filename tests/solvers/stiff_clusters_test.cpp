@@ -53,7 +53,7 @@ struct Built {
           matrix.blocks[at(place)] += (terms[t].weight[a] * terms[t].weight[b]) * terms[t].stiffness;
           if (row != column) couplings.push_back({row, column, place});
         }
-    extra.gather(added, terms, sheet.x.size());
+    extra.add(added, terms, sheet.x.size());
     clusters.build(matrix, extra, held, couplings);
   }
 };
