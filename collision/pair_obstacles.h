@@ -10,8 +10,8 @@
 
 namespace ft {
 
-/// The place sum weight[i] * x[i] is of the pair's closest points or, where these keep apart, of the vertex of either
-/// feature that comes nearest.
+/// sum weight[i] * x[i] is the offset between the pair's closest points or, where these keep apart, between the
+/// vertices of either feature that come nearest.
 struct PairObstacle {
   std::array<int, 4> vertex;
   std::array<double, 4> weight;  ///< positive of the first feature, negative of the second

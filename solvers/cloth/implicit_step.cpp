@@ -39,7 +39,7 @@ constexpr int k_most_stiffened = 3;  ///< rounds
 constexpr double k_held = 0.5;
 constexpr int k_most_held = 4;  ///< rounds
 /// Of the stiffness that would leave an obstacle half of what it may approach by if nothing around gave way with it,
-/// which it does: from 1e-4 to 0.1 the twisted sheet strains alike, with 1 more.
+/// which it does: from 1e-4 to 0.01 the twisted sheet strains alike, with 0.1 and 1 more.
 constexpr double k_obstacle_stiffness = 0.01;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
