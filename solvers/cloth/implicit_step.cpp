@@ -8,8 +8,8 @@
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "baker/core/stopwatch.h"
+#include "solvers/cloth/newton_direction.h"
 #include "solvers/cloth/pin_pull.h"
-#include "solvers/cloth/step_truncation.h"
 
 namespace ft {
 namespace {
@@ -29,18 +29,6 @@ constexpr double k_stuck = 0.05;
 /// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
 /// keeps the momentum.
 constexpr double k_settled_drift = 0.05;
-/// Truncation spoils the direction where few vertices are held back and the others go on as if they were not: Newton's
-/// method would stop there, uphill. While less than this share of the descent is left, what is in its way is made stiff
-/// and all is solved for anew, so that the cloth goes along it or takes it along.
-constexpr double k_least_descent = 0.1;
-constexpr int k_most_stiffened = 3;  ///< rounds
-/// Then what lost more than this share of its displacement is held where it is, and the others are solved for (an
-/// active set); half as much is enough in every round. Seldom needed: where a hand pulls at a dress.
-constexpr double k_held = 0.5;
-constexpr int k_most_held = 4;  ///< rounds
-/// Of the stiffness that would leave an obstacle half of what it may approach by if nothing around gave way with it,
-/// which it does: from 1e-4 to 0.01 the twisted sheet strains alike, with 0.1 and 1 more.
-constexpr double k_obstacle_stiffness = 0.01;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -86,56 +74,26 @@ double largest_drift(const ClothModel& model, std::span<const char> held, std::s
   return largest;
 }
 
-/// Of what is in the way of a direction of the first n vertices.
-std::vector<PairTerm> springs_against(std::span<const PairObstacle> obstacles, std::size_t n,
-                                      const LinearSystem& system) {
-  std::vector<PairTerm> springs;
-  for (const PairObstacle& o : obstacles) {
-    PairTerm spring;
-    double give = 0;  // m/N
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (at(o.vertex[k]) >= n || o.weight[k] == 0) continue;
-      const double own = system.stiffness_along(o.vertex[k], o.normal);
-      if (!(own > 0)) continue;
-      spring.vertex[k] = o.vertex[k];
-      spring.weight[k] = static_cast<float>(o.weight[k]);
-      give += o.weight[k] * o.weight[k] / own;
-    }
-    if (!(give > 0)) continue;
-    const double stiffness = k_obstacle_stiffness * (2 * o.approach / o.allowed - 1) / give;
-    spring.stiffness = (stiffness * o.normal * o.normal.transpose()).cast<float>();
-    springs.push_back(spring);
-  }
-  return springs;
-}
-
 }  // namespace
 
 struct ImplicitStep::Scratch {
-  Scratch(const ClothModel& model, const LinearSettings& settings)
-      : system(model.pattern, model.contact.rest, settings), truncation(model) {}
-  LinearSystem system;
-  StepTruncation truncation;
+  explicit Scratch(const ClothModel& model) : newton(model) {}
+  NewtonDirection newton;
   std::vector<PinPull> pins;
   std::vector<char> touches;  ///< per garment: whether the body has had a hold on it in this solve
   // Of a solve, and free while pairs are looked for.
   std::optional<ContactPotential> contact;
-  std::vector<Vec3> gradient, direction, cut, trial;
-  std::vector<char> held;  ///< per vertex: not solved for
-  std::span<Vec3> y;       ///< where no force would bring the cloth [m]; velocities come in its place
+  std::vector<Vec3> gradient, trial;
+  std::span<Vec3> y;  ///< where no force would bring the cloth [m]; velocities come in its place
 
   void forget_solve() {
     contact.reset();
-    system.give_back();
-    give_back(gradient, direction, cut, trial, held, y);
+    newton.forget_all();
+    give_back(gradient, trial, y);
   }
 };
 
-ImplicitStep::ImplicitStep(const ClothModel& model) : model_(model) {
-  LinearSettings settings;
-  settings.tolerance = model.setup.linear_tolerance;
-  scratch_ = std::make_unique<Scratch>(model, settings);
-}
+ImplicitStep::ImplicitStep(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
 ImplicitStep::~ImplicitStep() = default;
 
 StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::span<Vec3> v_out) {
@@ -202,27 +160,18 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   contact.update(all);
   result.seconds_contact += watch.lap();
 
-  /// What the potential loses along a displacement, to the first order; s.gradient is that of a descent [J].
-  const auto descent = [&](std::span<const Vec3> displacement) {
-    return parallel_sum(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t i = begin; i < end; ++i) sum += s.gradient[i].dot(displacement[i]);
-      return sum;
-    });
-  };
   const double gravity = model_.setup.gravity.norm();
   const double settled_drift =
       gravity > 0 ? k_settled_drift * in.h * in.h * gravity : std::numeric_limits<double>::infinity();
   double of_cloth = potential_of_cloth(cloth(all));
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
-  /// What the first solve may leave, later ones may too: they have less to solve for, and what takes long [sqrt(J)].
-  double enough = 0;
+  s.newton.begin();
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     contact.lag_friction();
     contact.mark_touching(s.touches);
     const std::span<const Vec3> x = all.first(n);
-    BlockMatrix& hessian = s.system.begin();
+    BlockMatrix& hessian = s.newton.system().begin();
     s.gradient.resize(n);
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -246,29 +195,30 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     }
     contact.add_gradient(all, s.gradient);
     contact.add_terms(all, terms);
-    s.system.add_pair_terms(terms);
+    s.newton.system().add_pair_terms(terms);
     for (Vec3& g : s.gradient) g = -g;
     const double before = of_cloth + contact.value(all);
     give_back(terms);
     contact.forget_contacts();
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
-    const auto find_direction = [&](std::span<const char> held) {
-      const LinearReport solved = s.system.solve(s.gradient, held, s.direction, enough);
-      if (result.linear_iterations == 0) enough = model_.setup.linear_tolerance * solved.start_norm;
-      result.linear_iterations += solved.iterations;
-      for (Vec3& d : s.direction)
-        if (!d.allFinite()) d.setZero(), result.finite = false;
-      s.truncation.calm(all, s.direction);
-      result.seconds_linear += watch.lap();
-    };
-    find_direction(model_.unused);
+    StepTruncation::PairsSuffice pairs_suffice;
+    if (in.pairs_suffice)
+      pairs_suffice = [&](std::span<const Vec3> to) {
+        result.seconds_contact += watch.lap();
+        const bool complete = in.pairs_suffice(to);
+        watch.lap();
+        if (!complete) contact.extend(all);
+        return complete;
+      };
+    const NewtonDirection::Iteration newton{contact, all, s.gradient, in.balls, pairs_suffice, watch, result};
+    std::span<const Vec3> direction = s.newton.solve(newton);
     // What truncation leaves of a direction is small because it was truncated, and settles nothing while it gets on.
-    const bool wants_little = strain_change(model_.rest_edges, all, s.direction) < in.settled_strain;
-    const double wanted = descent(s.direction);
+    const bool wants_little = strain_change(model_.rest_edges, all, direction) < in.settled_strain;
+    const double wanted = descent(s.gradient, direction);
     // Stay in the balls inside which the list of pairs is complete: larger ones, if they can be had.
     const auto missing_of = [&](std::size_t i) {
-      return std::max(0.0, (all[i] + s.direction[i] - in.balls.centre_of(i)).norm() - in.balls.radius[i]);
+      return std::max(0.0, (all[i] + direction[i] - in.balls.centre_of(i)).norm() - in.balls.radius[i]);
     };
     const double most_missing = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
       double most = 0;
@@ -279,46 +229,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       std::vector<double> missing(n);
       for (std::size_t i = 0; i < n; ++i) missing[i] = missing_of(i);
       result.seconds_contact += watch.lap();
-      in.more_room(missing, x, s.direction);
+      in.more_room(missing, x, direction);
       watch.lap();
       contact.extend(all);
     }
-    const StepTruncation::PairsSuffice pairs_suffice = [&](std::span<const Vec3> to) {
-      result.seconds_contact += watch.lap();
-      const bool complete = in.pairs_suffice(to);
-      watch.lap();
-      if (!complete) contact.extend(all);
-      return complete;
-    };
     s.trial.assign(all.begin(), all.end());
-    s.cut.resize(n);
-    const auto truncate = [&] {
-      s.truncation.truncate(contact, all, in.balls, in.pairs_suffice ? pairs_suffice : StepTruncation::PairsSuffice(),
-                            s.direction, s.cut, s.trial);
-    };
-    truncate();
-    const auto is_spoiled = [&] { return descent(s.cut) < k_least_descent * descent(s.direction); };
-    for (int round = 0; round < k_most_stiffened && is_spoiled(); ++round) {
-      const std::vector<PairObstacle> obstacles = s.truncation.obstacles(contact, all, s.direction);
-      if (obstacles.empty()) break;
-      s.system.add_pair_terms(springs_against(obstacles, n, s.system));
-      result.seconds_contact += watch.lap();
-      find_direction(model_.unused);
-      truncate();
-    }
-    s.held.assign(model_.unused.begin(), model_.unused.end());
-    double lost = k_held;
-    for (int round = 0; round < k_most_held && is_spoiled(); ++round) {
-      for (std::size_t i = 0; i < n; ++i)
-        s.held[i] = s.held[i] != 0 || (s.cut[i] - s.direction[i]).norm() > lost * s.direction[i].norm();
-      model_.clumps.take_most(s.held);
-      lost *= 0.5;
-      result.seconds_contact += watch.lap();
-      find_direction(s.held);
-      truncate();
-    }
-    s.direction.swap(s.cut);
-    give_back(s.cut, s.gradient);
+    direction = s.newton.truncate(newton, s.trial);
+    give_back(s.gradient);
 
     double factor = 1, of_trial = 0, after = 0;
     bool accepted = false, finite = true, whole = true;
@@ -326,13 +243,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       result.last_move = parallel_max(n, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
         double most = 0;
         for (std::size_t i = begin; i < end; ++i) {
-          const Vec3 d = factor * s.direction[i];
+          const Vec3 d = factor * direction[i];
           s.trial[i] = all[i] + d;
           most = std::max(most, d.norm());
         }
         return most;
       });
-      contact.update(s.trial, s.direction, factor);  // from where it was, or back by half
+      contact.update(s.trial, direction, factor);  // from where it was, or back by half
       of_trial = potential_of_cloth(cloth(s.trial));
       after = of_trial + contact.value(s.trial);
       finite = std::isfinite(after);
@@ -343,16 +260,17 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
               (iteration + 1 >= in.newton_iterations && (stuck || wants_little) && whole &&
-               strain_change(model_.rest_edges, all, s.direction) < in.settled_strain &&
+               strain_change(model_.rest_edges, all, direction) < in.settled_strain &&
                largest_drift(model_, s.touches, cloth(all), cloth(s.trial)) <= settled_drift);
     if (finite) {
       std::copy_n(s.trial.begin(), n, all.begin());
       of_cloth = of_trial;
     } else {
-      contact.update(all, s.direction, 2 * factor);
+      contact.update(all, direction, 2 * factor);
       result.last_move = 0;
     }
-    give_back(s.direction, s.trial);  // not while the next one is looked for
+    s.newton.forget();  // not while the next one is looked for
+    give_back(s.trial);
     result.seconds_contact += watch.lap();
   }
   result.smallest_gap = contact.smallest_gap();
