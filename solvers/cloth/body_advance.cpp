@@ -64,11 +64,15 @@ double BodyAdvance::plan(const ClothMotion& cloth, double h) {
   s.candidates.carry(cloth, h, s.piece);
   double t = s.candidates.collect(cloth, h, s.piece);
   double most = t;
-  for (int round = 0; t < 1 && round < k_parting_rounds; ++round)
-    most = std::max(most, t = s.candidates.part_blocked(cloth, s.piece));
+  for (int round = 0; t < 1 && round < k_parting_rounds; ++round) {
+    t = s.candidates.part_blocked(cloth, s.piece);
+    most = std::max(most, t);
+  }
   s.candidates.end_parting();
-  for (int round = 0; t < 1 && round < k_joining_rounds; ++round)
-    most = std::max(most, t = s.candidates.join_blocked(cloth, s.piece));
+  for (int round = 0; t < 1 && round < k_joining_rounds; ++round) {
+    t = s.candidates.join_blocked(cloth, s.piece);
+    most = std::max(most, t);
+  }
   return most;
 }
 

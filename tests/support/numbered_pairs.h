@@ -8,6 +8,7 @@
 
 namespace ft::test {
 
+/// The same pairs in the same order, each by its vertices.
 inline ContactPairs stencils_of(const PairList& list) {
   ContactPairs out;
   for (const PairKey key : list.vertex_face)
