@@ -45,21 +45,21 @@ struct CommonMotion::Problem {
   bool movable(int v) const { return static_cast<std::size_t>(v) < movable_end; }
 };
 
-void CommonMotion::look_at_all(const Problem& problem, const ContactPairs& pairs) {
+void CommonMotion::look_at_all(const Problem& problem, const PairView& pairs) {
   tight_.clear();
-  look(problem, PairKind::k_vertex_face, pairs.vertex_face);
-  look(problem, PairKind::k_edge_edge, pairs.edge_edge);
+  look(problem, PairKind::k_vertex_face, pairs);
+  look(problem, PairKind::k_edge_edge, pairs);
 }
 
 /// Finds the pairs that would come too near, of those with a vertex that has changed.
-void CommonMotion::look(const Problem& problem, PairKind kind, std::span<const Stencil> stencils) {
-  const std::size_t blocks = block_count(stencils.size(), k_block);
+void CommonMotion::look(const Problem& problem, PairKind kind, const PairView& pairs) {
+  const std::size_t count = pairs.count(kind), blocks = block_count(count, k_block);
   if (found_.size() < blocks) found_.resize(blocks);
-  parallel_for(stencils.size(), k_block, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, k_block, [&](std::size_t begin, std::size_t end) {
     std::vector<TightPair>& mine = found_[begin / k_block];
     mine.clear();
     for (std::size_t k = begin; k < end; ++k) {
-      const Stencil& s = stencils[k];
+      const Stencil s = pairs.stencil(kind, k);
       if (std::none_of(s.v.begin(), s.v.end(),
                        [&](int v) { return problem.movable(v) && changed_[static_cast<std::size_t>(v)]; }))
         continue;
@@ -169,7 +169,7 @@ void CommonMotion::join(const Problem& problem, const MotionBounds& bounds) {
   }
 }
 
-void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const ContactPairs& pairs,
+void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const PairView& pairs,
                         double floor, const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common) {
   const Problem problem{x, dx, at(movable_count), floor, clumps, common};
   CHECK(common.size() >= problem.movable_end && dx.size() >= problem.movable_end && x.size() >= problem.movable_end);
@@ -177,7 +177,7 @@ void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int m
   give_back(changed_, changing_, tight_, found_);  // in folds there are many
 }
 
-void CommonMotion::relax_all(const Problem& problem, const ContactPairs& pairs, const MotionBounds& bounds) {
+void CommonMotion::relax_all(const Problem& problem, const PairView& pairs, const MotionBounds& bounds) {
   std::copy_n(problem.dx.begin(), problem.movable_end, problem.common.begin());
   changed_.assign(problem.movable_end, 1);
   for (rounds_ = 1; rounds_ <= k_most_rounds; ++rounds_) {

@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "collision/contact_pairs.h"
 #include "collision/motion_zones.h"
 #include "collision/pair_room.h"
+#include "collision/pair_view.h"
 #include "collision/vertex_clumps.h"
 
 namespace ft {
@@ -43,8 +43,8 @@ class CommonMotion {
   /// Where pairs are left after the last round nothing is in common. What a vertex of a clump loses the whole clump
   /// loses, but for what its vertices approach each other by. Depends on the order of the pairs, not on the number of
   /// threads.
-  void find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const ContactPairs& pairs,
-            double floor, const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common);
+  void find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const PairView& pairs, double floor,
+            const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common);
   int rounds() const { return rounds_; }  ///< of the last find()
 
  private:
@@ -54,9 +54,9 @@ class CommonMotion {
     PairRoom room;
   };
   struct Problem;
-  void relax_all(const Problem& problem, const ContactPairs& pairs, const MotionBounds& bounds);
-  void look_at_all(const Problem& problem, const ContactPairs& pairs);
-  void look(const Problem& problem, PairKind kind, std::span<const Stencil> stencils);
+  void relax_all(const Problem& problem, const PairView& pairs, const MotionBounds& bounds);
+  void look_at_all(const Problem& problem, const PairView& pairs);
+  void look(const Problem& problem, PairKind kind, const PairView& pairs);
   void relax(const Problem& problem, const TightPair& pair);
   void join(const Problem& problem, const MotionBounds& bounds);
   void stay_inside(const Problem& problem, const MotionBounds& bounds);

@@ -47,23 +47,23 @@ std::optional<PairObstacle> obstacle_of(PairKind kind, const Stencil& stencil, c
 }  // namespace
 
 std::vector<PairObstacle> find_obstacles(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count,
-                                         const ContactPairs& pairs, double floor) {
+                                         const PairView& pairs, double floor) {
   const std::size_t movable_end = at(movable_count);
   CHECK(x.size() >= movable_end && dx.size() >= movable_end);
   std::vector<PairObstacle> out;
-  const auto look = [&](PairKind kind, std::span<const Stencil> stencils) {
-    std::vector<std::vector<PairObstacle>> found(block_count(stencils.size(), k_block));
-    parallel_for(stencils.size(), k_block, [&](std::size_t begin, std::size_t end) {
+  const auto look = [&](PairKind kind) {
+    std::vector<std::vector<PairObstacle>> found(block_count(pairs.count(kind), k_block));
+    parallel_for(pairs.count(kind), k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        const PairMove move = pair_move(stencils[k], x, dx, dx, movable_end);
-        if (const auto obstacle = obstacle_of(kind, stencils[k], move, floor))
-          found[begin / k_block].push_back(*obstacle);
+        const Stencil stencil = pairs.stencil(kind, k);
+        const PairMove move = pair_move(stencil, x, dx, dx, movable_end);
+        if (const auto obstacle = obstacle_of(kind, stencil, move, floor)) found[begin / k_block].push_back(*obstacle);
       }
     });
     for (const auto& of_block : found) out.insert(out.end(), of_block.begin(), of_block.end());
   };
-  look(PairKind::k_vertex_face, pairs.vertex_face);
-  look(PairKind::k_edge_edge, pairs.edge_edge);
+  look(PairKind::k_vertex_face);
+  look(PairKind::k_edge_edge);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "collision/contact_pairs.h"
+#include "collision/pair_view.h"
 
 namespace ft {
 
@@ -23,6 +23,6 @@ struct PairObstacle {
 /// Those of displacements dx [m], in the order of the pairs. Vertices at or past movable_count do not move; x holds
 /// them too, dx need only hold the movable ones. floor: what pairs keep from each other [m].
 std::vector<PairObstacle> find_obstacles(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count,
-                                         const ContactPairs& pairs, double floor);
+                                         const PairView& pairs, double floor);
 
 }  // namespace ft

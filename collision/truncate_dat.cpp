@@ -93,16 +93,16 @@ std::array<double, 4> truncate_pair(PairKind kind, const PairMove& move, double 
 }
 
 void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, std::span<const Vec3> common,
-                            int movable_count, const ContactPairs& pairs, double floor, std::span<double> share) {
+                            int movable_count, const PairView& pairs, double floor, std::span<double> share) {
   const auto movable_end = static_cast<std::size_t>(movable_count);
   CHECK(x.size() >= movable_end && dx.size() >= movable_end && share.size() >= movable_end);
   CHECK(common.size() >= movable_end);
   std::fill(share.begin(), share.end(), 1.0);
 
-  const auto run = [&](PairKind kind, std::span<const Stencil> stencils) {
-    parallel_for(stencils.size(), k_block, [&](std::size_t begin, std::size_t end) {
+  const auto run = [&](PairKind kind) {
+    parallel_for(pairs.count(kind), k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        const Stencil& stencil = stencils[k];
+        const Stencil stencil = pairs.stencil(kind, k);
         const PairMove move = pair_move(stencil, x, dx, common, movable_end);
         if (!may_be_cut(kind, move, floor)) continue;
         const std::array<double, 4> own = truncate_pair(kind, move, floor);
@@ -112,8 +112,8 @@ void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, s
       }
     });
   };
-  run(PairKind::k_vertex_face, pairs.vertex_face);
-  run(PairKind::k_edge_edge, pairs.edge_edge);
+  run(PairKind::k_vertex_face);
+  run(PairKind::k_edge_edge);
 }
 
 }  // namespace ft

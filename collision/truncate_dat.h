@@ -13,8 +13,8 @@
 
 #include <span>
 
-#include "collision/contact_pairs.h"
 #include "collision/pair_room.h"
+#include "collision/pair_view.h"
 
 namespace ft {
 
@@ -23,7 +23,7 @@ namespace ft {
 /// which is zero or CommonMotion's. Vertices at or past movable_count do not move; x holds them too, the others need
 /// only hold the movable ones. Pairs that touch allow no motion. The order of pairs does not matter.
 void truncate_displacements(std::span<const Vec3> x, std::span<const Vec3> dx, std::span<const Vec3> common,
-                            int movable_count, const ContactPairs& pairs, double floor, std::span<double> share);
+                            int movable_count, const PairView& pairs, double floor, std::span<double> share);
 
 /// The shares of one pair alone; a vertex that is not movable gets 1.
 std::array<double, 4> truncate_pair(PairKind kind, const PairMove& move, double floor);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "baker/core/check.h"
 #include "baker/core/give_back.h"
@@ -13,12 +14,20 @@ namespace {
 constexpr std::size_t k_block = 512;
 constexpr float k_rounding = 1.0001f;  ///< of float sums of ways
 constexpr float k_no_way = 1e30f;
-constexpr float k_never = -1;  ///< that a pair's distance was evaluated
+/// What is known of distances is counted in these, rounded down; what is more than two bytes hold is that much [m].
+constexpr float k_known_step = 1e-6f;
+constexpr std::uint16_t k_nothing_known = 0;
 /// Truncation cannot cut a pair that is farther apart than this many times its longest displacement.
 constexpr double k_truncation_reach = 2.3;
 /// Share of the radius below which the contact law rises faster: cloth that is drawn taut over an edge of the body, at
 /// 100 kPa, must keep a gap in which it can follow the body [1].
 constexpr double k_taut = 0.125;
+
+std::uint16_t known_steps(float distance) {
+  constexpr float k_most = std::numeric_limits<std::uint16_t>::max();
+  const float steps = distance / k_known_step;
+  return steps > 0 ? static_cast<std::uint16_t>(std::min(steps, k_most)) : k_nothing_known;  // nor of what is no number
+}
 
 PairGeometry geometry_of(bool vertex_face, const std::array<int, 4>& v, std::span<const Vec3> x) {
   return vertex_face ? vertex_face_geometry(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])])
@@ -60,8 +69,8 @@ void ContactPotential::begin(const PairList& pairs, std::span<const Vec3> x_star
   x_start_ = x_start;
   h_ = h;
   way_.assign(at(model_.cloth_vertex_count), 0.f);
-  known_vf_.assign(pairs.vertex_face.size(), k_never);
-  known_ee_.assign(pairs.edge_edge.size(), k_never);
+  known_vf_.assign(pairs.vertex_face.size(), k_nothing_known);
+  known_ee_.assign(pairs.edge_edge.size(), k_nothing_known);
   contacts_.clear();
   lagged_.clear();
 }
@@ -114,8 +123,10 @@ float ContactPotential::way_of(const std::array<int, 4>& v, bool vertex_face, bo
 }
 
 /// Whether a pair can be no farther apart than `reach` [m] now. known: of known_vf_ or known_ee_.
-bool ContactPotential::may_be_within(const std::array<int, 4>& v, bool vertex_face, float known, float reach) const {
-  return known == k_never || !(known - k_rounding * way_of(v, vertex_face, true) > reach);
+bool ContactPotential::may_be_within(const std::array<int, 4>& v, bool vertex_face, std::uint16_t known,
+                                     float reach) const {
+  return known == k_nothing_known ||
+         !(static_cast<float>(known) * k_known_step - k_rounding * way_of(v, vertex_face, true) > reach);
 }
 
 /// The pairs from the first on.
@@ -137,7 +148,7 @@ void ContactPotential::update_kind(bool vertex_face, std::span<const Vec3> x, st
       if (self) largest = ContactModel::self_radius(largest);
       if (!may_be_within(v, vertex_face, known[p], static_cast<float>(largest) + 1e-6f)) continue;
       const PairGeometry g = geometry_of(vertex_face, v, x);
-      known[p] = static_cast<float>(g.distance) + k_rounding * way_of(v, vertex_face, false);
+      known[p] = known_steps(static_cast<float>(g.distance) + k_rounding * way_of(v, vertex_face, false));
       if (g.distance >= largest || g.distance <= 0) continue;
       if (!vertex_face && !g.interior) continue;
       Contact c;
@@ -175,9 +186,9 @@ void ContactPotential::forget_contacts() {
 void ContactPotential::extend(std::span<const Vec3> x) {
   const std::size_t first_vf = known_vf_.size(), first_ee = known_ee_.size(), first_contact = contacts_.size();
   CHECK(first_vf <= pairs_->vertex_face.size() && first_ee <= pairs_->edge_edge.size());
-  const auto add = [](std::vector<float>& known, std::size_t count) {
+  const auto add = [](std::vector<std::uint16_t>& known, std::size_t count) {
     reserve_sparingly(known, count);
-    known.resize(count, k_never);
+    known.resize(count, k_nothing_known);
   };
   add(known_vf_, pairs_->vertex_face.size());
   add(known_ee_, pairs_->edge_edge.size());
@@ -299,15 +310,17 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
   for (; lagged != lagged_.end(); ++lagged) add(lagged->vertex, lagged->weight, of_friction(*lagged));
 }
 
-void ContactPotential::near_pairs(std::span<const double> lengths, double floor, ContactPairs& out) {
+void ContactPotential::near_pairs(std::span<const double> lengths, double floor, PairPlaces& out) {
   const int n = model_.cloth_vertex_count;
   reach_.resize(at(n));
   parallel_for(reach_.size(), k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       reach_[i] = static_cast<float>(k_truncation_reach * lengths[i] + floor) + 1e-6f;
   });
+  out.list = pairs_;
   std::vector<char> near;  // per pair
-  const auto take = [&](PairKind kind, const std::vector<float>& known, std::vector<Stencil>& to) {
+  const auto take = [&](PairKind kind, const std::vector<std::uint16_t>& known, std::vector<std::uint32_t>& to) {
+    CHECK(known.size() <= std::numeric_limits<std::uint32_t>::max());
     near.assign(known.size(), 0);
     std::vector<std::size_t> place(block_count(known.size(), k_block) + 1, 0);
     parallel_for(known.size(), k_block, [&](std::size_t begin, std::size_t end) {
@@ -328,7 +341,7 @@ void ContactPotential::near_pairs(std::span<const double> lengths, double floor,
     parallel_for(known.size(), k_block, [&](std::size_t begin, std::size_t end) {
       std::size_t next = place[begin / k_block];
       for (std::size_t p = begin; p < end; ++p)
-        if (near[p] != 0) to[next++] = pairs_->stencil(kind, p);
+        if (near[p] != 0) to[next++] = static_cast<std::uint32_t>(p);
     });
   };
   take(PairKind::k_vertex_face, known_vf_, out.vertex_face);

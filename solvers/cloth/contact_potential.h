@@ -9,11 +9,12 @@
 // interior.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "collision/pair_geometry.h"
-#include "collision/pair_list.h"
+#include "collision/pair_view.h"
 #include "solvers/linear/block_matrix.h"
 
 namespace ft {
@@ -75,7 +76,7 @@ class ContactPotential {
 
   /// Pairs that displacements of the cloth's vertices by no more than these lengths [m] can bring nearer than floor
   /// [m], for truncation.
-  void near_pairs(std::span<const double> lengths, double floor, ContactPairs& out);
+  void near_pairs(std::span<const double> lengths, double floor, PairPlaces& out);
   std::span<const Contact> contacts() const { return contacts_; }
   double smallest_gap() const;  ///< m, over the contacts of the last update; infinite without any
 
@@ -95,16 +96,16 @@ class ContactPotential {
   void update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first);
   void lag_friction_from(std::size_t first);
   float way_of(const std::array<int, 4>& v, bool vertex_face, bool farthest) const;
-  bool may_be_within(const std::array<int, 4>& v, bool vertex_face, float known, float reach) const;
+  bool may_be_within(const std::array<int, 4>& v, bool vertex_face, std::uint16_t known, float reach) const;
 
   const ContactModel& model_;
   const PairList* pairs_ = nullptr;  ///< those in front are in known_vf_, known_ee_
   std::span<const Vec3> x_start_;
   double h_ = 0, friction_share_ = 1;
   std::vector<float> way_;  ///< how far each cloth vertex has gone in this solve [m]
-  /// Per pair: its distance when that was last evaluated and what its vertices had gone then, at least, together [m];
-  /// -1: never. Less what they have gone by now it is no more than their distance.
-  std::vector<float> known_vf_, known_ee_;
+  /// Per pair: its distance when that was last evaluated and what its vertices had gone then, at least, together [1e-6
+  /// m], rounded down; 0: nothing is known. Less what they have gone by now it is no more than their distance.
+  std::vector<std::uint16_t> known_vf_, known_ee_;
   std::vector<Contact> contacts_;
   std::vector<Lagged> lagged_;
   std::vector<std::vector<Contact>> block_contacts_;

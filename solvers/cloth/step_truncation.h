@@ -43,7 +43,7 @@ class StepTruncation {
   std::vector<Cap> caps_;
   CommonMotion common_motion_;
   std::vector<double> share_, length_;
-  ContactPairs near_;
+  PairPlaces near_;
 };
 
 }  // namespace ft

@@ -77,13 +77,14 @@ Outcome walk(const Heap& heap, double come_late) {
   contact.extend(heap.moved);
   EXPECT_GT(contact.contacts().size(), 10u);
 
-  ContactPairs near;
+  PairPlaces near;
   std::vector<double> lengths;
   for (const Vec3& d : heap.displacement) lengths.push_back(d.norm());
   contact.near_pairs(lengths, 1e-5, near);
   Outcome out;
-  out.near = near.vertex_face;
-  out.near.insert(out.near.end(), near.edge_edge.begin(), near.edge_edge.end());
+  const PairView view(near);
+  for (const PairKind kind : {PairKind::k_vertex_face, PairKind::k_edge_edge})
+    for (std::size_t i = 0; i < view.count(kind); ++i) out.near.push_back(view.stencil(kind, i));
   std::sort(out.near.begin(), out.near.end());
   std::vector<Vec3> next = heap.moved;
   for (std::size_t i = 0; i < k_cloth; ++i) next[i] += heap.displacement[i];
