@@ -61,6 +61,9 @@ struct ClothSetup {
   double travel = 5.5;  ///< most that the body goes against the cloth in a substep, in contact radii; 16 is coarse
   int newton_iterations = 3;
   double linear_tolerance = 1e-2;  ///< of the first linear solve of a step; later ones may leave as much
+  /// A linear system of so many blocks and more, 4 MB, is freed when it is solved: what truncation needs is as large,
+  /// and it is seldom asked for again. To have a smaller one freed and filled all the time costs more than it saves.
+  std::size_t large_system = 100'000;
   /// What moves has edges this many times as long as the garments', 1..4; their vertices ride on it. For previews.
   double coarsen = 1;
   /// Edges that are absurdly short (coarse_garment.h) move like all others, and often blow up. For tests.

@@ -163,6 +163,34 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   const double gravity = model_.setup.gravity.norm();
   const double settled_drift =
       gravity > 0 ? k_settled_drift * in.h * in.h * gravity : std::numeric_limits<double>::infinity();
+  const auto add_mass = [&](BlockMatrix& hessian) {
+    parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        hessian.blocks[at(model_.pattern.diagonal[i])].diagonal().array() +=
+            static_cast<float>(model_.mass[i] * inertia);
+    });
+  };
+  const auto add_pins_and_contact = [&] {
+    std::vector<PairTerm> terms;
+    for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+      if (!s.pins[p].holds()) continue;
+      PairTerm term;
+      term.vertex[0] = model_.pins[p].vertex;
+      term.weight[0] = 1;
+      term.stiffness = Mat3f::Identity() * static_cast<float>(s.pins[p].stiffness(all[at(model_.pins[p].vertex)]));
+      terms.push_back(term);
+    }
+    contact.add_terms(all, terms);
+    s.newton.system().add_pair_terms(terms);
+  };
+  const std::function<void()> fill_system = [&] {
+    BlockMatrix& hessian = s.newton.system().begin();
+    add_mass(hessian);
+    for (const auto& energy : model_.energies) energy->add_hessian(all.first(n), hessian);
+    contact.update(all);
+    add_pins_and_contact();
+    contact.forget_contacts();
+  };
   double of_cloth = potential_of_cloth(cloth(all));
   const int most_iterations = k_most_times * in.newton_iterations;
   bool settled = false;
@@ -173,32 +201,16 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     const std::span<const Vec3> x = all.first(n);
     BlockMatrix& hessian = s.newton.system().begin();
     s.gradient.resize(n);
+    add_mass(hessian);
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const double m = model_.mass[i] * inertia;
-        s.gradient[i] = m * (x[i] - s.y[i]);
-        hessian.blocks[at(model_.pattern.diagonal[i])].diagonal().array() += static_cast<float>(m);
-      }
+      for (std::size_t i = begin; i < end; ++i) s.gradient[i] = model_.mass[i] * inertia * (x[i] - s.y[i]);
     });
     for (const auto& energy : model_.energies) energy->add_derivatives(x, s.gradient, hessian);
-    std::vector<PairTerm> terms;
-    for (std::size_t p = 0; p < model_.pins.size(); ++p) {
-      const PinPoint& pin = model_.pins[p];
-      if (!s.pins[p].holds()) continue;
-      const Vec3& place = x[at(pin.vertex)];
-      s.gradient[at(pin.vertex)] += s.pins[p].gradient(place);
-      PairTerm term;
-      term.vertex[0] = pin.vertex;
-      term.weight[0] = 1;
-      term.stiffness = Mat3f::Identity() * static_cast<float>(s.pins[p].stiffness(place));
-      terms.push_back(term);
-    }
+    add_pin_gradient(all, false);
     contact.add_gradient(all, s.gradient);
-    contact.add_terms(all, terms);
-    s.newton.system().add_pair_terms(terms);
+    add_pins_and_contact();
     for (Vec3& g : s.gradient) g = -g;
     const double before = of_cloth + contact.value(all);
-    give_back(terms);
     contact.forget_contacts();
     result.seconds_assembly += watch.lap();
     ++result.newton_iterations;
@@ -211,7 +223,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
         if (!complete) contact.extend(all);
         return complete;
       };
-    const NewtonDirection::Iteration newton{contact, all, s.gradient, in.balls, pairs_suffice, watch, result};
+    const NewtonDirection::Iteration newton{contact,       all,         s.gradient, in.balls,
+                                            pairs_suffice, fill_system, watch,      result};
     std::span<const Vec3> direction = s.newton.solve(newton);
     // What truncation leaves of a direction is small because it was truncated, and settles nothing while it gets on.
     const bool wants_little = strain_change(model_.rest_edges, all, direction) < in.settled_strain;

@@ -43,6 +43,7 @@ void NewtonDirection::solve(const Iteration& in, std::span<const char> held) {
   const LinearReport solved = system_.solve(in.downhill, held, direction_, enough_);
   if (in.result.linear_iterations == 0) enough_ = model_.setup.linear_tolerance * solved.start_norm;
   in.result.linear_iterations += solved.iterations;
+  if (system_.block_count() >= model_.setup.large_system) system_.give_back();
   for (Vec3& d : direction_)
     if (!d.allFinite()) d.setZero(), in.result.finite = false;
   truncation_.calm(in.all, direction_);
@@ -62,9 +63,18 @@ bool NewtonDirection::is_spoiled(const Iteration& in) const {
   return descent(in.downhill, cut_) < k_least_descent * descent(in.downhill, direction_);
 }
 
+/// Before a further solve: the system with all springs so far, where it is gone.
+void NewtonDirection::refill(const Iteration& in, std::span<const PairTerm> springs) {
+  if (system_.is_filled()) return;
+  in.result.seconds_contact += in.watch.lap();
+  in.fill_system();
+  if (!springs.empty()) system_.add_pair_terms(springs);
+  in.result.seconds_assembly += in.watch.lap();
+}
+
 /// In series with what holds the vertices of a pair by themselves.
-std::vector<PairTerm> NewtonDirection::springs_against(std::span<const PairObstacle> obstacles) const {
-  std::vector<PairTerm> springs;
+void NewtonDirection::add_springs_against(std::span<const PairObstacle> obstacles,
+                                          std::vector<PairTerm>& springs) const {
   for (const PairObstacle& o : obstacles) {
     PairTerm spring;
     double give = 0;  // m/N
@@ -81,16 +91,19 @@ std::vector<PairTerm> NewtonDirection::springs_against(std::span<const PairObsta
     spring.stiffness = (stiffness * o.normal * o.normal.transpose()).cast<float>();
     springs.push_back(spring);
   }
-  return springs;
 }
 
 std::span<const Vec3> NewtonDirection::truncate(const Iteration& in, std::span<Vec3> trial) {
   cut_.resize(direction_.size());
   cut_direction(in, trial);
+  std::vector<PairTerm> springs;
   for (int round = 0; round < k_most_stiffened && is_spoiled(in); ++round) {
     const std::vector<PairObstacle> obstacles = truncation_.obstacles(in.contact, in.all, direction_);
     if (obstacles.empty()) break;
-    system_.add_pair_terms(springs_against(obstacles));
+    refill(in, springs);
+    const std::size_t before = springs.size();
+    add_springs_against(obstacles, springs);
+    system_.add_pair_terms(std::span(springs).subspan(before));
     in.result.seconds_contact += in.watch.lap();
     solve(in, model_.unused);
     cut_direction(in, trial);
@@ -102,6 +115,7 @@ std::span<const Vec3> NewtonDirection::truncate(const Iteration& in, std::span<V
       held[i] = held[i] != 0 || (cut_[i] - direction_[i]).norm() > lost * direction_[i].norm();
     model_.clumps.take_most(held);
     lost *= 0.5;
+    refill(in, springs);
     in.result.seconds_contact += in.watch.lap();
     solve(in, held);
     cut_direction(in, trial);

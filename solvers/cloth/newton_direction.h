@@ -2,6 +2,7 @@
 // spoils it, what is in its way becomes stiff, or is held, and the system is solved anew.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,13 @@ class NewtonDirection {
     std::span<const Vec3> downhill;  ///< the potential's negative gradient, per cloth vertex [N]
     MotionBounds balls;
     StepTruncation::PairsSuffice pairs_suffice;  ///< may be empty
+    const std::function<void()>& fill_system;    ///< fills system() with the Hessian anew
     Stopwatch& watch;
     StepResult& result;  ///< counts linear iterations and seconds, and says where a solution was not finite
   };
 
   explicit NewtonDirection(const ClothModel& model);
-  /// To be filled with the Hessian before solve().
+  /// To be filled with the Hessian before solve(). A large one is empty after it.
   LinearSystem& system() { return system_; }
   /// Before the first iteration of a step.
   void begin() { enough_ = 0; }
@@ -44,7 +46,8 @@ class NewtonDirection {
   void solve(const Iteration& iteration, std::span<const char> held);
   void cut_direction(const Iteration& iteration, std::span<Vec3> trial);
   bool is_spoiled(const Iteration& iteration) const;
-  std::vector<PairTerm> springs_against(std::span<const PairObstacle> obstacles) const;
+  void refill(const Iteration& iteration, std::span<const PairTerm> springs);
+  void add_springs_against(std::span<const PairObstacle> obstacles, std::vector<PairTerm>& springs) const;
 
   const ClothModel& model_;
   LinearSystem system_;

@@ -99,6 +99,14 @@ void LinearSystem::give_back() {
                 impl_->couplings);
 }
 
+bool LinearSystem::is_filled() const {
+  return !impl_->fine().matrix.blocks.empty();
+}
+
+std::size_t LinearSystem::block_count() const {
+  return impl_->fine().pattern->block_count();
+}
+
 BlockMatrix& LinearSystem::begin() {
   Level& level = impl_->fine();
   level.matrix.reset(*level.pattern);

@@ -53,6 +53,8 @@ class LinearSystem {
                      double enough = 0);
   /// Frees the matrices until the next begin(). What else a solve needs is there only while it runs.
   void give_back();
+  bool is_filled() const;           ///< not since give_back()
+  std::size_t block_count() const;  ///< of the matrix
 
  private:
   struct Impl;
