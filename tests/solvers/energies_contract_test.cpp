@@ -209,7 +209,7 @@ TEST_P(EnergyContract, The_same_bits_at_1_2_3_and_8_threads) {
   const ClothTopology large = curved_patch(40, 50);
   std::vector<double> first_value;
   Eigen::VectorXd first_gradient;
-  std::vector<Mat3f> first_blocks;
+  decltype(BlockMatrix::blocks) first_blocks;
   for (const int threads : {1, 2, 3, 8}) {
     const ThreadLimit limit(threads);
     const auto energy = GetParam().make(large, k_windy);
