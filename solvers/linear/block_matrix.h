@@ -47,8 +47,8 @@ BlockPattern make_pattern(std::vector<int> diagonal, std::vector<int> column);
 
 struct BlockMatrix {
   const BlockPattern* pattern = nullptr;
-  std::vector<Mat3f, HugePages<Mat3f>>
-      blocks;  ///< block_count(), and one more: who loads columns of three as four reads past the last
+  /// block_count(), and one more: who loads columns of three as four reads past the last.
+  std::vector<Mat3f, HugePages<Mat3f>> blocks;
   /// For the blocks of a pattern; what is in them is not defined.
   void make_room(const BlockPattern& p);
   /// All zero.

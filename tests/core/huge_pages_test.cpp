@@ -16,7 +16,7 @@ using List = std::vector<std::uint32_t, HugePages<std::uint32_t>>;
 /// Entries of a huge page.
 constexpr std::size_t k_page = k_huge_page / sizeof(std::uint32_t);
 
-TEST(HugePages, A_list_keeps_its_numbers_as_it_grows_from_the_heap_into_mapped_pages) {
+TEST(HugePages, A_list_keeps_its_numbers_as_it_grows_into_huge_pages) {
   List list;
   for (std::uint32_t i = 0; i < 5 * k_page / 2; ++i) list.push_back(i);
   for (std::uint32_t i = 0; i < list.size(); ++i) ASSERT_EQ(list[i], i);
@@ -32,14 +32,11 @@ TEST(HugePages, Lists_of_a_page_and_a_little_less_or_more_hold_what_they_are_giv
   }
 }
 
-TEST(HugePages, Mapped_room_begins_at_a_huge_page_and_is_zero_and_is_free_again_for_others) {
+TEST(HugePages, Room_begins_at_a_huge_page_and_is_free_again_for_others) {
   for (int round = 0; round < 2000; ++round) {  // 20 GB, were it not
-    void* const memory = map_huge_pages(5 * k_huge_page + 1);
-    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(memory) % k_huge_page, 0u);
-    char* const bytes = static_cast<char*>(memory);
-    ASSERT_EQ(bytes[5 * k_huge_page], 0);
-    bytes[0] = bytes[5 * k_huge_page] = 1;
-    unmap_huge_pages(memory, 5 * k_huge_page + 1);
+    List list(5 * k_page + 1);
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(list.data()) % k_huge_page, 0u);
+    list.front() = list.back() = 1;
   }
 }
 
@@ -50,7 +47,7 @@ TEST(HugePages, A_list_that_is_given_back_has_no_room) {
 }
 
 TEST(HugePages, More_than_there_is_is_refused) {
-  EXPECT_THROW(map_huge_pages(std::size_t{1} << 60), std::bad_alloc);
+  EXPECT_THROW(new_huge_pages(std::size_t{1} << 60), std::bad_alloc);
 }
 
 }  // namespace
