@@ -1,20 +1,19 @@
 #include "solvers/linear/linear_system.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
+#include "solvers/linear/dense_factor.h"
 #include "solvers/linear/extra_rows.h"
 #include "solvers/linear/level.h"
 
 namespace ft {
 namespace {
 
-constexpr int k_dense_size = 64;     ///< vertices of the level that is factored densely
-constexpr int k_dense_limit = 400;   ///< no dense factor above this size: the coarsest level is only smoothed then
+constexpr int k_coarsest_size = 64;  ///< a level of no more vertices has no coarser one
 constexpr std::size_t k_rows = 256;  ///< per block of a loop
 
 /// Where the cycle turns the residual so far that less is left along it than this share of its norm, it is made
@@ -48,8 +47,7 @@ struct ProductLanes {
 struct LinearSystem::Impl {
   LinearSettings settings;
   std::vector<std::unique_ptr<Level>> levels;
-  Eigen::LLT<Eigen::MatrixXd> coarse_factor;
-  bool coarse_is_factored = false;
+  DenseFactor coarsest;  ///< of the last level, if it is not the finest
   std::vector<ExtraBlock> added;
   std::vector<StiffClusters::Coupling> couplings;  ///< of the terms, in the pattern
   std::vector<char> held;
@@ -68,7 +66,6 @@ struct LinearSystem::Impl {
   bool step(double rz);
   void advance(float beta);
   void correct(std::size_t depth);
-  void solve_coarsest(Level& level);
   Products precondition(double most_norm_squared);
   void take(std::size_t i, const Vec4f& z, ProductLanes& lanes);
   void take_smoothed(std::size_t i, const Vec4f& rest, const Vec4f& by_rest, ProductLanes& lanes);
@@ -85,7 +82,7 @@ LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> re
   impl_->levels.push_back(std::move(first));
   if (settings.preconditioner != LinearSettings::Preconditioner::k_multigrid) return;
   std::vector<Vec3> rest(rest_positions.begin(), rest_positions.end());
-  while (impl_->levels.back()->size() > k_dense_size) {
+  while (impl_->levels.back()->size() > k_coarsest_size) {
     auto coarse = std::make_unique<Level>();
     if (!link_levels(*impl_->levels.back(), *coarse, rest)) break;
     impl_->levels.push_back(std::move(coarse));
@@ -173,32 +170,7 @@ void LinearSystem::Impl::refresh_hierarchy() {
     invert_diagonal(*levels[d]);
     if (d + 1 < levels.size()) estimate_damping(*levels[d]);
   }
-  coarse_is_factored = false;
-  const Level& last = *levels.back();
-  if (levels.size() < 2 || last.size() > k_dense_limit) return;
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * last.size(), 3 * last.size());
-  for (int i = 0; i < last.size(); ++i)
-    for (int k = last.pattern->diagonal[at(i)]; k < last.pattern->diagonal[at(i) + 1]; ++k) {
-      const int j = last.pattern->column[at(k)];
-      const Mat3 block = last.matrix.blocks[at(k)].cast<double>();
-      dense.block<3, 3>(3 * i, 3 * j) = block;
-      if (j > i) dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
-    }
-  const double largest = dense.diagonal().maxCoeff();
-  for (int i = 0; i < dense.rows(); ++i) dense(i, i) += dense(i, i) > 0 ? 1e-6 * dense(i, i) : std::max(largest, 1.0);
-  coarse_factor.compute(dense);
-  coarse_is_factored = coarse_factor.info() == Eigen::Success;
-}
-
-void LinearSystem::Impl::solve_coarsest(Level& level) {
-  if (!coarse_is_factored) {
-    smooth_first(level);
-    return;
-  }
-  Eigen::VectorXd b(3 * level.size());
-  for (int i = 0; i < level.size(); ++i) b.segment<3>(3 * i) = level.b[at(i)].head<3>().cast<double>();
-  coarse_factor.solveInPlace(b);
-  for (int i = 0; i < level.size(); ++i) level.x[at(i)] << b.segment<3>(3 * i).cast<float>(), 0;
+  if (levels.size() > 1) coarsest.build(*levels.back());
 }
 
 /// A V(1,1) cycle from this level on, of the finest V(0,1) unless symmetric, but for its last smoothing step. What the
@@ -214,11 +186,13 @@ void LinearSystem::Impl::correct(std::size_t depth) {
     residual(level);
     restrict_to(coarse, level, level.r);
   }
-  if (depth + 2 == levels.size()) {
-    solve_coarsest(coarse);
-  } else {
+  if (depth + 2 < levels.size()) {
     correct(depth + 1);
     smooth(coarse);
+  } else if (coarsest.exists()) {
+    coarsest.solve(coarse);
+  } else {
+    smooth_first(coarse);
   }
   if (from_zero)
     interpolate(level, coarse);
