@@ -266,6 +266,25 @@ TEST(LinearSystem, takes_further_terms_between_two_solves) {
   EXPECT_LT(relative_error(x, dense_solution(sheet, terms, fixed)), 1e-3);
 }
 
+TEST(LinearSystem, gives_the_same_bits_when_it_was_given_back_and_filled_anew) {
+  const Sheet sheet(12);
+  const std::vector<char> fixed(sheet.x.size(), 0);
+  LinearSystem system(sheet.pattern, sheet.rest, {});
+  EXPECT_EQ(system.block_count(), sheet.pattern.block_count());
+  EXPECT_FALSE(system.is_filled());
+  std::vector<Vec3> first, again;
+  for (std::vector<Vec3>* const x : {&first, &again}) {
+    sheet.fill(system.begin());
+    system.add_pair_terms(contacts(sheet));
+    EXPECT_TRUE(system.is_filled());
+    EXPECT_TRUE(system.solve(sheet.load(), fixed, *x).converged);
+    EXPECT_TRUE(system.is_filled());
+    system.give_back();
+    EXPECT_FALSE(system.is_filled());
+  }
+  EXPECT_EQ(first, again);
+}
+
 TEST(LinearSystem, knows_how_stiff_a_vertex_is_alone) {
   const Sheet sheet(5);
   LinearSystem system(sheet.pattern, sheet.rest, {});
