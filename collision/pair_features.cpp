@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
@@ -21,6 +22,17 @@ std::size_t rank(std::span<const T> sorted, const T& value) {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
 }
 
+/// Per triangle: 1 where an earlier one is the same, else 0.
+std::vector<char> repeated(std::size_t count, const FeatureNumbers& triangles) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto less = [&](int a, int b) { return triangles.face(a) < triangles.face(b); };
+  std::stable_sort(order.begin(), order.end(), less);
+  std::vector<char> out(count, 0);
+  for (std::size_t i = 1; i < count; ++i) out[at(order[i])] = !less(order[i - 1], order[i]);
+  return out;
+}
+
 std::vector<Edge> edges_of(std::span<const Triangle> triangles) {
   std::vector<Edge> edges = unique_edges(triangles);
   std::erase_if(edges, [](const Edge& e) { return e[0] == e[1]; });
@@ -32,15 +44,10 @@ std::vector<Edge> edges_of(std::span<const Triangle> triangles) {
 PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
                            std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges)
     : vertex_count(cloth_vertex_count + collider_vertex_count),
+      cloth_faces(cloth_triangles),
+      collider_faces(collider_triangles.begin(), collider_triangles.end()),
       cloth_edges(known_edges),
       collider_edges(edges_of(collider_triangles)) {
-  std::vector<Triangle> all(cloth_triangles.begin(), cloth_triangles.end());
-  all.insert(all.end(), collider_triangles.begin(), collider_triangles.end());
-  faces = all;
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  std::erase_if(faces, is_cord);
-  faces.shrink_to_fit();
   if (std::vector<Edge> found = edges_of(cloth_triangles); !std::ranges::equal(found, known_edges)) {
     own_cloth_edges = std::move(found);
     cloth_edges = own_cloth_edges;
@@ -48,21 +55,20 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
 
   cloth.reserve(cloth_triangles.size());
   collider.reserve(collider_triangles.size());
-  std::vector<char> face_owned(faces.size()), edge_owned(edge_count()), vertex_owned(at(vertex_count));
+  const FeatureNumbers known = numbers();
+  const std::size_t triangle_count = cloth_triangles.size() + collider_triangles.size();
+  const std::vector<char> again = repeated(triangle_count, known);
+  std::vector<char> edge_owned(edge_count()), vertex_owned(at(vertex_count));
   const auto take = [](std::vector<char>& owned, std::size_t i) {
     const bool free = !owned[i];
     owned[i] = 1;
     return free;
   };
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  for (std::size_t k = 0; k < triangle_count; ++k) {
     const bool of_cloth = k < cloth_triangles.size();
     PairElement e;
-    e.v = all[k];
-    e.face = -1;
-    if (!is_cord(e.v)) {
-      const std::size_t face = rank<Triangle>(faces, e.v);
-      if (take(face_owned, face)) e.face = static_cast<int>(face);
-    }
+    e.v = known.face(static_cast<int>(k));
+    e.face = is_cord(e.v) || again[k] != 0 ? -1 : static_cast<int>(k);
     for (std::size_t i = 0; i < 3; ++i) {
       CHECK(e.v[i] >= 0 && e.v[i] < vertex_count);
       CHECK(of_cloth == (e.v[i] < cloth_vertex_count));

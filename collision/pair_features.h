@@ -1,6 +1,6 @@
-// Features of the two surfaces of a pair search, numbered: faces and edges by their lexicographic rank, so that sorted
-// numbers are sorted stencils; and for every triangle the features it stands for (its own vertices and edges), so that
-// every feature is owned exactly once. Boxes of edges and faces are joined from those of vertices where they are looked
+// Features of the two surfaces of a pair search, numbered: faces in the order of their triangles, of which there is no
+// copy, edges by their lexicographic rank; and for every triangle the features it stands for (its own vertices and
+// edges), so that every feature is owned exactly once. Boxes of edges and faces are joined from those of vertices where they are looked
 // at, which costs less than to keep them. For pair_finder.cpp.
 #pragma once
 
@@ -19,14 +19,15 @@ namespace ft {
 /// A triangle as the search sees it.
 struct PairElement {
   Triangle v;                       ///< its own vertices come first
-  int face = 0;                     ///< rank of the face; -1 for a cord, or an earlier triangle again
+  int face = 0;                     ///< its number; -1 for a cord, or an earlier triangle again
   std::array<int, 3> owned_edge{};  ///< by rank; the first owned_edge_count are meant
   std::int8_t owned_vertex_count = 0, owned_edge_count = 0;
 };
 
 struct PairFeatures {
   int vertex_count = 0;
-  std::vector<Triangle> faces;               ///< by rank
+  std::span<const Triangle> cloth_faces;     ///< the caller's triangles, cords among them, as faces are numbered
+  std::vector<Triangle> collider_faces;      ///< the numbers that follow
   std::span<const Edge> cloth_edges;         ///< by rank, first the cloth's
   std::vector<Edge> own_cloth_edges;         ///< what cloth_edges sees, unless it is the caller's
   std::vector<Edge> collider_edges;          ///< the ranks that follow
@@ -41,7 +42,7 @@ struct PairFeatures {
                std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges);
   PairFeatures(PairFeatures&&) noexcept = default;  // no copies: cloth_edges may see its own list
   std::size_t edge_count() const { return cloth_edges.size() + collider_edges.size(); }
-  FeatureNumbers numbers() const { return {faces, cloth_edges, collider_edges}; }
+  FeatureNumbers numbers() const { return {cloth_faces, collider_faces, cloth_edges, collider_edges}; }
   const Edge& edge(int rank) const { return numbers().edge(rank); }
   void set_boxes(std::span<const VertexBox> boxes);
   bool present(int v) const { return all_present || !vertex_boxes[at(v)].is_nowhere(); }

@@ -20,8 +20,8 @@ using PairSieve = std::function<bool(PairKind, const Stencil&)>;
 class PairFinder {
  public:
   /// Triangles index the common numbering; collider_triangles' indices are all >= cloth_vertex_count. A triangle with
-  /// a vertex twice, {a, b, b}, is a cord: an edge and its ends, and no face. known_edges: the cloth's, sorted, which
-  /// then have to stay; where they are not that, or none, it keeps its own.
+  /// a vertex twice, {a, b, b}, is a cord: an edge and its ends, and no face. The cloth's triangles have to stay.
+  /// known_edges: the cloth's, sorted, which then have to stay; where they are not that, or none, it keeps its own.
   PairFinder(int cloth_vertex_count, std::span<const Triangle> cloth_triangles, int collider_vertex_count,
              std::span<const Triangle> collider_triangles, std::span<const Edge> known_edges = {});
   ~PairFinder();

@@ -24,23 +24,26 @@ constexpr int key_second(PairKey key) {
   return static_cast<int>(key & 0xffffffffu);
 }
 
-/// What the numbers mean. All lists are ascending, so that ascending keys are ascending stencils; they have to stay.
+/// What the numbers mean; those of the collider go on from those of the cloth. All lists have to stay.
 struct FeatureNumbers {
-  std::span<const Triangle> faces;
-  std::span<const Edge> cloth_edges;
-  std::span<const Edge> collider_edges;  ///< their numbers go on from there
+  std::span<const Triangle> cloth_faces, collider_faces;
+  std::span<const Edge> cloth_edges, collider_edges;
 
-  const Edge& edge(int number) const {
-    const std::size_t k = at(number);
-    return k < cloth_edges.size() ? cloth_edges[k] : collider_edges[k - cloth_edges.size()];
-  }
+  const Triangle& face(int number) const { return of(cloth_faces, collider_faces, at(number)); }
+  const Edge& edge(int number) const { return of(cloth_edges, collider_edges, at(number)); }
   Stencil stencil(PairKind kind, PairKey key) const {
     if (kind == PairKind::k_vertex_face) {
-      const Triangle& f = faces[at(key_second(key))];
+      const Triangle& f = face(key_second(key));
       return {{key_first(key), f[0], f[1], f[2]}};
     }
     const Edge &a = edge(key_first(key)), &b = edge(key_second(key));
     return {{a[0], a[1], b[0], b[1]}};
+  }
+
+ private:
+  template <class Feature>
+  static const Feature& of(std::span<const Feature> cloth, std::span<const Feature> collider, std::size_t k) {
+    return k < cloth.size() ? cloth[k] : collider[k - cloth.size()];
   }
 };
 

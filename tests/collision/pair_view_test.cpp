@@ -5,12 +5,12 @@
 namespace ft {
 namespace {
 
-/// Two faces over five vertices, and three edges, one of them the collider's.
+/// Two faces over five vertices, and three edges, one of each the collider's.
 struct Features {
-  std::vector<Triangle> faces{{0, 1, 2}, {1, 2, 3}};
+  std::vector<Triangle> cloth_faces{{0, 1, 2}}, collider_faces{{1, 2, 3}};
   std::vector<Edge> cloth{{0, 1}, {1, 3}}, collider{{4, 5}};
   PairList list{{{pair_key(3, 0), pair_key(4, 0), pair_key(4, 1)}, {pair_key(0, 1), pair_key(0, 2), pair_key(1, 2)}},
-                {faces, cloth, collider}};
+                {cloth_faces, collider_faces, cloth, collider}};
 };
 
 TEST(PairView, Places_in_a_list_are_its_stencils) {

@@ -41,31 +41,38 @@ struct NumberedPairs {
     for (const Stencil& s : pairs.vertex_face) list.vertex_face.push_back(pair_key(s.v[0], number(faces, face_of(s))));
     for (const Stencil& s : pairs.edge_edge)
       list.edge_edge.push_back(pair_key(number(edges, first_edge(s)), number(edges, second_edge(s))));
-    list.features = {faces, edges, {}};
+    list.features = {faces, {}, edges, {}};
   }
   NumberedPairs(const NumberedPairs&) = delete;
   NumberedPairs& operator=(const NumberedPairs&) = delete;
 };
 
-/// A finder that gives stencils.
+inline ContactPairs sorted_stencils_of(const PairList& list) {
+  ContactPairs out = stencils_of(list);
+  std::sort(out.vertex_face.begin(), out.vertex_face.end());
+  std::sort(out.edge_edge.begin(), out.edge_edge.end());
+  return out;
+}
+
+/// A finder that gives stencils, sorted.
 struct StencilFinder : PairFinder {
   using PairFinder::PairFinder;
 
   void find(std::span<const VertexBox> boxes, bool self, ContactPairs& out, std::span<const char> skipped = {}) {
     PairList list;
     PairFinder::find(boxes, self, list, skipped);
-    out = stencils_of(list);
+    out = sorted_stencils_of(list);
   }
   void find_vertex_face(std::span<const VertexBox> boxes, bool self, ContactPairs& out) {
     PairList list;
     PairFinder::find_vertex_face(boxes, self, list);
-    out = stencils_of(list);
+    out = sorted_stencils_of(list);
   }
   void find_changed(std::span<const VertexBox> boxes, bool self, std::span<const char> changed, ContactPairs& out,
                     std::span<const char> skipped = {}) {
     PairList list;
     PairFinder::find_changed(boxes, self, changed, list, skipped);
-    out = stencils_of(list);
+    out = sorted_stencils_of(list);
   }
 };
 
