@@ -13,11 +13,12 @@ namespace ft {
 namespace {
 
 /// Names of the files that a glTF refers to for its geometry; empty for anything else.
-std::vector<std::string> gltf_buffers(const std::filesystem::path& file, const Bytes& bytes) {
+std::vector<std::string> gltf_buffers(const std::filesystem::path& file) {
   std::vector<std::string> out;
   if (file.extension() != ".gltf") return out;
-  const char* text = reinterpret_cast<const char*>(bytes.data());
-  const auto json = nlohmann::json::parse(text, text + bytes.size(), nullptr, false);
+  const auto text = read_text(file);
+  if (!text) return out;
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return out;
   for (const auto& buffer : json["buffers"]) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
@@ -29,16 +30,16 @@ std::vector<std::string> gltf_buffers(const std::filesystem::path& file, const B
 
 Status add_file(BakeInputs& inputs, const std::string& role, const std::filesystem::path& path) {
   if (path.empty()) return {};
-  auto bytes = read_file(path);
-  if (!bytes) return bytes.error();
-  InputRecord file{role, path, hash_bytes(*bytes)};
-  const auto buffers = gltf_buffers(path, *bytes);
+  const auto content = hash_file(path);
+  if (!content) return content.error();
+  InputRecord file{role, path, content->hash};
+  const auto buffers = gltf_buffers(path);
   if (!buffers.empty()) {
     Hasher all;
     all.number(file.content.low).number(file.content.high);
     for (const auto& name : buffers) {
-      const auto part = read_file(path.parent_path() / name);
-      all.text(name).text(part ? hash_bytes(part.value()).hex() : "absent");
+      const auto part = hash_file(path.parent_path() / name);
+      all.text(name).text(part ? part->hash.hex() : "absent");
     }
     file.content = all.digest();
   }

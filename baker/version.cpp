@@ -14,8 +14,8 @@ const std::string& program_build() {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error) return std::string("unknown");
-    const auto bytes = read_file(program);
-    return bytes ? hash_bytes(bytes.value()).hex() : std::string("unknown");
+    const auto content = hash_file(program);
+    return content ? content->hash.hex() : std::string("unknown");
   }();
   return build;
 }

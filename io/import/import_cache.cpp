@@ -9,8 +9,8 @@ namespace {
 
 bool dependencies_unchanged(const std::filesystem::path& file, const Character& character) {
   for (const Dependency& d : character.dependencies) {
-    const auto bytes = read_file(file.parent_path() / d.path);
-    if (!bytes || hash_bytes(*bytes) != d.hash) return false;
+    const auto content = hash_file(file.parent_path() / d.path);
+    if (!content || content->hash != d.hash) return false;
   }
   return true;
 }
@@ -26,12 +26,9 @@ Hash128 content_hash(const Hash128& file, const Character& character) {
 
 Result<LoadedCharacter> load_character(const std::filesystem::path& file, const std::filesystem::path& cache_folder,
                                        const ImportLimits& limits) {
-  Hash128 file_hash;
-  {
-    const auto bytes = read_file(file);
-    if (!bytes) return bytes.error();
-    file_hash = hash_bytes(*bytes);
-  }
+  const auto content = hash_file(file);
+  if (!content) return content.error();
+  const Hash128 file_hash = content->hash;
   LoadedCharacter out;
   std::filesystem::path entry;
   if (!cache_folder.empty()) {
