@@ -24,6 +24,10 @@ struct Stencil {
 inline std::array<Vec3, 4> gather(std::span<const Vec3> from, const Stencil& s) {
   return {from[at(s.v[0])], from[at(s.v[1])], from[at(s.v[2])], from[at(s.v[3])]};
 }
+inline std::array<Vec3, 4> gather(std::span<const Vec3f> from, const Stencil& s) {
+  const auto of = [&](std::size_t k) { return from[at(s.v[k])].cast<double>(); };
+  return {of(0), of(1), of(2), of(3)};
+}
 
 struct ContactPairs {
   std::vector<Stencil> vertex_face;

@@ -18,8 +18,8 @@ namespace ft {
 /// Of all vertices: places and ways [m]; balls around x + centre [m], of the first vertices alone, the others stop
 /// where their centre is.
 struct VertexWays {
-  std::span<const Vec3> x, d;
-  std::span<const Vec3f> centre;
+  std::span<const Vec3> x;
+  std::span<const Vec3f> d, centre;
   std::span<const float> slack;
 };
 

@@ -17,7 +17,7 @@ PairRoom better_room(PairKind kind, const std::array<Vec3, 4>& x, const std::arr
 
 }  // namespace
 
-void ApproachLimits::add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3> d) {
+void ApproachLimits::add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3f> d) {
   const auto add_kind = [&](PairKind kind, const std::vector<Stencil>& stencils) {
     for (const Stencil& s : stencils) {
       const PairRoom room = better_room(kind, gather(x, s), gather(d, s));

@@ -20,7 +20,7 @@ class ApproachLimits {
   void clear() { give_back(limits_); }
   /// Limits the pairs, which start at x and would move by d (all vertices) [m]. What no plane separates at the start is
   /// left out.
-  void add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3> d);
+  void add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3f> d);
   /// Changes the cloth's motion by what the limits ask; body_motion is that of the vertices behind it [m]. Depends on
   /// the order of adding.
   void apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion, const VertexClumps& clumps,

@@ -126,7 +126,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     return all;
   };
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
-  give_back(s.piece.carry, cloth.x);  // piece.all and piece.start have them
+  give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
   report.lost_weight += h / in.h * result.lost_weight;
@@ -205,7 +205,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
         continue;  // search again without them
       }
     }
-    for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.carry[i];
+    for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.all[i].cast<double>();
     solve(in, h, end, share < 1, cloth, report);
     done = end;
     share = share < 1 ? std::min(1.0, k_regrowth * h / ((1 - done) * in.h)) : 1;

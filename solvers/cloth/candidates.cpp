@@ -172,7 +172,7 @@ void Candidates::place(std::size_t i, const ClothMotion& cloth, PieceMotion& pie
 
 void Candidates::set_box(std::size_t i, const PieceMotion& piece) {
   const Vec3 &start = piece.start[i], centre = start + piece.centre[i].cast<double>() - frame_;
-  boxes_[i] = box_frame_.swept(start, start + piece.all[i] - frame_, 0.5 * radius_);
+  boxes_[i] = box_frame_.swept(start, start + piece.all[i].cast<double>() - frame_, 0.5 * radius_);
   boxes_[i].include(box_frame_.swept(centre, centre, piece.slack[i] + 0.5 * radius_));
 }
 
@@ -187,16 +187,14 @@ void Candidates::begin_flat(const PieceMotion& piece) {
     });
     patches_.keep(carried, true, lost_);
   };
-  keep(piece.carry);
+  keep(piece.all);
   keep(piece.centre);
 }
 
 double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piece) {
   const std::size_t nc = cloth.x.size(), nb = piece.body_motion.size();
   h_ = h;
-  piece.all.reserve(nc + nb);
-  piece.all.assign(piece.carry.begin(), piece.carry.end());
-  piece.all.insert(piece.all.end(), piece.body_motion.begin(), piece.body_motion.end());
+  piece.all.resize(nc + nb);
   frame_ = mean_of(piece.carry);
   piece.slack.resize(nc);
   piece.centre.resize(nc + nb);
@@ -205,12 +203,15 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
   give_back(inertia_);
   finder_.set_self_margin(box_frame_.margin(std::max(0.0, radius_ - self_radius_)));
   parallel_for(nc, k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) place(i, cloth, piece);
+    for (std::size_t i = begin; i < end; ++i) {
+      piece.all[i] = piece.carry[i].cast<float>();
+      place(i, cloth, piece);
+    }
   });
   parallel_for(nb, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& start = piece.start[nc + i];
-      piece.centre[nc + i] = piece.body_motion[i].cast<float>();
+      piece.all[nc + i] = piece.centre[nc + i] = piece.body_motion[i].cast<float>();
       boxes_[nc + i] = box_frame_.swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
     }
   });

@@ -90,9 +90,10 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
   changed_.assign(boxes_.size(), 0);
   moved_.assign(boxes_.size(), 0);
   for (std::size_t i = 0; i < piece.carry.size(); ++i) {
-    if (piece.carry[i] == piece.all[i]) continue;
+    const Vec3f way = piece.carry[i].cast<float>();
+    if (way == piece.all[i]) continue;
     moved_[i] = 1;
-    piece.all[i] = piece.carry[i];
+    piece.all[i] = way;
     if ((piece.carry[i] - piece.centre[i].cast<double>()).norm() <= piece.slack[i]) continue;
     changed_[i] = 1;
     place(i, cloth, piece);
@@ -100,7 +101,7 @@ double Candidates::renew_carried(const ClothMotion& cloth, PieceMotion& piece) {
   if (any_self_) {
     lost_.clear();
     std::vector<Vec3> carried(piece.carry.size());
-    for (std::size_t i = 0; i < carried.size(); ++i) carried[i] = piece.start[i] + piece.carry[i];
+    for (std::size_t i = 0; i < carried.size(); ++i) carried[i] = piece.start[i] + piece.all[i].cast<double>();
     if (!patches_.keep(carried, false, lost_)) mark_lost();
   }
   return renew(cloth, piece);

@@ -1,5 +1,7 @@
 #include "solvers/cloth/cloth_motion.h"
 
+#include <algorithm>
+
 #include "baker/core/check.h"
 #include "baker/core/state_points.h"
 
@@ -56,7 +58,9 @@ ClothMotion take_motion(State& state, std::size_t count) {
 }
 
 KeptMotion::KeptMotion(const ClothMotion& m)
-    : x_(m.x), h_previous_(m.h_previous), released_(m.released), tangled_(m.tangled) {
+    : x_(m.x), h_previous_(m.h_previous) {
+  if (std::any_of(m.released.begin(), m.released.end(), [](int part) { return part >= 0; })) released_ = m.released;
+  if (std::any_of(m.tangled.begin(), m.tangled.end(), [](char is) { return is != 0; })) tangled_ = m.tangled;
   const auto from = [](std::span<const Vec3> origin, std::span<const Vec3> values) {
     std::vector<Vec3f> out(values.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = (values[i] - origin[i]).cast<float>();
@@ -83,7 +87,9 @@ ClothMotion KeptMotion::motion() const {
   m.v_older = m.v_previous;
   m.h_previous = h_previous_;
   m.released = released_;
+  m.released.resize(x_.size(), -1);
   m.tangled = tangled_;
+  m.tangled.resize(x_.size(), 0);
   return m;
 }
 

@@ -40,8 +40,8 @@ class KeptMotion {
   std::vector<Vec3f> v_, v_previous_;
   std::vector<Vec3f> to_previous_;  ///< from x [m]
   double h_previous_;
-  std::vector<int> released_;
-  std::vector<char> tangled_;
+  std::vector<int> released_;  ///< empty: nothing is
+  std::vector<char> tangled_;  ///< the same
 };
 
 }  // namespace ft

@@ -43,11 +43,8 @@ double side_radius(const std::array<int, 4>& v, const PairGeometry& geometry, st
   return r;
 }
 
-Vec3 slip(const std::array<int, 4>& v, const std::array<double, 4>& weight, std::span<const Vec3> x,
-          std::span<const Vec3> x_start) {
-  Vec3 u = Vec3::Zero();
-  for (std::size_t k = 0; k < 4; ++k) u += weight[k] * (x[at(v[k])] - x_start[at(v[k])]);
-  return u;
+std::array<float, 3> last_three(const std::array<double, 4>& weight) {
+  return {static_cast<float>(weight[1]), static_cast<float>(weight[2]), static_cast<float>(weight[3])};
 }
 
 }  // namespace
@@ -61,6 +58,29 @@ ContactLaw contact_law(double d, double r, double k) {
   const double taut = std::max(0.0, std::log(k_taut * r / safe)), factor = 1 + 3 * taut * taut;
   return {0.125 * k * r * r + a * (taut * taut * taut - std::log(safe / half)), a / safe * factor,
           a / (safe * safe) * (factor + 6 * taut)};
+}
+
+ContactPotential::Lagged::Lagged(const Contact& contact, double most_force)
+    : most(static_cast<float>(most_force)),
+      normal(contact.geometry.normal.cast<float>()),
+      last_weights(last_three(contact.geometry.weight)),
+      vertex(contact.vertex) {}
+
+bool ContactPotential::Lagged::is_at(const Contact& contact) const {
+  return vertex == contact.vertex && last_weights == last_three(contact.geometry.weight);
+}
+
+std::array<double, 4> ContactPotential::Lagged::weight() const {
+  const double a = last_weights[0], b = last_weights[1], c = last_weights[2];
+  return {-(a + b + c), a, b, c};
+}
+
+Vec3 ContactPotential::Lagged::slip(std::span<const Vec3> x, std::span<const Vec3> x_start) const {
+  const std::array<double, 4> w = weight();
+  Vec3 u = Vec3::Zero();
+  for (std::size_t k = 0; k < 4; ++k) u += w[k] * (x[at(vertex[k])] - x_start[at(vertex[k])]);
+  const Vec3 n = normal.cast<double>();
+  return u - n.dot(u) * n;
 }
 
 void ContactPotential::begin(const PairList& pairs, std::span<const Vec3> x_start, double h, double friction_share) {
@@ -207,8 +227,7 @@ void ContactPotential::lag_friction_from(std::size_t first) {
   for (const Contact& c : std::span(contacts_).subspan(first)) {
     const double friction = friction_share_ * c.friction;
     if (friction <= 0) continue;
-    const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
-    lagged_.push_back({law.force, c.geometry.normal, c.geometry.weight, c.vertex, friction});
+    lagged_.emplace_back(c, friction * contact_law(c.geometry.distance, c.radius, c.stiffness).force);
   }
 }
 
@@ -226,21 +245,16 @@ double ContactPotential::value(std::span<const Vec3> x) const {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Lagged& f = lagged_[i];
-      Vec3 u = slip(f.vertex, f.weight, x, x_start_);
-      u -= f.normal * f.normal.dot(u);
-      const double s = u.norm();
-      sum += f.friction * f.normal_force * (s > eps ? s - 0.5 * eps : 0.5 * s * s / eps);
+      const double s = f.slip(x, x_start_).norm();
+      sum += static_cast<double>(f.most) * (s > eps ? s - 0.5 * eps : 0.5 * s * s / eps);
     }
     return sum;
   });
   return energy;
 }
 
-/// By the relative motion at the contact, which below eps is viscous [N].
-Vec3 ContactPotential::friction_gradient(const Lagged& f, std::span<const Vec3> x, double eps) const {
-  Vec3 u = slip(f.vertex, f.weight, x, x_start_);
-  u -= f.normal * f.normal.dot(u);
-  return (f.friction * f.normal_force / std::max(u.norm(), eps)) * u;
+double ContactPotential::friction_stiffness(const Lagged& f, const Vec3& slip, double eps) {
+  return static_cast<double>(f.most) / std::max(slip.norm(), eps);
 }
 
 /// Of the contacts whose vertices count.
@@ -257,8 +271,11 @@ void ContactPotential::add_gradient_where(std::span<const Vec3> x, std::span<Vec
     add(c.vertex, c.geometry.weight, -law.force * c.geometry.normal);
   }
   const double eps = model_.sliding_speed * h_;
-  for (const Lagged& f : lagged_)
-    if (counts(f.vertex)) add(f.vertex, f.weight, friction_gradient(f, x, eps));
+  for (const Lagged& f : lagged_) {
+    if (!counts(f.vertex)) continue;
+    const Vec3 slip = f.slip(x, x_start_);
+    add(f.vertex, f.weight(), friction_stiffness(f, slip, eps) * slip);
+  }
 }
 
 void ContactPotential::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
@@ -292,10 +309,8 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
   };
   const double eps = model_.sliding_speed * h_;
   const auto of_friction = [&](const Lagged& f) -> Mat3 {
-    Vec3 u = slip(f.vertex, f.weight, x, x_start_);
-    u -= f.normal * f.normal.dot(u);
-    const double k = f.friction * f.normal_force / std::max(u.norm(), eps);
-    return k * (Mat3::Identity() - f.normal * f.normal.transpose());
+    const Vec3 normal = f.normal.cast<double>();
+    return friction_stiffness(f, f.slip(x, x_start_), eps) * (Mat3::Identity() - normal * normal.transpose());
   };
   // Friction that was lagged at these contacts comes in their order, on the same weights: one term for both.
   terms.reserve(terms.size() + std::max(contacts_.size(), lagged_.size()));
@@ -303,11 +318,10 @@ void ContactPotential::add_terms(std::span<const Vec3> x, std::vector<PairTerm>&
   for (const Contact& c : contacts_) {
     const ContactLaw law = contact_law(c.geometry.distance, c.radius, c.stiffness);
     Mat3 stiffness = law.stiffness * c.geometry.normal * c.geometry.normal.transpose();
-    if (lagged != lagged_.end() && lagged->vertex == c.vertex && lagged->weight == c.geometry.weight)
-      stiffness += of_friction(*lagged++);
+    if (lagged != lagged_.end() && lagged->is_at(c)) stiffness += of_friction(*lagged++);
     add(c.vertex, c.geometry.weight, stiffness);
   }
-  for (; lagged != lagged_.end(); ++lagged) add(lagged->vertex, lagged->weight, of_friction(*lagged));
+  for (; lagged != lagged_.end(); ++lagged) add(lagged->vertex, lagged->weight(), of_friction(*lagged));
 }
 
 void ContactPotential::near_pairs(std::span<const double> lengths, double floor, PairPlaces& out) {

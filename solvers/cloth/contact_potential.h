@@ -81,16 +81,24 @@ class ContactPotential {
   double smallest_gap() const;  ///< m, over the contacts of the last update; infinite without any
 
  private:
+  /// Friction at a contact of an earlier linearisation. There are as many as contacts, all through a solve: floats.
   struct Lagged {
-    double normal_force;
-    Vec3 normal;
-    std::array<double, 4> weight;
+    float most;  ///< N
+    Vec3f normal;
+    std::array<float, 3> last_weights;
     std::array<int, 4> vertex;
-    double friction;
+
+    Lagged(const Contact& contact, double most_force);
+    bool is_at(const Contact& contact) const;
+    /// They sum to zero as exactly as doubles do: friction makes no momentum.
+    std::array<double, 4> weight() const;
+    /// Along the surface, of the first feature against the second, since the start [m].
+    Vec3 slip(std::span<const Vec3> x, std::span<const Vec3> x_start) const;
   };
   template <class Counts>
   void add_gradient_where(std::span<const Vec3> x, std::span<Vec3> gradient, Counts&& counts) const;
-  Vec3 friction_gradient(const Lagged& lagged, std::span<const Vec3> x, double eps) const;
+  /// Force by slip, which below eps is viscous [N/m].
+  static double friction_stiffness(const Lagged& lagged, const Vec3& slip, double eps);
   double pair_radius(const std::array<int, 4>& v, bool vertex_face, const PairGeometry& geometry, double* friction,
                      double* area) const;
   void update_kind(bool vertex_face, std::span<const Vec3> x, std::size_t first);

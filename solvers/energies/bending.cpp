@@ -18,15 +18,17 @@ namespace {
 /// A triangle pressed below this share of its rest area counts as degenerate.
 constexpr double k_collapsed = 1e-3;
 
-/// The upper half of a float: the limit is a rough one, too.
-std::uint16_t degenerate_below(double rest_area) {
+constexpr int k_mantissa_bits = 23;
+
+/// The exponent of a float: the limit is a rough one, too.
+std::uint8_t degenerate_below(double rest_area) {
   const double least = 2 * k_collapsed * rest_area;
   const float floor = least > 0 ? std::max(static_cast<float>(least * least), std::numeric_limits<float>::min()) : 1.0f;
-  return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(floor) >> 16);
+  return static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(floor) >> k_mantissa_bits);
 }
 
-void whole_floats(const std::uint16_t (&upper)[k_lanes], float (&out)[k_lanes]) {
-  for (int l = 0; l < k_lanes; ++l) out[l] = std::bit_cast<float>(std::uint32_t{upper[l]} << 16);
+void powers_of_two(const std::uint8_t (&exponent)[k_lanes], float (&out)[k_lanes]) {
+  for (int l = 0; l < k_lanes; ++l) out[l] = std::bit_cast<float>(std::uint32_t{exponent[l]} << k_mantissa_bits);
 }
 
 struct HingeEdges {
@@ -112,7 +114,6 @@ Bending::Bending(const ClothTopology& topology) {
   for (std::size_t s = 0; s < neighbours.size(); ++s)  // unused couplings look at themselves, with no weight
     std::replace(neighbours[s].begin(), neighbours[s].end(), -1, static_cast<int>(s));
   neighbours_ = group_indices<k_couplings - 1>(schedule_, [&](std::size_t slot) { return neighbours[slot]; });
-  motion_.assign(groups_.size() * k_lanes, 0.0f);
   root_.assign(damping_time_.size(), 0.0);
 }
 
@@ -134,7 +135,7 @@ void Bending::work_out(std::span<const Vec3> x, Bends& bends) const {
   const Hash128 of = hash_bytes(std::as_bytes(x));
   if (bends.of == of && !bends.phi.empty()) return;
   bends.of = of;
-  bends.phi.resize(motion_.size());
+  bends.phi.resize(groups_.size() * k_lanes);
   parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
     Vertices v;
     HingeEdges h;
@@ -155,22 +156,20 @@ void Bending::begin_step(const StepContext& context) {
   damps_ = !context.x_t0.empty();
   if (!damps_) return;
   for (std::size_t p = 0; p < root_.size(); ++p) root_[p] = std::sqrt(damping_time_[p] / context.rate_time());
-  const bool history = context.has_history() && context.b != 0;
-  // The start of the last step is mostly where this one came from, and its end where this one starts.
-  if (history && (start_.empty() || start_of_ != hash_bytes(std::as_bytes(context.x_tm1)))) {
-    Bends before;
-    work_out(context.x_tm1, before);
-    start_.assign(before.phi.begin(), before.phi.end());
-  }
   work_out(context.x_t0, last_);
-  start_of_ = last_.of;
-  start_.resize(motion_.size());
-  parallel_for(motion_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      motion_[s] = history ? static_cast<float>(context.b * angle_difference(last_.phi[s], start_[s])) : 0.0f;
-      start_[s] = static_cast<float>(last_.phi[s]);
-    }
+  reference_.assign(last_.phi.begin(), last_.phi.end());
+  if (!context.has_history() || context.b == 0) return;
+  Bends before;
+  work_out(context.x_tm1, before);
+  parallel_for(reference_.size(), k_chunk_groups * k_lanes, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      reference_[s] = static_cast<float>(last_.phi[s] + context.b * angle_difference(last_.phi[s], before.phi[s]));
   });
+}
+
+/// rho / sqrt(d), of last_.
+inline double Bending::since_reference(std::size_t slot) const {
+  return angle_difference(last_.phi[slot], static_cast<double>(reference_[slot]));
 }
 
 /// Fills last_, moment_ and energy_.
@@ -178,24 +177,7 @@ void Bending::measure(std::span<const Vec3> x) const {
   if (measured_ && last_.of == hash_bytes(std::as_bytes(x))) return;
   measured_ = true;
   work_out(x, last_);
-  std::vector<double> rhos(motion_.size());
-  moment_.resize(motion_.size());
-  parallel_for(groups_.size(), k_chunk_groups, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t first = i * k_lanes;
-      double* rho = rhos.data() + first;
-      if (!damps_) {
-        std::fill_n(rho, k_lanes, 0.0);
-        continue;
-      }
-      const double* phi = last_.phi.data() + first;
-      const float *start = start_.data() + first, *motion = motion_.data() + first;
-      for (int l = 0; l < k_lanes; ++l) {
-        const double reference = static_cast<double>(start[l]) + static_cast<double>(motion[l]);
-        rho[l] = root_[groups_[i].piece[l]] * angle_difference(phi[l], reference);
-      }
-    }
-  });
+  moment_.resize(last_.phi.size());
   energy_ = sum_over_chunks(schedule_, [&](std::size_t begin, std::size_t end) {
     double total = 0;
     GroupIndices<k_couplings - 1>::Group neighbours;
@@ -204,13 +186,19 @@ void Bending::measure(std::span<const Vec3> x) const {
       neighbours_.get(i, neighbours);
       for (std::size_t l = 0; l < k_lanes; ++l) {
         const std::size_t slot = i * k_lanes + l;
-        double elastic = g.coupling[0][l] * last_.phi[slot], viscous = g.coupling[0][l] * rhos[slot];
-        for (int k = 0; k + 1 < k_couplings; ++k) {
-          const std::size_t n = at(neighbours.column[k][l]);
-          elastic += g.coupling[k + 1][l] * last_.phi[n], viscous += g.coupling[k + 1][l] * rhos[n];
-        }
-        moment_[slot] = elastic + (damps_ ? root_[g.piece[l]] : 0) * viscous;
-        total += 0.5 * (elastic * last_.phi[slot] + viscous * rhos[slot]);
+        double elastic = g.coupling[0][l] * last_.phi[slot];
+        for (int k = 0; k + 1 < k_couplings; ++k)
+          elastic += g.coupling[k + 1][l] * last_.phi[at(neighbours.column[k][l])];
+        moment_[slot] = elastic;
+        total += 0.5 * elastic * last_.phi[slot];
+        if (!damps_) continue;
+        // What is coupled is of one piece.
+        const double own = since_reference(slot), damping = root_[g.piece[l]] * root_[g.piece[l]];
+        double viscous = g.coupling[0][l] * own;
+        for (int k = 0; k + 1 < k_couplings; ++k)
+          viscous += g.coupling[k + 1][l] * since_reference(at(neighbours.column[k][l]));
+        moment_[slot] += damping * viscous;
+        total += 0.5 * damping * viscous * own;
       }
     }
     return total;
@@ -230,8 +218,8 @@ struct Bending::HingeShape {
   void of(const HingeGroup& g, std::span<const Vec3> x) {
     ft::edges(vertices, x, edges);
     alignas(32) float floor2[k_lanes], floor3[k_lanes];
-    whole_floats(g.floor2, floor2);
-    whole_floats(g.floor3, floor3);
+    powers_of_two(g.floor2, floor2);
+    powers_of_two(g.floor3, floor3);
     hinge_gradient_lanes(edges.e, edges.a, edges.b, floor2, floor3, d);
   }
 };

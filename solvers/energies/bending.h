@@ -36,10 +36,10 @@ class Bending final : public Energy {
 
   /// k_lanes hinges; no coupling in padding.
   struct HingeGroup {
-    float coupling[k_couplings][k_lanes];            ///< with itself, and with its neighbours [N m]
-    float rest_angle[k_lanes];                       ///< rad
-    std::uint16_t piece[k_lanes];                    ///< of the topology
-    std::uint16_t floor2[k_lanes], floor3[k_lanes];  ///< upper halves of what hinge_gradient_lanes() takes [m4]
+    float coupling[k_couplings][k_lanes];           ///< with itself, and with its neighbours [N m]
+    float rest_angle[k_lanes];                      ///< rad
+    std::uint16_t piece[k_lanes];                   ///< of the topology
+    std::uint8_t floor2[k_lanes], floor3[k_lanes];  ///< exponents of what hinge_gradient_lanes() takes [m4]
   };
   using Vertices = GroupIndices<4>::Group;
 
@@ -52,6 +52,7 @@ class Bending final : public Energy {
   };
   void work_out(std::span<const Vec3> x, Bends& bends) const;
   void measure(std::span<const Vec3> x) const;
+  double since_reference(std::size_t slot) const;
   void add_group_gradient(std::size_t group, const HingeShape& shape, std::span<Vec3> gradient) const;
   void add_group_hessian(std::size_t group, const HingeShape& shape, BlockMatrix& hessian) const;
   void find_places(const BlockPattern& pattern) const;
@@ -61,11 +62,10 @@ class Bending final : public Energy {
   GroupIndices<k_couplings - 1> neighbours_;  ///< slots of the other hinges of a row of K
   std::vector<HingeGroup> groups_;
   std::vector<double> damping_time_;  ///< of the pieces [s]
-  // Of the step: theta_ref is motion_ past the start, to seven digits.
+  // Of the step.
   bool damps_ = false;
-  std::vector<double> root_;           ///< of the pieces: sqrt(d) [1]
-  Hash128 start_of_;                   ///< of the positions at its start
-  std::vector<float> start_, motion_;  ///< per hinge slot: as Bends::phi there; to theta_ref [rad]
+  std::vector<double> root_;      ///< of the pieces: sqrt(d) [1]
+  std::vector<float> reference_;  ///< per hinge slot: theta_ref, as Bends::phi, to seven digits [rad]
   mutable BlockPositions<4> positions_;
   // Of the last x that was measured: the next question is mostly about the same one, and the next step starts there.
   mutable Bends last_;

@@ -11,8 +11,8 @@ namespace {
 using test::Dice;
 
 struct Case {
-  std::array<Vec3, 4> x, d;
-  std::array<Vec3f, 4> centre;
+  std::array<Vec3, 4> x;
+  std::array<Vec3f, 4> d, centre;
   std::array<float, 4> slack;
   VertexWays ways(std::size_t movable) const { return {x, d, centre, std::span(slack).first(movable)}; }
 };
@@ -24,8 +24,8 @@ Case random_case(Dice& dice, PairKind kind, double apart) {
   for (std::size_t k = 0; k < 4; ++k) {
     const bool first = static_cast<int>(k) < first_feature_size(kind);
     out.x[k] = dice.cube(0.02) + (first ? away : Vec3::Zero());
-    out.d[k] = common + dice.cube(0.02);
-    out.centre[k] = (out.d[k] + dice.cube(0.004)).cast<float>();
+    out.d[k] = (common + dice.cube(0.02)).cast<float>();
+    out.centre[k] = out.d[k] + dice.cube(0.004).cast<float>();
     out.slack[k] = static_cast<float>(dice.uniform(0, 0.004));
   }
   return out;
@@ -48,7 +48,7 @@ TEST(PairWay, What_is_apart_keeps_apart_on_its_way_and_wherever_it_ends) {
       (verdict == PairWay::Verdict::k_apart ? found : clear)++;
       const auto moved = [&](double t) {
         std::array<Vec3, 4> at_t;
-        for (std::size_t k = 0; k < 4; ++k) at_t[k] = c.x[k] + t * c.d[k];
+        for (std::size_t k = 0; k < 4; ++k) at_t[k] = c.x[k] + t * c.d[k].cast<double>();
         return at_t;
       };
       for (int step = 0; step <= 8; ++step) EXPECT_GT(pair_geometry(kind, moved(step / 8.0)).distance, k_keep);
@@ -70,8 +70,8 @@ TEST(PairWay, Cloth_that_glides_along_a_face_at_a_distance_is_apart_however_far_
   for (const double way_length : {0.001, 0.1, 10.0}) {
     Case c;
     c.x = {Vec3(0.001, 0.01, 0), Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0, -0.02)};
-    c.d = {Vec3(way_length, 0, 0.3 * way_length), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    for (std::size_t k = 0; k < 4; ++k) c.centre[k] = c.d[k].cast<float>();
+    c.d = {Vec3(way_length, 0, 0.3 * way_length).cast<float>(), Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
+    c.centre = c.d;
     c.slack = {0.004, 0, 0, 0};
     const PairWay way(PairKind::k_vertex_face, k_all, c.ways(1), 0.003, 1e-4);
     EXPECT_EQ(way.judge(way.flat()), PairWay::Verdict::k_apart);
@@ -95,7 +95,7 @@ TEST(PairWay, Nothing_is_proved_of_what_is_not_a_number_and_without_a_normal) {
   const PairWay sound(PairKind::k_edge_edge, k_all, c.ways(4), 0.001, 0);
   EXPECT_EQ(sound.judge(sound.between_centres()), PairWay::Verdict::k_apart);
   EXPECT_EQ(sound.judge(Vec3::Zero()), PairWay::Verdict::k_open);
-  c.d[2].y() = std::nan("");
+  c.d[2].y() = std::nanf("");
   const PairWay unsound(PairKind::k_edge_edge, k_all, c.ways(4), 0.001, 0);
   EXPECT_EQ(unsound.judge(unsound.between_centres()), PairWay::Verdict::k_open);
 }

@@ -24,9 +24,10 @@ struct Edges {
     (body ? body_motion : cloth_motion).insert((body ? body_motion : cloth_motion).end(), 2, motion);
     if (!body) ++cloth_edges;
   }
-  std::vector<Vec3> all() const {
-    std::vector<Vec3> d = cloth_motion;
-    d.insert(d.end(), body_motion.begin(), body_motion.end());
+  std::vector<Vec3f> all() const {
+    std::vector<Vec3f> d;
+    for (const auto* motion : {&cloth_motion, &body_motion})
+      for (const Vec3& m : *motion) d.push_back(m.cast<float>());
     return d;
   }
   static Stencil pair(int edge, int other) { return {{2 * edge, 2 * edge + 1, 2 * other, 2 * other + 1}}; }
