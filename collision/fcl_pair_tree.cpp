@@ -12,8 +12,8 @@ using FclBox = fcl::AABB<float>;
 
 constexpr std::size_t k_limb = 256;  ///< most nodes of a limb, which is refitted as one
 
-bool is_changed(const PairElement& e, std::span<const char> changed) {
-  return (changed[at(e.v[0])] | changed[at(e.v[1])] | changed[at(e.v[2])]) != 0;
+bool is_changed(const Triangle& t, std::span<const char> changed) {
+  return (changed[at(t[0])] | changed[at(t[1])] | changed[at(t[2])]) != 0;
 }
 
 /// The nodes of FCL's tree, but for those below a node whose elements make a leaf. Returns the elements of all leaves,
@@ -55,16 +55,16 @@ std::vector<int> take_nodes(const fcl::BVHModel<FclBox>& model, std::vector<Pair
 
 }  // namespace
 
-void PairTree::build(std::span<const PairElement> elements, const std::function<Vec3f(int)>& place_of,
-                     const Adjacency& patches_of) {
+void PairTree::build(std::span<const PairElement> elements, const PairFeatures& features,
+                     const std::function<Vec3f(int)>& place_of, const Adjacency& patches_of) {
   CHECK(elements.size() < (1u << 28));  // PairNode
   std::vector<fcl::Vector3<float>> points;
   std::vector<fcl::Triangle> faces;
   points.reserve(3 * elements.size());
-  first_vertex_ = end_vertex_ = elements.empty() ? 0 : elements[0].v[0];
+  first_vertex_ = end_vertex_ = elements.empty() ? 0 : features.corners(elements[0])[0];
   for (const PairElement& e : elements) {
     const std::size_t first = points.size();
-    for (const int v : e.v) {
+    for (const int v : features.corners(e)) {
       first_vertex_ = std::min(first_vertex_, v);
       end_vertex_ = std::max(end_vertex_, v + 1);
       const fcl::Vector3<float> p = place_of(v);
@@ -85,13 +85,14 @@ void PairTree::build(std::span<const PairElement> elements, const std::function<
     patches_.build(nodes_, elements.size(), [&](std::size_t e) { return patches_of.row(order[e]); });
 }
 
-void PairTree::begin_refit(std::span<const char> changed) {
+void PairTree::begin_refit(const PairFeatures& features, std::span<const char> changed) {
   any_mark_now_ = true;
   if (changed.empty()) return;
   const bool was_marked = any_mark_ || marks_.size() != nodes_.size();
   any_mark_ = any_mark_now_ =
       std::any_of(changed.begin() + first_vertex_, changed.begin() + end_vertex_, [](char c) { return c; }) &&
-      std::any_of(elements_.begin(), elements_.end(), [&](const PairElement& e) { return ft::is_changed(e, changed); });
+      std::any_of(elements_.begin(), elements_.end(),
+                  [&](const PairElement& e) { return ft::is_changed(features.corners(e), changed); });
   if (was_marked) marks_.assign(nodes_.size(), 0);
 }
 
@@ -105,9 +106,10 @@ void PairTree::end_refit(const PairFeatures& features, std::span<const char> cha
   for (std::size_t i = trunk_.size(); i-- > 0;) refit(trunk_[i], features, changed);
 }
 
-bool PairTree::is_changed(const PairNode& leaf, std::span<const char> changed) const {
+bool PairTree::is_changed(const PairNode& leaf, const PairFeatures& features, std::span<const char> changed) const {
   bool any = false;
-  for (int e = leaf.first_element(); e < leaf.end_element(); ++e) any |= ft::is_changed(elements_[at(e)], changed);
+  for (int e = leaf.first_element(); e < leaf.end_element(); ++e)
+    any |= ft::is_changed(features.corners(elements_[at(e)]), changed);
   return any;
 }
 
@@ -123,8 +125,8 @@ void PairTree::refit(std::size_t k, const PairFeatures& features, std::span<cons
   const bool leaf = node.is_leaf();
   const std::size_t child = leaf ? 0 : at(node.first_child());
   if (!changed.empty()) {
-    marks_[k] =
-        leaf ? static_cast<char>(is_changed(node, changed)) : static_cast<char>(marks_[child] | marks_[child + 1]);
+    marks_[k] = leaf ? static_cast<char>(is_changed(node, features, changed))
+                     : static_cast<char>(marks_[child] | marks_[child + 1]);
     if (marks_[k] == 0) return;
   }
   node.set_box(leaf ? box_of(node, features) : nodes_[child].box().join(nodes_[child + 1].box()));

@@ -67,19 +67,20 @@ PairFeatures::PairFeatures(int cloth_vertex_count, std::span<const Triangle> clo
   for (std::size_t k = 0; k < triangle_count; ++k) {
     const bool of_cloth = k < cloth_triangles.size();
     PairElement e;
-    e.v = known.face(static_cast<int>(k));
-    e.face = is_cord(e.v) || again[k] != 0 ? -1 : static_cast<int>(k);
+    e.triangle = static_cast<int>(k);
+    const Triangle& v = known.face(e.triangle);
+    e.has_face = !is_cord(v) && again[k] == 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      CHECK(e.v[i] >= 0 && e.v[i] < vertex_count);
-      CHECK(of_cloth == (e.v[i] < cloth_vertex_count));
-      const auto [lo, hi] = std::minmax(e.v[i], e.v[(i + 1) % 3]);
+      CHECK(v[i] >= 0 && v[i] < vertex_count);
+      CHECK(of_cloth == (v[i] < cloth_vertex_count));
+      const auto [lo, hi] = std::minmax(v[i], v[(i + 1) % 3]);
       if (lo == hi) continue;
       const std::size_t edge =
           of_cloth ? rank<Edge>(cloth_edges, {lo, hi}) : cloth_edges.size() + rank<Edge>(collider_edges, {lo, hi});
       if (take(edge_owned, edge)) e.owned_edge[at(e.owned_edge_count++)] = static_cast<int>(edge);
     }
     for (std::size_t i = 0; i < 3; ++i)
-      if (take(vertex_owned, at(e.v[i]))) std::swap(e.v[i], e.v[at(e.owned_vertex_count++)]);
+      if (take(vertex_owned, at(v[i]))) e.owned_vertices |= static_cast<std::uint8_t>(1u << i);
     (of_cloth ? cloth : collider).push_back(e);
   }
 }

@@ -1,7 +1,7 @@
 // Features of the two surfaces of a pair search, numbered: faces in the order of their triangles, of which there is no
 // copy, edges by their lexicographic rank; and for every triangle the features it stands for (its own vertices and
-// edges), so that every feature is owned exactly once. Boxes of edges and faces are joined from those of vertices where they are looked
-// at, which costs less than to keep them. For pair_finder.cpp.
+// edges), so that every feature is owned exactly once. Boxes of edges and faces are joined from those of vertices where
+// they are looked at, which costs less than to keep them. For pair_finder.cpp.
 #pragma once
 
 #include <array>
@@ -18,10 +18,11 @@ namespace ft {
 
 /// A triangle as the search sees it.
 struct PairElement {
-  Triangle v;                       ///< its own vertices come first
-  int face = 0;                     ///< its number; -1 for a cord, or an earlier triangle again
+  int triangle = 0;                 ///< its number, that of its face where it has one
   std::array<int, 3> owned_edge{};  ///< by rank; the first owned_edge_count are meant
-  std::int8_t owned_vertex_count = 0, owned_edge_count = 0;
+  std::uint8_t owned_edge_count = 0;
+  std::uint8_t owned_vertices = 0;  ///< bit k: corner k
+  bool has_face = false;            ///< not a cord, nor an earlier triangle again
 };
 
 struct PairFeatures {
@@ -48,8 +49,10 @@ struct PairFeatures {
   bool present(int v) const { return all_present || !vertex_boxes[at(v)].is_nowhere(); }
   BoxLanes box(int v) const { return BoxLanes::load(vertex_boxes[at(v)]); }
   BoxLanes box(const Edge& e) const { return box(e[0]).join(box(e[1])); }
+  const Triangle& corners(const PairElement& e) const { return numbers().face(e.triangle); }
   /// Joins the vertices that are somewhere: an element without its third vertex may still own an edge.
-  BoxLanes box(const PairElement& e) const { return box(e.v[0]).join(box(e.v[1])).join(box(e.v[2])); }
+  BoxLanes box(const Triangle& t) const { return box(t[0]).join(box(t[1])).join(box(t[2])); }
+  BoxLanes box(const PairElement& e) const { return box(corners(e)); }
 };
 
 }  // namespace ft

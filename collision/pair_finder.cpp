@@ -51,7 +51,7 @@ struct PairFinder::Impl {
 };
 
 void PairFinder::Impl::refit(std::span<const char> changed) {
-  parallel_tasks(2, [&](std::size_t task) { (task == 0 ? cloth : collider).begin_refit(changed); });
+  parallel_tasks(2, [&](std::size_t task) { (task == 0 ? cloth : collider).begin_refit(features, changed); });
   const std::size_t of_cloth = cloth.limb_count();
   parallel_tasks(of_cloth + collider.limb_count(), [&](std::size_t limb) {
     limb < of_cloth ? cloth.refit_below(limb, features, changed)
@@ -155,8 +155,8 @@ void PairFinder::set_patches(const AscendingRows& members) {
 
 void PairFinder::build_trees(const std::function<Vec3f(int)>& place_of) {
   Impl& m = *impl_;
-  if (!m.features.cloth.empty()) m.cloth.build(m.features.cloth, place_of, m.patches_of);
-  if (!m.features.collider.empty()) m.collider.build(m.features.collider, place_of, {});
+  if (!m.features.cloth.empty()) m.cloth.build(m.features.cloth, m.features, place_of, m.patches_of);
+  if (!m.features.collider.empty()) m.collider.build(m.features.collider, m.features, place_of, {});
   give_back(m.features.cloth, m.features.collider, m.patches_of);  // the trees have them
 }
 

@@ -24,18 +24,18 @@ class PairTree {
   const NodePatches& patches() const { return patches_; }
 
   /// place_of(vertex): in any unit. patches_of: per element, ascending; no rows: none.
-  void build(std::span<const PairElement> elements, const std::function<Vec3f(int)>& place_of,
-             const Adjacency& patches_of);
+  void build(std::span<const PairElement> elements, const PairFeatures& features,
+             const std::function<Vec3f(int)>& place_of, const Adjacency& patches_of);
 
   /// A refit is begin_refit(), refit_below() for all limbs in any order, end_refit(). changed (per vertex) not empty:
   /// all other boxes are those of the last refit.
-  void begin_refit(std::span<const char> changed);
+  void begin_refit(const PairFeatures& features, std::span<const char> changed);
   std::size_t limb_count() const { return limbs_.size(); }
   void refit_below(std::size_t limb, const PairFeatures& features, std::span<const char> changed);
   void end_refit(const PairFeatures& features, std::span<const char> changed);
 
  private:
-  bool is_changed(const PairNode& leaf, std::span<const char> changed) const;
+  bool is_changed(const PairNode& leaf, const PairFeatures& features, std::span<const char> changed) const;
   BoxLanes box_of(const PairNode& leaf, const PairFeatures& features) const;
   void refit(std::size_t k, const PairFeatures& features, std::span<const char> changed);
   void share_out();

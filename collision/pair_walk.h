@@ -1,6 +1,7 @@
 // The walk of pair_finder.cpp over box trees, down to pairs of features whose boxes overlap.
 #pragma once
 
+#include <bit>
 #include <span>
 
 #include "collision/node_patches.h"
@@ -87,10 +88,21 @@ struct PairWalk {
   }
 
   /// The feature pairs that a pair of triangles is responsible for.
-  void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b, const BoxLanes& box_b) const {
-    for (int i = 0; i < a.owned_vertex_count; ++i)
-      vertex_against_face(a.v[at(i)], smaller(features.box(a.v[at(i)])), b, box_b);
-    for (int i = 0; i < b.owned_vertex_count; ++i) vertex_against_face(b.v[at(i)], features.box(b.v[at(i)]), a, box_a);
+  [[gnu::always_inline]] void meet(const PairElement& a, const BoxLanes& box_a, const PairElement& b,
+                                   const BoxLanes& box_b) const {
+    const Triangle &va = features.corners(a), &vb = features.corners(b);
+    for (unsigned own = a.owned_vertices; own != 0; own &= own - 1) {
+      const int v = va[at(std::countr_zero(own))];
+      if (b.has_face) vertex_against_face(v, smaller(features.box(v)), b.triangle, vb, box_b);
+    }
+    for (unsigned own = b.owned_vertices; own != 0; own &= own - 1) {
+      const int v = vb[at(std::countr_zero(own))];
+      if (a.has_face) vertex_against_face(v, features.box(v), a.triangle, va, box_a);
+    }
+    meet_edges(a, box_a, b);
+  }
+
+  void meet_edges(const PairElement& a, const BoxLanes& box_a, const PairElement& b) const {
     if (!want_edges || a.owned_edge_count == 0) return;
     for (int j = 0; j < b.owned_edge_count; ++j) {
       const int rb = b.owned_edge[at(j)];
@@ -109,11 +121,11 @@ struct PairWalk {
     }
   }
 
-  void vertex_against_face(int v, const BoxLanes& box, const PairElement& f, const BoxLanes& of_face) const {
-    if (!box.overlaps(of_face) || f.face < 0 || v == f.v[0] || v == f.v[1] || v == f.v[2]) return;
-    if (!features.present(f.v[0]) || !features.present(f.v[1]) || !features.present(f.v[2])) return;
-    if (k_some && !(changed[v] | changed[f.v[0]] | changed[f.v[1]] | changed[f.v[2]])) return;
-    out.vertex_face.push_back(pair_key(v, f.face));
+  void vertex_against_face(int v, const BoxLanes& box, int face, const Triangle& f, const BoxLanes& of_face) const {
+    if (!box.overlaps(of_face) || v == f[0] || v == f[1] || v == f[2]) return;
+    if (!features.present(f[0]) || !features.present(f[1]) || !features.present(f[2])) return;
+    if (k_some && !(changed[v] | changed[f[0]] | changed[f[1]] | changed[f[2]])) return;
+    out.vertex_face.push_back(pair_key(v, face));
   }
 };
 
