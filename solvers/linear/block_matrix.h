@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "baker/core/huge_pages.h"
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 
@@ -48,7 +47,7 @@ BlockPattern make_pattern(std::vector<int> diagonal, std::vector<int> column);
 struct BlockMatrix {
   const BlockPattern* pattern = nullptr;
   /// block_count(), and one more: who loads columns of three as four reads past the last.
-  std::vector<Mat3f, HugePages<Mat3f>> blocks;
+  std::vector<Mat3f> blocks;
   /// For the blocks of a pattern; what is in them is not defined.
   void make_room(const BlockPattern& p);
   /// All zero.
