@@ -14,6 +14,9 @@ endfunction()
 set(small_shot ${CMAKE_CURRENT_SOURCE_DIR}/data/small_shot/shot.toml)
 ft_script_test(determinism baker/determinism.sh ${small_shot})
 ft_script_test(kill_resume baker/kill_resume.sh ${small_shot})
+if(NOT FOLLOWTHROUGH_SANITIZE)  # which takes several times the memory
+  ft_script_test(memory baker/memory.sh)
+endif()
 # Some 330 bakes: little work in each, what counts is what is written.
 ft_script_test(failing_writes baker/failing_writes.sh ${small_shot} --set shot.preroll=1 --set solver.newton_iterations=1
   --set solver.min_substeps=1 --set solver.max_substeps=2 --set primary.walker.speed=0.2)
