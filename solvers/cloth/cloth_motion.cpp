@@ -57,8 +57,7 @@ ClothMotion take_motion(State& state, std::size_t count) {
   return m;
 }
 
-KeptMotion::KeptMotion(const ClothMotion& m)
-    : x_(m.x), h_previous_(m.h_previous) {
+KeptMotion::KeptMotion(const ClothMotion& m) : x_(m.x), h_previous_(m.h_previous) {
   if (std::any_of(m.released.begin(), m.released.end(), [](int part) { return part >= 0; })) released_ = m.released;
   if (std::any_of(m.tangled.begin(), m.tangled.end(), [](char is) { return is != 0; })) tangled_ = m.tangled;
   const auto from = [](std::span<const Vec3> origin, std::span<const Vec3> values) {
