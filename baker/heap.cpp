@@ -66,7 +66,7 @@ void empty_heap() {
 }  // namespace ft
 
 #if defined(FT_OWN_LARGE_BLOCKS)
-// All other forms of new and delete but the over-aligned ones come to these two.
+// All other forms of new and delete but the over-aligned ones come to these.
 void* operator new(std::size_t bytes) {
   for (;;) {
     if (bytes >= ft::k_large)

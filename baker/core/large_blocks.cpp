@@ -54,10 +54,12 @@ void* LargeBlocks::take(std::size_t bytes) {
   std::byte* block = nullptr;
   if (best != free_.end()) {
     block = best->first;
-    const Free rest{best->second.bytes - size, best->second.since};
-    free_.erase(best);
+    if (Run& run = best->second; run.bytes > size) {
+      free_.emplace(block + size, Run{run.bytes - size, run.since});
+      run.bytes = size;
+    }
+    used_blocks_.insert(free_.extract(best));
     kept_ -= size;
-    if (rest.bytes > 0) free_.emplace(block + size, rest);
   } else {
     return_beyond(std::max(most_, used_ + size) - size);
     block = map_pages(size);
@@ -66,8 +68,8 @@ void* LargeBlocks::take(std::size_t bytes) {
       block = map_pages(size);
     }
     if (block == nullptr) return nullptr;
+    used_blocks_.emplace(block, Run{size, 0});
   }
-  used_blocks_.emplace(block, size);
   used_ += size;
   most_of_now_ = std::max(most_of_now_, used_);
   most_ = std::max(most_, used_);
@@ -78,10 +80,8 @@ bool LargeBlocks::give_back(void* block) {
   const std::lock_guard lock(mutex_);
   const auto found = used_blocks_.find(static_cast<std::byte*>(block));
   if (found == used_blocks_.end()) return false;
-  const auto [begin, bytes] = *found;
-  used_blocks_.erase(found);
-  used_ -= bytes;
-  add_free(begin, bytes);
+  used_ -= found->second.bytes;
+  add_free(used_blocks_.extract(found));
   return true;
 }
 
@@ -102,23 +102,17 @@ std::size_t LargeBlocks::kept() const {
   return kept_;
 }
 
-void LargeBlocks::add_free(std::byte* begin, std::size_t bytes) {
-  kept_ += bytes;
-  const auto next = free_.lower_bound(begin);
-  if (next != free_.end() && next->first == begin + bytes) {
-    bytes += next->second.bytes;
-    free_.erase(next);
-  }
-  const auto behind = free_.lower_bound(begin);
-  if (behind != free_.begin()) {
-    const auto before = std::prev(behind);
-    if (before->first + before->second.bytes == begin) {
-      begin = before->first;
-      bytes += before->second.bytes;
-      free_.erase(before);
-    }
-  }
-  free_.emplace(begin, Free{bytes, gives_++});
+void LargeBlocks::add_free(Runs::node_type run) {
+  kept_ += run.mapped().bytes;
+  run.mapped().since = gives_++;
+  const auto here = free_.insert(std::move(run)).position;
+  const auto join = [&](Runs::iterator first, Runs::iterator second) {
+    if (first->first + first->second.bytes != second->first) return;
+    first->second = {first->second.bytes + second->second.bytes, here->second.since};  // the latest
+    free_.erase(second);
+  };
+  if (const auto next = std::next(here); next != free_.end()) join(here, next);
+  if (here != free_.begin()) join(std::prev(here), here);
 }
 
 /// Until no more than `most` are used and kept, as far as that goes: what has been free for longest.
@@ -126,7 +120,7 @@ void LargeBlocks::return_beyond(std::size_t most) {
   while (kept_ > 0 && used_ + kept_ > most) {
     const auto oldest = std::min_element(free_.begin(), free_.end(),
                                          [](const auto& a, const auto& b) { return a.second.since < b.second.since; });
-    Free& run = oldest->second;
+    Run& run = oldest->second;
     const std::size_t bytes = std::min(run.bytes, in_pages(used_ + kept_ - most));
     if (!unmap_pages(oldest->first + (run.bytes - bytes), bytes)) return;
     kept_ -= bytes;
