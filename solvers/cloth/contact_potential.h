@@ -85,7 +85,7 @@ class ContactPotential {
   struct Lagged {
     float most;  ///< N
     Vec3f normal;
-    std::array<float, 3> last_weights;
+    std::array<float, 3> last_weights;  ///< of PairGeometry::weight, without the first
     std::array<int, 4> vertex;
 
     Lagged(const Contact& contact, double most_force);

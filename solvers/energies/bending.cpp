@@ -104,11 +104,13 @@ Bending::Bending(const ClothTopology& topology) {
     for (std::size_t i = 0; i < 3; ++i) {
       if (bend.hinge[i] < 0) continue;
       const int row = slot_of[at(index[at(bend.hinge[i])])];
-      for (std::size_t j = 0; j < 3; ++j)
-        if (bend.hinge[j] >= 0)
-          add_coupling(groups_[at(row) / k_lanes], at(row) % k_lanes, neighbours[at(row)], row,
-                       slot_of[at(index[at(bend.hinge[j])])],
-                       bend.sign[i] * bend.sign[j] * bend.stiffness(static_cast<int>(i), static_cast<int>(j)));
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (bend.hinge[j] < 0) continue;
+        CHECK(topology.hinges[at(bend.hinge[i])].piece == topology.hinges[at(bend.hinge[j])].piece);  // measure()
+        add_coupling(groups_[at(row) / k_lanes], at(row) % k_lanes, neighbours[at(row)], row,
+                     slot_of[at(index[at(bend.hinge[j])])],
+                     bend.sign[i] * bend.sign[j] * bend.stiffness(static_cast<int>(i), static_cast<int>(j)));
+      }
     }
   }
   for (std::size_t s = 0; s < neighbours.size(); ++s)  // unused couplings look at themselves, with no weight

@@ -74,5 +74,14 @@ TEST(ClothMotion, Is_kept_with_its_places_to_the_bit_the_last_step_to_seven_digi
   }
 }
 
+TEST(ClothMotion, Is_kept_where_nothing_is_let_through_or_tangled) {
+  ClothMotion m = some_motion();
+  m.released.assign(k_count, -1);
+  m.tangled.assign(k_count, 0);
+  const ClothMotion kept = KeptMotion(m).motion();
+  EXPECT_EQ(kept.released, m.released);
+  EXPECT_EQ(kept.tangled, m.tangled);
+}
+
 }  // namespace
 }  // namespace ft
