@@ -32,6 +32,8 @@ void for_each_field(Report& r, Visit&& visit) {
   visit("strain_max", r.strain_max);
   visit("strain_mean", r.strain_mean);
   visit("kinetic_energy", r.kinetic_energy);
+  visit("absent_vertices", r.absent_vertices);
+  visit("crossings_absent", r.crossings_absent);
   visit("released_vertices", r.released_vertices);
   visit("finite", r.finite);
 }
@@ -244,6 +246,8 @@ FrameReport merge(const FrameReport& a, const FrameReport& b) {
   out.strain_max = std::max(a.strain_max, b.strain_max);
   out.strain_mean = std::max(a.strain_mean, b.strain_mean);
   out.kinetic_energy += b.kinetic_energy;
+  out.absent_vertices = std::max(a.absent_vertices, b.absent_vertices);
+  out.crossings_absent += b.crossings_absent;
   out.released_vertices += b.released_vertices;
   out.finite = a.finite && b.finite;
   out.forces.insert(out.forces.end(), b.forces.begin(), b.forces.end());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "baker/core/check.h"
+#include "collision/absent_vertices.h"
 #include "collision/carver.h"
 #include "collision/creases.h"
 #include "collision/mesh_refine.h"
@@ -16,6 +17,7 @@ struct FeasibleCollider::Impl {
   std::vector<int> part_of_vertex;
   Carver carver;  ///< without a surface when there is nothing to carve
   Creases creases;
+  AbsentVertices absent;
 };
 
 FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> bind_pose,
@@ -41,6 +43,7 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
       std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(drawn.parts.size()));
   m.carver.plan = make_carve_plan(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
   m.creases = Creases(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
+  m.absent = AbsentVertices(*m.carver.surface, bind, m.part_of_vertex, rank, settings.deepest);
 }
 
 FeasibleCollider::~FeasibleCollider() = default;
@@ -65,12 +68,16 @@ void FeasibleCollider::refine(std::span<const Vec3> drawn, std::span<Vec3> refin
   impl_->mesh.positions(drawn, refined);
 }
 
-CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions) const {
+CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions,
+                                       std::span<char> absent) const {
   refine(drawn, positions);
+  std::fill(absent.begin(), absent.end(), 0);
   CarveReport report;
   if (impl_->carver.surface == nullptr) return report;
   const std::vector<Vec3> before(positions.begin(), positions.end());
   impl_->creases.open(positions);
+  std::vector<Vec3> opened;
+  if (!absent.empty()) opened.assign(positions.begin(), positions.end());
   const int part_count = impl_->carver.surface->part_count();
   Carver::Scratch scratch{positions, std::vector<TreeBox>(at(part_count)), std::vector<TriangleTree>(at(part_count))};
   for (int part = 0; part < part_count; ++part) scratch.boxes[at(part)] = impl_->carver.box_of(part, positions);
@@ -80,6 +87,7 @@ CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Ve
     const std::size_t r = at(representative[at(v)]);
     positions[at(v)] += positions[r] - before[r];
   }
+  if (!absent.empty()) impl_->absent.find(opened, positions, absent);
   std::size_t farthest = 0;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const double move = (positions[v] - before[v]).norm();

@@ -17,7 +17,10 @@ struct FeasibleSettings {
   double gap =
       6e-3;  ///< room kept between parts [m]; about twice the floor plus layers x thickness plus the cloth's sag
   double max_edge = 30e-3;  ///< longest edge of the refined collider [m]
-  bool carve = true;        ///< off: the drawn body, refined
+  /// A vertex that would have to move farther than this to leave the larger parts is absent [m], 5e-3..0.1: what is
+  /// carved so far is pressed flat, jumps as the larger part's nearest side changes, and drags cloth along.
+  double deepest = 25e-3;
+  bool carve = true;  ///< off: the drawn body, refined
 };
 
 struct CarveReport {
@@ -40,8 +43,9 @@ class FeasibleCollider {
   bool kept_apart(int part_a, int part_b) const;
   /// Refined positions of the drawn pose, before anything gives way.
   void refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const;
-  /// Refined and carved positions. Deterministic; thread-safe.
-  CarveReport evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions) const;
+  /// Refined and carved positions. Deterministic; thread-safe. absent (per vertex, or empty: not asked for): 1 where the
+  /// body is so deep in itself that no cloth should meet it, else 0; see absent_vertices.h.
+  CarveReport evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions, std::span<char> absent = {}) const;
 
  private:
   struct Impl;

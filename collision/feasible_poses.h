@@ -24,9 +24,11 @@ class FeasiblePoses {
   const FeasibleCollider& collider() const { return collider_; }
 
   /// The collider at `time` [s], from the body as drawn then. Costs a refinement where it was kept. Thread-safe.
-  CarveReport evaluate(double time, std::span<const Vec3> drawn, std::span<Vec3> positions) const;
+  /// absent: as FeasibleCollider's.
+  CarveReport evaluate(double time, std::span<const Vec3> drawn, std::span<Vec3> positions,
+                       std::span<char> absent = {}) const;
   /// As evaluate(), and keeps what was carved, while there is room for it.
-  CarveReport keep(double time, std::span<const Vec3> drawn, std::span<Vec3> positions);
+  CarveReport keep(double time, std::span<const Vec3> drawn, std::span<Vec3> positions, std::span<char> absent = {});
   /// Of what is kept, about.
   std::size_t bytes() const;
 
@@ -35,6 +37,7 @@ class FeasiblePoses {
     CarveReport report;
     std::vector<int> vertices;
     std::vector<Vec3> positions;  ///< of these vertices [m]
+    std::vector<int> absent;
   };
   const Carved* kept(double time) const;
 

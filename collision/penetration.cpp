@@ -32,22 +32,27 @@ int winding(const TriangleTree& tree, const Vec3& p, const Vec3& direction, std:
 
 }  // namespace
 
+bool is_inside(const Vec3& p, std::span<const Vec3> surface, std::span<const Triangle> triangles,
+               const TriangleTree& tree) {
+  static const Vec3 directions[3] = {Vec3(0.577, 0.61, 0.543).normalized(), Vec3(-0.31, 0.88, 0.36).normalized(),
+                                     Vec3(0.23, -0.41, -0.88).normalized()};
+  int votes = 0;
+  for (int k = 0; k < 3 && votes < 2 && votes + 3 - k >= 2; ++k)
+    votes += winding(tree, p, directions[k], surface, triangles) > 0 ? 1 : 0;
+  return votes >= 2;
+}
+
 std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& checked, double least_depth) {
   std::vector<Penetration> out;
   if (points.empty() || checked.empty()) return out;
   const std::span<const Vec3> surface = checked.positions();
   const std::span<const Triangle> triangles = checked.triangles();
   const TriangleTree& tree = checked.tree();
-  const Vec3 directions[3] = {Vec3(0.577, 0.61, 0.543).normalized(), Vec3(-0.31, 0.88, 0.36).normalized(),
-                              Vec3(0.23, -0.41, -0.88).normalized()};
   std::vector<double> depth(points.size(), 0.0);
   parallel_for(points.size(), 128, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (tree.box().squared_distance(points[i]) > 0) continue;
-      int votes = 0;
-      for (int k = 0; k < 3 && votes < 2 && votes + 3 - k >= 2; ++k)
-        votes += winding(tree, points[i], directions[k], surface, triangles) > 0 ? 1 : 0;
-      if (votes < 2) continue;
+      if (!is_inside(points[i], surface, triangles, tree)) continue;
       TriangleTree::Hit hit;
       tree.closest(points[i], surface, triangles, hit);
       depth[i] = std::sqrt(hit.closest.squared_distance);

@@ -19,6 +19,10 @@ struct Penetration {
   double depth = 0;  ///< distance to the surface [m]
 };
 
+/// Whether a point is inside: tree is of these triangles, refitted to these positions [m].
+bool is_inside(const Vec3& p, std::span<const Vec3> surface, std::span<const Triangle> triangles,
+               const TriangleTree& tree);
+
 /// Points inside by more than least_depth [m], by ascending vertex. Triangles counter-clockwise seen from outside.
 std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& surface,
                                       double least_depth = 1e-5);

@@ -72,12 +72,16 @@ struct FrameReport {
   int crossings_drawn = 0;   ///< edge-triangle crossings with the drawn body
   double smallest_gap = 0;   ///< m, to the feasible collider and among cloths; the contact radius if nothing is nearer
   double deepest_drawn = 0;  ///< m, deepest cloth vertex inside the drawn body
-  int inside_body = 0;       ///< vertices on the wrong side of the feasible collider's surface, not let through it
+  int inside_body = 0;       ///< vertices on the wrong side of the feasible collider's surface, where it is not absent
   int open_stitches = 0;     ///< stitches that are open after their seams should have closed
   double widest_seam = 0;    ///< m, of those
   double strain_p99 = 0, strain_max = 0, strain_mean = 0;  ///< edge strain, 1
   double kinetic_energy = 0;                               ///< J
-  int released_vertices = 0;  ///< vertices that were let through a part this frame because there was no room
+  int absent_vertices = 0;    ///< of the collider that a garment does not meet, the most of any garment
+  int crossings_absent = 0;   ///< edge-triangle crossings with what is absent for the cloth that crosses it
+  /// Cords that were let through a part because there was no room; of the collider of cloth, vertices that were let go
+  /// although no overlap of the body was known to be there.
+  int released_vertices = 0;
   bool finite = true;
   std::vector<InteractionForce> forces;  ///< one of each garment
   std::vector<Incident> incidents;       ///< worst first, at most 16 a frame
@@ -98,6 +102,9 @@ class Solver {
   /// Topology of the feasible collider, and its positions at the state's time.
   virtual std::span<const Triangle> collider_triangles() const = 0;
   virtual void collider_positions(const State& state, std::vector<Vec3>& positions) const = 0;
+  /// Which vertices of the feasible collider a system does not meet at the state's time, nor any feature that one of
+  /// them belongs to: 1, else 0. Empty: it meets all.
+  virtual std::vector<char> collider_absent(const State& /*state*/, int /*system*/) const { return {}; }
   /// Whether the primary goes where the solver takes it, which is where the collider is; else along its trajectory.
   virtual bool moves_primary() const { return false; }
 

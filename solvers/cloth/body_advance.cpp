@@ -125,7 +125,6 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     report.seconds_candidates += seconds_since(clock);
     return all;
   };
-  if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
@@ -183,10 +182,6 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     double free = plan(cloth, h);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
-      if (s.candidates.release_beside(cloth, piece) > 0) {
-        share = 1;
-        continue;
-      }
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
       const double length = shorter * (1 - done) * in.h;
       if (length >= in.shortest || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short)) {
@@ -198,8 +193,8 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       for (int round = 0; free < 1 && s.candidates.cloth_blocks_cloth() && round < k_last_rounds; ++round)
         free = s.candidates.join_blocked(cloth, s.piece);
       report.seconds_candidates += seconds_since(joining);
-      // No room: what blocks is let through until the part is clear of all cloth again. Should cloth still block
-      // cloth then, these pairs pass this once, and the certificate says so.
+      // No room: what blocks is let go until it is clear of the cloth again. Should cloth still block cloth then,
+      // these pairs pass this once, and the certificate says so.
       if (free < 1 && s.candidates.release_blocked(cloth, piece) > 0) {
         share = 1;
         continue;  // search again without them

@@ -1,7 +1,6 @@
 // One substep: the body advances with the cloth carried along, as far as conservative CCD allows; the cloth is then
 // solved for with the body still; what is left of the substep follows in the same way. Where there is no room at all,
-// the cloth is let through the part that blocks it, the smaller one of several (released), so that the walk never
-// stops.
+// what blocks the cloth is let go, the smaller one of several parts (absence.h), so that the walk never stops.
 #pragma once
 
 #include <memory>

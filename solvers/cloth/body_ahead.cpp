@@ -14,7 +14,7 @@ constexpr int k_at_once =
 
 void BodyAhead::fill(double time, BodyPose& pose) const {
   collider_->drawn(time, pose.drawn);
-  collider_->feasible(time, pose.drawn, pose.feasible);
+  collider_->feasible(time, pose.drawn, pose.feasible, &pose.absent);
 }
 
 void BodyAhead::begin(double t0, double t1) {
@@ -56,7 +56,7 @@ void BodyAhead::evaluate(int first, int count, int substeps) {
     pose.drawn = start_.drawn;
     for (std::size_t v = 0; v < pose.drawn.size(); ++v)
       pose.drawn[v] += number / substeps * (end_.drawn[v] - start_.drawn[v]);
-    collider_->feasible(t0_ + number * h, pose.drawn, pose.feasible);
+    collider_->feasible(t0_ + number * h, pose.drawn, pose.feasible, &pose.absent);
   });
 }
 

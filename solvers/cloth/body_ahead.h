@@ -13,6 +13,7 @@ namespace ft {
 /// The body at one instant [m].
 struct BodyPose {
   std::vector<Vec3> drawn, feasible;
+  std::vector<char> absent;  ///< per vertex of feasible: too deep in the body itself for cloth to meet it
 };
 
 /// A frame's motion of the body. Its ends are kept: a frame starts where the last one ended.

@@ -77,8 +77,14 @@ int Candidates::part_of(const Stencil& stencil) const {
   return -1;
 }
 
-/// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself,
-/// tangled cloth with tangled cloth, or what a seam holds together.
+bool Candidates::is_gone(const ClothMotion& cloth, std::size_t body_vertex) const {
+  for (std::size_t k = body_vertex; k < cloth.absent.size(); k += model_.absence.body_count())
+    if (cloth.absent[k] == 0) return false;
+  return !cloth.absent.empty();
+}
+
+/// A pair counts unless it is cloth against what of the collider is absent for it, cloth that does not collide with
+/// itself, tangled cloth with tangled cloth, or what a seam holds together.
 bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const {
   const int part = part_of(stencil);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
@@ -86,7 +92,13 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
   for (std::size_t k = 0; k < 4; ++k) {
     const int v = stencil.v[k];
     if (v >= model_.vertex_count()) continue;
-    if (part >= 0 && model_.may_pass(cloth.released[at(v)], part)) return false;
+    if (part >= 0) {
+      const int garment = model_.garment_of(v);
+      for (const int b : stencil.v)
+        if (b >= model_.vertex_count() && cloth.absent[model_.absence.place(garment, b - model_.vertex_count())] != 0)
+          return false;
+      break;
+    }
     if (part < 0 && !model_.self_collides[at(v)]) return false;
     if (cloth.tangled[at(v)] != 0) (k < split ? tangled_a : tangled_b) = true;
   }
@@ -105,7 +117,7 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
   Box box = bounds(cloth.x);
   for (std::size_t i = 0; i < nc; ++i) box.include((cloth.x[i] + h * cloth.v[i]).eval());
   box.inflate(2 * radius_);
-  const auto way_of = [&](std::size_t i) { return (piece.body_motion[i] - mean).norm(); };
+  const auto way_of = [&](std::size_t i) { return is_gone(cloth, i) ? 0.0 : (piece.body_motion[i] - mean).norm(); };
   fastest_ = parallel_max(nb, k_block, 0.0, [&](std::size_t begin, std::size_t end) {
     double fastest = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -123,7 +135,8 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
   parallel_for(nc + nb, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double way = i < nc ? 0 : std::min(way_of(i - nc), k_farthest_range);
-      boxes_[i] = box_frame_.swept(piece.start[i], piece.start[i], radius_ + way);
+      boxes_[i] = i >= nc && is_gone(cloth, i - nc) ? VertexBox::nowhere()
+                                                    : box_frame_.swept(piece.start[i], piece.start[i], radius_ + way);
     }
   });
   // Cloth with the body only, either way round.
@@ -212,7 +225,9 @@ double Candidates::collect(const ClothMotion& cloth, double h, PieceMotion& piec
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& start = piece.start[nc + i];
       piece.all[nc + i] = piece.centre[nc + i] = piece.body_motion[i].cast<float>();
-      boxes_[nc + i] = box_frame_.swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
+      boxes_[nc + i] = is_gone(cloth, i)
+                           ? VertexBox::nowhere()
+                           : box_frame_.swept(start, start + piece.body_motion[i] - frame_, 0.5 * radius_);
     }
   });
   if (any_self_) begin_flat(piece);

@@ -66,19 +66,18 @@ class Candidates {
   /// the cloth at x (per cloth vertex [m], straight from where it was last kept): returns true where all are still flat
   /// there; else it adds what is needed now behind pairs(), and returns false.
   bool keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, const PieceMotion& piece);
-  /// Takes out the pairs that collect() or join_blocked() last saw touch. Cloth that is joined between several of the
-  /// collider's parts stays with the largest and is let through the others; else the vertices of the pairs are let
-  /// through the part (noted in cloth.released; returns how many). Pairs of cloth with cloth are only dropped.
+  /// Takes out the pairs that collect() or join_blocked() last saw touch. Where cloth is joined between several of the
+  /// collider's parts, the smaller ones are let go there; else what the pairs have of the collider is (noted in
+  /// cloth.absent; returns how many vertices). Pairs of cloth with cloth are only dropped.
   int release_blocked(ClothMotion& cloth, const PieceMotion& piece);
-  /// Of what release_blocked() would do only this: cloth between several parts, beside cloth that they have let through
-  /// already, follows it. Returns how many vertices.
-  int release_beside(ClothMotion& cloth, const PieceMotion& piece);
 
   const PairList& pairs() const { return pairs_; }
 
  private:
   struct Touching;
 
+  /// Whether no garment meets it.
+  bool is_gone(const ClothMotion& cloth, std::size_t body_vertex) const;
   bool counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const;
   int part_of(const Stencil& stencil) const;
   void place(std::size_t vertex, const ClothMotion& cloth, PieceMotion& piece);

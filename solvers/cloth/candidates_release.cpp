@@ -1,5 +1,5 @@
-// Who is let through whom where there is no room. Cloth between parts that close on it stays with the largest of them,
-// on the side where it is, and is let through the others; when these open again, it is where it was.
+// What is let go where there is no room. Cloth between parts that close on it stays with the largest of them, on the
+// side where it is; the others are absent for it until it is clear of them (absence.h).
 #include <algorithm>
 #include <utility>
 
@@ -38,36 +38,31 @@ std::vector<int> Candidates::pinched_through() const {
 int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece) {
   join_zones(piece);
   const std::vector<int> through = pinched_through();
-  int freed = 0;
-  const auto let_through = [&](int v, int part) {
-    if (part < 0 || model_.may_pass(cloth.released[at(v)], part)) return;
-    cloth.released[at(v)] = part;
-    ++freed;
-  };
+  const int n = model_.vertex_count();
+  const std::span<const Vec3> body = std::span(piece.start).subspan(at(n));
+  const auto parts = model_.collider ? model_.collider->part_of_vertex() : std::span<const int>{};
+  // Of each garment: what blocks it alone, and what closes on it.
+  std::vector<std::vector<int>> alone(model_.setup.garments.size()), closing(alone.size());
   for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge})
-    for (const Stencil& stencil : *blocked)
-      for (const int v : stencil.v)
-        if (v < model_.vertex_count() && through[at(v)] < 0) let_through(v, part_of(stencil));
-  for (std::size_t v = 0; v < through.size(); ++v) let_through(static_cast<int>(v), through[v]);
-  drop_blocked();
-  return freed;
-}
-
-int Candidates::release_beside(ClothMotion& cloth, const PieceMotion& piece) {
-  if (std::all_of(cloth.released.begin(), cloth.released.end(), [](int part) { return part < 0; })) return 0;
-  join_zones(piece);
-  const std::vector<int> through = pinched_through();
-  std::vector<char> beside(through.size(), 0);  // per zone
-  const auto look = [&](int v, int w) {
-    if (through[at(v)] >= 0 && model_.may_pass(cloth.released[at(w)], through[at(v)])) beside[at(zones_.root(v))] = 1;
-  };
-  for (const Edge& e : model_.rest_edges.edges) look(e[0], e[1]), look(e[1], e[0]);
-  int freed = 0;
-  for (int v = 0; v < model_.vertex_count(); ++v) {
-    if (beside[at(zones_.root(v))] == 0 || model_.may_pass(cloth.released[at(v)], through[at(v)])) continue;
-    cloth.released[at(v)] = through[at(v)];
-    ++freed;
+    for (const Stencil& stencil : *blocked) {
+      if (part_of(stencil) < 0) continue;
+      for (const int v : stencil.v) {
+        if (v >= n || through[at(v)] >= 0) continue;
+        for (const int b : stencil.v)
+          if (b >= n) alone[at(model_.garment_of(v))].push_back(b - n);
+      }
+    }
+  for (const MotionZones::BodyMotion& m : zones_.body_met()) {
+    const int part = through[at(m.vertex)], b = m.body_vertex - n;
+    if (part >= 0 && model_.part_rank[at(parts[at(b)])] >= model_.part_rank[at(part)])
+      closing[at(model_.garment_of(m.vertex))].push_back(b);
   }
+  int freed = 0;
+  for (int g = 0; g < static_cast<int>(alone.size()); ++g) {
+    if (!alone[at(g)].empty()) freed += model_.absence.let_go(model_, g, alone[at(g)], false, body, cloth.absent);
+    if (!closing[at(g)].empty()) freed += model_.absence.let_go(model_, g, closing[at(g)], true, body, cloth.absent);
+  }
+  drop_blocked();
   return freed;
 }
 

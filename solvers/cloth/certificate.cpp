@@ -49,33 +49,24 @@ void add_crossings(const ClothModel& model, const ClothMotion& m, std::span<cons
   }
 }
 
-bool any_released_to(const ClothModel& model, int part, std::span<const int> cloth_vertices, const ClothMotion& m) {
-  return std::any_of(cloth_vertices.begin(), cloth_vertices.end(),
-                     [&](int v) { return model.may_pass(m.released[at(v)], part); });
-}
-
-/// Crossings with the feasible collider; notes which of its parts cloth crosses. Returns those that could have been
-/// avoided.
+/// Crossings with the feasible collider, but for what of it is absent. Returns how many.
 int certify_body(const ClothModel& model, std::span<const Crossing> crossings, const ClothMotion& m,
-                 std::vector<char>& touched, FrameReport& report) {
+                 FrameReport& report) {
   const auto parts = model.collider->part_of_vertex();
   const auto& names = model.collider->trajectory().surface().parts;
-  touched.assign(names.size(), 0);
-  report.crossings_body = static_cast<int>(crossings.size());
-  int avoidable = 0;
-  for (const Crossing& c : crossings) {
-    const int part = parts[at(c.edge_of_first ? c.triangle[0] : c.edge[0])];
-    touched[at(part)] = 1;
-    if (!any_released_to(model, part, c.edge_of_first ? std::span<const int>(c.edge) : c.triangle, m)) ++avoidable;
-  }
+  std::vector<Crossing> met;
+  for (const Crossing& c : crossings)
+    if (!model.absence.is_absent(model, c, m.absent)) met.push_back(c);
+  report.crossings_body = static_cast<int>(met.size());
+  report.crossings_absent = static_cast<int>(crossings.size() - met.size());
   add_crossings(
-      model, m, crossings, [](const Crossing& c) { return c.edge_of_first ? c.edge[0] : c.triangle[0]; },
+      model, m, met, [](const Crossing& c) { return c.edge_of_first ? c.edge[0] : c.triangle[0]; },
       [&](const Crossing& c) {
         const int part = parts[at(c.edge_of_first ? c.triangle[0] : c.edge[0])];
         return "cloth crosses the collider's part " + names[at(part)].name;
       },
       report);
-  return avoidable;
+  return report.crossings_body;
 }
 
 /// Crossings among the cloths; marks the tangles anew. Returns those that could have been avoided.
@@ -96,36 +87,35 @@ int certify_cloths(const ClothModel& model, std::span<const Crossing> own, Cloth
   return avoidable;
 }
 
-/// A part holds the cloth again once none of the cloth that it let through crosses it or is inside it, or a smaller
-/// part, for those let it through too.
-void hold_again(const ClothModel& model, std::span<const Vec3> body, std::span<const char> touched, ClothMotion& m,
-                FrameReport& report) {
-  if (std::all_of(m.released.begin(), m.released.end(), [](int part) { return part < 0; })) return;
-  const auto parts = model.collider->part_of_vertex();
-  for (int part = 0; part < static_cast<int>(touched.size()); ++part) {
-    std::vector<Vec3> through;
-    std::vector<int> index;
-    for (std::size_t i = 0; i < m.released.size(); ++i)
-      if (m.released[i] == part) through.push_back(m.x[i]), index.push_back(static_cast<int>(i));
-    if (through.empty()) continue;
-    report.released_vertices += static_cast<int>(through.size());
-    bool any_touched = false;
-    for (std::size_t p = 0; p < touched.size(); ++p)
-      any_touched = any_touched || (touched[p] && model.may_pass(part, static_cast<int>(p)));
-    std::vector<Triangle> shell;
-    for (const Triangle& t : model.collider->triangles())
-      if (model.may_pass(part, parts[at(t[0])])) shell.push_back(t);
-    double deepest = 0;
-    int worst = index[0];
-    for (const Penetration& p : penetrations(through, body, shell))
-      if (p.depth > deepest) deepest = p.depth, worst = index[at(p.vertex)];
-    add_incident(model, m, Incident::Kind::k_released, worst, deepest,
-                 "no room: " + std::to_string(through.size()) + " vertices let through part " +
-                     model.collider->trajectory().surface().parts[at(part)].name,
+/// What is absent from here on; what was let go is an incident.
+void describe_absent(const ClothModel& model, const BodyPose& body, const ClothMotion& m, FrameReport& report) {
+  const auto& names = model.collider->trajectory().surface().parts;
+  const int n = static_cast<int>(model.absence.body_count());
+  for (int g = 0; g < static_cast<int>(model.setup.garments.size()); ++g) {
+    int absent = 0;
+    for (int b = 0; b < n; ++b) absent += m.absent[model.absence.place(g, b)];
+    report.absent_vertices = std::max(report.absent_vertices, absent);
+    const Absence::LetGo gone = model.absence.let_go_now(g, body.absent, m.absent);
+    if (gone.count == 0) continue;
+    report.released_vertices += gone.count;
+    // At the garment's vertex that is nearest.
+    int nearest = model.first_vertex[at(g)];
+    const Vec3& place = body.feasible[at(gone.vertex)];
+    for (int v = nearest; v < model.first_vertex[at(g + 1)]; ++v)
+      if ((m.x[at(v)] - place).squaredNorm() < (m.x[at(nearest)] - place).squaredNorm()) nearest = v;
+    add_incident(model, m, Incident::Kind::k_released, nearest, 0,
+                 "no room: the cloth does not meet " + std::to_string(gone.count) + " vertices of the collider, at " +
+                     names[at(model.collider->part_of_vertex()[at(gone.vertex)])].name,
                  report);
-    if (!any_touched && deepest == 0)
-      for (const int i : index) m.released[at(i)] = -1;
   }
+}
+
+/// Whether what is nearest of the collider to a cloth vertex is absent for it.
+bool nearest_is_absent(const ClothModel& model, int vertex, const CheckedSurface& collider, const ClothMotion& m) {
+  TriangleTree::Hit hit;
+  collider.tree().closest(m.x[at(vertex)], collider.positions(), collider.triangles(), hit);
+  return hit.triangle >= 0 &&
+         model.absence.is_absent(m.absent, model.garment_of(vertex), collider.triangles()[at(hit.triangle)]);
 }
 
 /// Where the cloth is inside the body as it is drawn: the body overlaps itself there, or leaves no room; or the cloth
@@ -139,13 +129,14 @@ void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const 
   int worst = -1;
   for (const Penetration& p : penetrations(m.x, model.rest_edges.edges, crossings, drawn)) {
     if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
-    if (p.depth <= k_notable_depth || m.released[at(p.vertex)] >= 0) continue;
+    if (p.depth <= k_notable_depth) continue;
     points.push_back(m.x[at(p.vertex)]);
     vertex.push_back(p.vertex);
   }
   double deepest = 0;
   int misplaced = -1;
   for (const Penetration& p : penetrations(points, feasible, k_notable_depth)) {
+    if (nearest_is_absent(model, vertex[at(p.vertex)], feasible, m)) continue;
     ++report.inside_body;
     if (p.depth > deepest) deepest = p.depth, misplaced = vertex[at(p.vertex)];
   }
@@ -181,10 +172,10 @@ Certificate::Certificate(const ClothModel& model)
       collider_(model.collider ? model.collider->triangles() : std::span<const Triangle>{}),
       drawn_(model.collider ? model.collider->trajectory().surface().triangles : std::span<const Triangle>{}) {}
 
-int Certificate::certify(std::span<const Vec3> body, ClothMotion& m, FrameReport& report) {
+int Certificate::certify(const BodyPose& body, ClothMotion& m, FrameReport& report) {
   std::vector<Crossing> with_body, own;
   cloth_.move(m.x);
-  collider_.move(body);
+  collider_.move(body.feasible);
   parallel_tasks(2, [&](std::size_t task) {
     if (task == 0)
       with_body = crossings_between(cloth_, collider_);
@@ -192,10 +183,12 @@ int Certificate::certify(std::span<const Vec3> body, ClothMotion& m, FrameReport
       own = own_crossings(model_, crossings_within(cloth_));
   });
   int avoidable = 0;
-  std::vector<char> touched;
-  if (model_.collider) avoidable += certify_body(model_, with_body, m, touched, report);
+  if (model_.collider) avoidable += certify_body(model_, with_body, m, report);
   avoidable += certify_cloths(model_, own, m, report);
-  if (model_.collider) hold_again(model_, body, touched, m, report);
+  if (model_.collider) {
+    model_.absence.bring_back(model_, with_body, collider_, body.absent, m);
+    describe_absent(model_, body, m, report);
+  }
   cloth_.forget_boxes();
   return avoidable;
 }

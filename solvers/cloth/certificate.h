@@ -1,13 +1,14 @@
 // What is certified of a frame of cloth, from positions alone: exact crossings, cloth that was let through, strain,
 // energy, depth in the drawn body. For cloth_solver.cpp, which walks a frame anew when a crossing could have been
-// avoided. Nothing here moves the cloth; certify() only decides which vertices are let through and which are tangled
-// from here on.
+// avoided. Nothing here moves the cloth; certify() only decides what of the collider is absent and which vertices are
+// tangled from here on.
 #pragma once
 
 #include <span>
 
 #include "collision/checked_surface.h"
 #include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/body_ahead.h"
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
@@ -16,10 +17,9 @@ class Certificate {
  public:
   explicit Certificate(const ClothModel& model);
 
-  /// Counts the crossings at a frame's end. Parts that no cloth touches any more hold the cloth again, and tangles are
-  /// marked anew. `body` is the feasible collider [m]. Returns the number of crossings that neither released nor
-  /// tangled cloth explains.
-  int certify(std::span<const Vec3> body, ClothMotion& motion, FrameReport& report);
+  /// Counts the crossings at a frame's end. What of the collider is clear of the cloth comes back, and tangles are
+  /// marked anew. Returns the number of crossings that no tangle explains.
+  int certify(const BodyPose& body, ClothMotion& motion, FrameReport& report);
 
   /// Strain, energy, seams that are open at that time [s] and should not be, and what is inside the drawn body [m], or
   /// inside that of the last certify(); then sorts the incidents, worst first, and keeps at most 16.

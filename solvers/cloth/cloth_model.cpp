@@ -144,11 +144,6 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   air.wind = s.wind;
   air.density = s.air_density;
   model->energies = make_cloth_energies(*model->topology, air);
-  if (s.primary) {
-    auto drag = std::make_unique<LetThroughDrag>(model->mass);
-    model->let_through = drag.get();
-    model->energies.push_back(std::move(drag));
-  }
   std::vector<std::vector<std::array<int, 4>>> stencils;
   for (const auto& energy : model->energies) stencils.push_back(energy->stencils());
   model->pattern = make_pattern(model->vertex_count(), stencils);
@@ -168,6 +163,7 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
     model->part_rank.resize(by_size.size());
     for (std::size_t rank = 0; rank < by_size.size(); ++rank)
       model->part_rank[at(by_size[rank])] = static_cast<int>(rank);
+    model->absence = Absence(*model);
     double thickness = 0;
     for (const double radius : model->contact.radius) thickness = std::max(thickness, radius);
     model->start_depth = model->collider->draw_in_for(model->start, model->triangles, thickness);

@@ -11,10 +11,10 @@
 #include "baker/core/result.h"
 #include "collision/sewn_pairs.h"
 #include "collision/vertex_clumps.h"
+#include "solvers/cloth/absence.h"
 #include "solvers/cloth/carry_smooth.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/cloth/contact_potential.h"
-#include "solvers/cloth/let_through.h"
 #include "solvers/cloth/moving_collider.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/energy.h"
@@ -57,7 +57,6 @@ struct ClothModel {
   std::vector<double> sewn_until;  ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
   std::vector<PinPoint> pins;
   std::vector<std::unique_ptr<Energy>> energies;
-  LetThroughDrag* let_through = nullptr;  ///< one of the energies; null without a collider
   BlockPattern pattern;
   std::unique_ptr<ClothTopology> topology;  ///< while the model is built; energies copy what they need
   std::vector<AttachPoint> attachments;
@@ -65,15 +64,11 @@ struct ClothModel {
   std::vector<FlippedCap> flipped_caps;
   std::unique_ptr<MovingCollider> collider;  ///< null: cloth alone
   std::vector<int> part_rank;                ///< of the collider's parts: 0 is the largest
+  Absence absence;                           ///< of the collider, where there is one
   double start_depth = 0;                    ///< how deep the deepest vertex started inside the body [m]
 
   int vertex_count() const { return static_cast<int>(mass.size()); }
   int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
-  /// Whether cloth that is let through the part `released` (-1: none) may pass `part`: what passes a part passes all
-  /// smaller ones, so that cloth between two parts is not handed from one to the other.
-  bool may_pass(int released, int part) const {
-    return released >= 0 && part_rank[static_cast<std::size_t>(part)] >= part_rank[static_cast<std::size_t>(released)];
-  }
 };
 
 Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup);

@@ -26,7 +26,11 @@ void store(State& state, const ClothMotion& m) {
   state.set("v_older", flat(m.v_older));
   state.set("h_previous", {m.h_previous});
   state.set("h_older", {m.h_older});
-  state.set("released", {m.released.begin(), m.released.end()});
+  // As a length and the places where it changes.
+  std::vector<double> changes{static_cast<double>(m.absent.size())};
+  for (std::size_t k = 0; k < m.absent.size(); ++k)
+    if (m.absent[k] != (k == 0 ? 0 : m.absent[k - 1])) changes.push_back(static_cast<double>(k));
+  state.set("absent", std::move(changes));
   state.set("tangled", {m.tangled.begin(), m.tangled.end()});
 }
 
@@ -52,13 +56,24 @@ ClothMotion take_motion(State& state, std::size_t count) {
   m.v_older = points("v_older");
   m.h_previous = numbers("h_previous", 1)[0];
   m.h_older = numbers("h_older", 1)[0];
-  for (const double part : numbers("released", count)) m.released.push_back(static_cast<int>(part));
+  m.absent = absent_of(state);
+  state.set("absent", {});
   for (const double is : numbers("tangled", count)) m.tangled.push_back(static_cast<char>(is));
   return m;
 }
 
-KeptMotion::KeptMotion(const ClothMotion& m) : x_(m.x), h_previous_(m.h_previous) {
-  if (std::any_of(m.released.begin(), m.released.end(), [](int part) { return part >= 0; })) released_ = m.released;
+std::vector<char> absent_of(const State& state) {
+  const auto* values = state.find("absent");
+  CHECK(values && !values->empty());
+  std::vector<char> out(static_cast<std::size_t>(values->front()), 0);
+  for (std::size_t k = 1; k < values->size(); k += 2) {
+    const double end = k + 1 < values->size() ? (*values)[k + 1] : values->front();
+    for (auto i = static_cast<std::size_t>((*values)[k]); i < static_cast<std::size_t>(end); ++i) out[i] = 1;
+  }
+  return out;
+}
+
+KeptMotion::KeptMotion(const ClothMotion& m) : x_(m.x), h_previous_(m.h_previous), absent_(m.absent) {
   if (std::any_of(m.tangled.begin(), m.tangled.end(), [](char is) { return is != 0; })) tangled_ = m.tangled;
   const auto from = [](std::span<const Vec3> origin, std::span<const Vec3> values) {
     std::vector<Vec3f> out(values.size());
@@ -85,8 +100,7 @@ ClothMotion KeptMotion::motion() const {
   m.x_older = m.x_previous;
   m.v_older = m.v_previous;
   m.h_previous = h_previous_;
-  m.released = released_;
-  m.released.resize(x_.size(), -1);
+  m.absent = absent_;
   m.tangled = tangled_;
   m.tangled.resize(x_.size(), 0);
   return m;

@@ -14,7 +14,7 @@ struct ClothMotion {
   std::vector<Vec3> x_previous, v_previous;  ///< one step of h_previous before
   std::vector<Vec3> x_older, v_older;        ///< and one of h_older before that
   double h_previous = 0, h_older = 0;        ///< s; 0: no history
-  std::vector<int> released;  ///< per cloth vertex: collider part that it may pass, with all smaller ones; -1 none
+  std::vector<char> absent;   ///< per garment and vertex of the collider (absence.h): 1 it does not meet it, else 0
   std::vector<char> tangled;  ///< per cloth vertex: 1 near a place where cloth crosses cloth, else 0
 };
 
@@ -27,6 +27,8 @@ void store(State& state, const ClothMotion& motion);
 /// The motion of `count` vertices that store() wrote, whose blocks it leaves empty; a state without it is a fault of
 /// the program.
 ClothMotion take_motion(State& state, std::size_t count);
+/// Of a state with such a motion: ClothMotion::absent.
+std::vector<char> absent_of(const State& state);
 
 /// A motion in less than half the room, from which cloth can start once more: positions to the bit, velocities and the
 /// last step to seven digits; what is older is forgotten.
@@ -40,8 +42,8 @@ class KeptMotion {
   std::vector<Vec3f> v_, v_previous_;
   std::vector<Vec3f> to_previous_;  ///< from x [m]
   double h_previous_;
-  std::vector<int> released_;  ///< empty: nothing is
-  std::vector<char> tangled_;  ///< the same
+  std::vector<char> absent_;
+  std::vector<char> tangled_;  ///< empty: nothing is
 };
 
 }  // namespace ft

@@ -2,9 +2,9 @@
 //   1. the collider at both ends; where the primary is cut to another place, cloth and collider at t0 go there first
 //   2. substeps (substep_count.cpp); in each: collider and pins at its end, then BodyAdvance (carry, CCD, Newton,
 //      truncation); once more with four times as many where a garment hangs on buttons and loses momentum
-//   3. certificate.cpp: exact crossings. Any that released cloth does not explain: back to the frame's start with twice
+//   3. certificate.cpp: exact crossings. Any that a tangle does not explain: back to the frame's start with twice
 //      the substeps, at most three times and as long as it helps
-//   4. parts that no cloth touches any more hold the cloth again; the report
+//   4. what of the collider is clear of the cloth comes back (absence.h); the report
 #include "solvers/cloth/cloth_solver.h"
 
 #include <algorithm>
@@ -79,6 +79,13 @@ class ClothSolver final : public Solver {
     model_->collider->feasible(state.time, drawn, out);
   }
 
+  std::vector<char> collider_absent(const State& state, int system) const override {
+    if (!model_->collider) return {};
+    const std::vector<char> all = absent_of(state);
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(model_->absence.place(system, 0));
+    return {first, first + static_cast<std::ptrdiff_t>(model_->absence.body_count())};
+  }
+
   State initial_state() const override;
   FrameReport advance_frame(State& state) const override;
 
@@ -87,7 +94,7 @@ class ClothSolver final : public Solver {
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
-  bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
+  bool push_cloth(double time, const BodyPose& body, ClothMotion& motion, std::vector<Vec3>& push) const;
 
   std::unique_ptr<ClothModel> model_;
   std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
@@ -112,7 +119,13 @@ State ClothSolver::initial_state() const {
   const std::span<const Vec3> x = model_->start.empty() ? model_->contact.rest : model_->start;
   m.x.assign(x.begin(), x.end());
   m.v.assign(m.x.size(), Vec3::Zero());
-  m.released.assign(m.x.size(), -1);
+  if (model_->collider) {
+    std::vector<Vec3> drawn, feasible;
+    std::vector<char> deep;
+    model_->collider->drawn(state.time, drawn);
+    model_->collider->feasible(state.time, drawn, feasible, &deep);
+    m.absent = model_->absence.at_start(deep);
+  }
   m.tangled = tangled_at_start_;
   m.tangled.resize(m.x.size(), 0);
   // A history of constant acceleration makes the integrator exact for free fall from the first step on.
@@ -159,6 +172,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
   double lost = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
+  std::vector<char> deep = body_.start().absent;
   for (int k = 0; k < substeps; ++k) {
     const double t0 = frame.t0 + k * h;
     const auto clock = std::chrono::steady_clock::now();
@@ -173,7 +187,8 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     in.h = h;
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
-    if (push_cloth(t0 + h, m, push)) in.push = push;
+    if (!m.absent.empty()) model_->absence.take_out(deep, next.absent, m.absent);
+    if (push_cloth(t0 + h, next, m, push)) in.push = push;
     if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
     const AdvanceReport step = advance_.substep(in, m);
@@ -189,6 +204,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     report.profile.linear += step.seconds_linear;
     report.profile.narrow += step.seconds_contact;
     body = next.feasible;
+    deep = next.absent;
     pins.swap(pins_next);
   }
   return lost;
@@ -204,19 +220,23 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
          std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
-/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of
-/// sewing. False when nothing does.
-bool ClothSolver::push_cloth(double time, ClothMotion& m, std::vector<Vec3>& push) const {
+/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and of what of the
+/// collider was let go, and the ease of sewing. False when nothing does.
+bool ClothSolver::push_cloth(double time, const BodyPose& body, ClothMotion& m, std::vector<Vec3>& push) const {
   const bool tangled = any_tangled(m.tangled), sewn = !model_->sewn_until.empty();
-  if (!tangled && !sewn) return false;
+  bool let_go = false;
+  for (int g = 0; model_->collider && !let_go && g < system_count(); ++g)
+    let_go = model_->absence.let_go_now(g, body.absent, m.absent).count > 0;
+  if (!tangled && !sewn && !let_go) return false;
   push.assign(m.x.size(), Vec3::Zero());
   if (tangled) {
     const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
     mark_tangled(*model_, crossings, m.tangled);
     untangling(m.x, model_->triangles, crossings, push);
   }
+  if (let_go) model_->absence.push_out(*model_, body.feasible, body.absent, m, push);
   const bool eased = sewn && ease_sewing(*model_, time, m.v, push);
-  return tangled || eased;
+  return tangled || let_go || eased;
 }
 
 FrameReport ClothSolver::advance_frame(State& state) const {
@@ -236,7 +256,8 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   if (teleport) carry(*teleport, motion);
   const KeptMotion start(motion);
   const int substeps =
-      substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible);
+      substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible,
+                    body_.start().absent, body_.end().absent);
   bool moved = false;
   int fewest = -1;
   FrameProfile spent;
@@ -258,7 +279,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
     if (walk_anew(substeps << attempt) > k_most_lost) walk_anew(k_times_lost * (substeps << attempt));
     if (!report.finite) motion = start.motion();  // the last finite state; the attempt counts as failed
     const auto certificate = std::chrono::steady_clock::now();
-    const int avoidable = certificate_.certify(body_.end().feasible, motion, report);
+    const int avoidable = certificate_.certify(body_.end(), motion, report);
     report.profile.certificate += elapsed(certificate);
     spent = report.profile;
     const int score = report.finite ? avoidable : std::numeric_limits<int>::max();

@@ -45,6 +45,7 @@ struct ClothGarment {
   double friction = 0.4;       ///< Coulomb, against the body [1]
   double self_friction = 0.3;  ///< among cloths [1]
   bool self_collision = true;
+  std::vector<int> ignores;  ///< parts of the primary that it does not meet
   VertexMaps maps;  ///< one value per vertex of `mesh`, or empty
 };
 

@@ -38,6 +38,9 @@ class CoarseSolver final : public Solver {
   void collider_positions(const State& state, std::vector<Vec3>& out) const override {
     inner_->collider_positions(state, out);
   }
+  std::vector<char> collider_absent(const State& state, int system) const override {
+    return inner_->collider_absent(state, system);
+  }
   State initial_state() const override { return inner_->initial_state(); }
   FrameReport advance_frame(State& state) const override {
     FrameReport report = inner_->advance_frame(state);

@@ -75,9 +75,12 @@ void MovingCollider::drawn(double time, std::vector<Vec3>& positions) const {
   trajectory().sample(time, positions);
 }
 
-CarveReport MovingCollider::feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions) const {
+CarveReport MovingCollider::feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions,
+                                     std::vector<char>* absent) const {
   positions.resize(at(vertex_count()));
-  const CarveReport report = poses_->evaluate(time, drawn, positions);
+  if (absent != nullptr) absent->resize(positions.size());
+  const CarveReport report =
+      poses_->evaluate(time, drawn, positions, absent != nullptr ? std::span<char>(*absent) : std::span<char>());
   const double share = inset_.empty() ? 0 : inset_share(time);
   if (share > 0) {
     const std::vector<Vec3> normals = vertex_normals(positions, triangles());

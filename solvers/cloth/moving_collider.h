@@ -28,8 +28,10 @@ class MovingCollider {
   double largest_inset() const { return largest_inset_; }
 
   void drawn(double time, std::vector<Vec3>& positions) const;
-  /// Feasible positions, from the drawn ones at the same time.
-  CarveReport feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions) const;
+  /// Feasible positions, from the drawn ones at the same time. absent: per vertex, where the body is too deep in itself
+  /// for cloth to meet it, see FeasibleCollider::evaluate(); null: not asked for.
+  CarveReport feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions,
+                       std::vector<char>* absent = nullptr) const;
 
  private:
   /// 1 at the start of the pre-roll, 0 from 60 % of it on.

@@ -39,6 +39,9 @@ class RidingSolver final : public Solver {
   void collider_positions(const State& state, std::vector<Vec3>& out) const override {
     inner_->collider_positions(state, out);
   }
+  std::vector<char> collider_absent(const State& state, int system) const override {
+    return inner_->collider_absent(state, system);
+  }
   State initial_state() const override {
     State state = inner_->initial_state();
     state.set(k_block, std::vector<double>(riders_.group_count(), 0.0));

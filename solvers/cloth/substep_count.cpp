@@ -62,7 +62,7 @@ double scatter(const ClothModel& model, const ClothMotion& m) {
 
 /// So many that the body moves no farther against the cloth in one than the setup says, nor than k_most_way.
 double substeps_of_body(const ClothModel& model, const ClothMotion& m, double duration, std::span<const Vec3> body_t0,
-                        std::span<const Vec3> body_t1) {
+                        std::span<const Vec3> body_t1, std::span<const char> deep_t0, std::span<const char> deep_t1) {
   const ClothSetup& setup = model.setup;
   if (body_t0.empty()) return 0;
   // Speed of the body relative to the cloth's own mean motion, where cloth is near.
@@ -97,6 +97,7 @@ double substeps_of_body(const ClothModel& model, const ClothMotion& m, double du
   // The fastest first: the first that is near decides, and slow ones change nothing.
   std::vector<std::pair<double, std::size_t>> by_speed;
   for (std::size_t i = 0; i < body_t0.size(); ++i) {
+    if (deep_t0[i] != 0 || deep_t1[i] != 0) continue;
     const double speed = (body_t1[i] - body_t0[i] - mean).norm();
     if (speed > setup.min_substeps * travel) by_speed.emplace_back(-speed, i);
   }
@@ -113,11 +114,11 @@ double substeps_of_body(const ClothModel& model, const ClothMotion& m, double du
 }  // namespace
 
 int substep_count(const ClothModel& model, const ClothMotion& motion, double duration, std::span<const Vec3> body_t0,
-                  std::span<const Vec3> body_t1) {
+                  std::span<const Vec3> body_t1, std::span<const char> deep_t0, std::span<const char> deep_t1) {
   const ClothSetup& setup = model.setup;
   const double own = std::max(duration * turning(model.rest_edges, motion) / k_most_turn,
                               duration * scatter(model, motion) / k_most_scatter);
-  const double wanted = std::ceil(std::max(own, substeps_of_body(model, motion, duration, body_t0, body_t1)));
+  const double wanted = std::ceil(std::max(own, substeps_of_body(model, motion, duration, body_t0, body_t1, deep_t0, deep_t1)));
   return static_cast<int>(std::clamp<double>(wanted, setup.min_substeps, setup.max_substeps));
 }
 

@@ -1,0 +1,35 @@
+// What of a body is too deep in the body itself to be a collider: a hand in a thigh, an upper arm in the chest. Carving
+// (carver.h) moves what is inside a larger part onto that part's surface; from some depth on that leaves a limb pressed
+// flat, which jumps when another side of the larger part becomes the nearest. Such vertices are absent: cloth does not
+// meet a feature that one of them belongs to. A function of the pose alone, so that nothing is remembered from frame to
+// frame: a vertex is absent where it had to move too far, or where it is inside and connected to such a one without
+// having been moved (carving does not know a way out of the middle of a trunk).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "baker/core/mesh.h"
+#include "collision/part_distance.h"
+
+namespace ft {
+
+class AbsentVertices {
+ public:
+  AbsentVertices() = default;
+  /// The surface has to outlive this. rank: per part, 0 is the largest. deepest: farthest that a vertex may have been
+  /// moved by carving [m].
+  AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind, std::span<const int> part_of_vertex,
+                 std::span<const int> rank, double deepest);
+  /// before and after carving, per vertex [m]. Fills absent with 0 and 1. Thread-safe.
+  void find(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const;
+
+ private:
+  const PartSurface* surface_ = nullptr;
+  std::vector<int> rank_of_vertex_;
+  Adjacency neighbours_;
+  TriangleTree tree_;
+  double deepest_ = 0;
+};
+
+}  // namespace ft

@@ -1,0 +1,235 @@
+#include "solvers/cloth/absence.h"
+
+#include <algorithm>
+
+#include "baker/core/parallel.h"
+#include "collision/penetration.h"
+#include "solvers/cloth/cloth_model.h"
+
+namespace ft {
+namespace {
+
+/// A garment wears a part that is the nearest in the bind pose to this share of its vertices [1].
+constexpr double k_worn_share = 0.02;
+/// What is let go around a place where cloth is blocked by a part that closes on it [m].
+constexpr double k_limb_reach = 0.08;
+/// What stays away around a place where cloth crosses, or is inside of, what would come back [m].
+constexpr double k_margin = 0.04;
+/// Cloth nearer than this [m] is pressed by what comes back.
+constexpr double k_touching = 5e-4;
+/// Of cloth that is on its way out [m/s2]: five times what holds it there.
+constexpr double k_push = 50;
+
+struct Nearest {
+  int triangle = -1;
+  double distance = 0;   ///< m
+  Vec3 way_out;          ///< unit, from the point to the surface; zero on it
+  bool behind = false;   ///< of the triangle
+};
+
+Nearest nearest(const Vec3& p, std::span<const Vec3> body, std::span<const Triangle> triangles,
+                const TriangleTree& tree, double reach) {
+  TriangleTree::Hit hit;
+  hit.closest.squared_distance = reach * reach;
+  tree.closest(p, body, triangles, hit);
+  Nearest out;
+  out.triangle = hit.triangle;
+  out.way_out.setZero();
+  if (hit.triangle < 0) return out;
+  const Triangle& t = triangles[at(hit.triangle)];
+  const Vec3 way = hit.closest.point - p;
+  out.distance = way.norm();
+  if (out.distance > 0) out.way_out = way / out.distance;
+  out.behind = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).dot(way) > 0;
+  return out;
+}
+
+}  // namespace
+
+Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->vertex_count())) {
+  const ClothSetup& setup = model.setup;
+  const auto parts = model.collider->part_of_vertex();
+  const Surface& surface = model.collider->trajectory().surface();
+  for (const SurfacePart& part : surface.parts) parents_.push_back(part.parent);
+  neighbours_ = vertex_neighbours(body_count_, unique_edges(model.collider->triangles()));
+  const std::vector<Vec3> bind = bind_pose_of(model.collider->trajectory());
+  const TriangleTree tree(bind, surface.triangles);
+  for (std::size_t g = 0; g < setup.garments.size(); ++g) {
+    const ClothGarment& garment = setup.garments[g];
+    for (const int part : parts)
+      ignored_.push_back(std::find(garment.ignores.begin(), garment.ignores.end(), part) != garment.ignores.end());
+    const auto rest = model.contact.rest.subspan(at(model.first_vertex[g]),
+                                                 at(model.first_vertex[g + 1] - model.first_vertex[g]));
+    std::vector<int> nearest_part(rest.size(), -1), count(surface.parts.size(), 0);
+    parallel_for(rest.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        TriangleTree::Hit hit;
+        tree.closest(rest[i], bind, surface.triangles, hit);
+        if (hit.triangle >= 0) nearest_part[i] = surface.part_of_vertex[at(surface.triangles[at(hit.triangle)][0])];
+      }
+    });
+    for (const int part : nearest_part)
+      if (part >= 0) ++count[at(part)];
+    std::vector<char> worn;
+    for (const int c : count) worn.push_back(c >= k_worn_share * static_cast<double>(rest.size()));
+    worn_.push_back(std::move(worn));
+  }
+}
+
+std::vector<char> Absence::at_start(std::span<const char> deep) const {
+  std::vector<char> out = ignored_;
+  take_out(deep, deep, out);
+  return out;
+}
+
+void Absence::take_out(std::span<const char> deep_t0, std::span<const char> deep_t1, std::vector<char>& absent) const {
+  for (std::size_t first = 0; first < absent.size(); first += body_count_)
+    for (std::size_t b = 0; b < body_count_; ++b)
+      absent[first + b] = static_cast<char>(absent[first + b] | deep_t0[b] | deep_t1[b]);
+}
+
+/// Marks what is within `reach` [m] of what is marked, along the surface, in parts that are no larger than least_rank.
+void Absence::grow(const ClothModel& model, std::span<const Vec3> body, double reach, int least_rank,
+                   std::vector<char>& marked) const {
+  const auto parts = model.collider->part_of_vertex();
+  std::vector<std::pair<int, int>> queue;  // vertex, where it came from
+  for (int b = 0; b < static_cast<int>(marked.size()); ++b)
+    if (marked[at(b)] != 0) queue.emplace_back(b, b);
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    const auto [v, from] = queue[k];
+    for (const int w : neighbours_.row(v)) {
+      if (marked[at(w)] != 0 || model.part_rank[at(parts[at(w)])] < least_rank) continue;
+      if ((body[at(w)] - body[at(from)]).squaredNorm() > reach * reach) continue;
+      marked[at(w)] = 1;
+      queue.emplace_back(w, from);
+    }
+  }
+}
+
+int Absence::let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, bool whole_limb,
+                    std::span<const Vec3> body, std::vector<char>& absent) const {
+  const auto parts = model.collider->part_of_vertex();
+  std::vector<char> marked(body_count_, 0);
+  int rank = std::numeric_limits<int>::max();
+  for (const int v : body_vertices) {
+    marked[at(v)] = 1;
+    rank = std::min(rank, model.part_rank[at(parts[at(v)])]);
+  }
+  if (whole_limb)
+    grow(model, body, k_limb_reach, rank, marked);
+  else
+    for (const int v : body_vertices)
+      for (const int w : neighbours_.row(v)) marked[at(w)] = 1;
+  int added = 0;
+  for (std::size_t b = 0; b < body_count_; ++b)
+    if (char& is = absent[place(garment, static_cast<int>(b))]; marked[b] != 0 && is == 0) is = 1, ++added;
+  return added;
+}
+
+bool Absence::is_absent(const ClothModel& model, const Crossing& c, std::span<const char> absent) const {
+  return c.edge_of_first ? is_absent(absent, model.garment_of(c.edge[0]), c.triangle)
+                         : is_absent(absent, model.garment_of(c.triangle[0]), c.edge);
+}
+
+Absence::LetGo Absence::let_go_now(int garment, std::span<const char> deep, std::span<const char> absent) const {
+  LetGo out;
+  for (int b = 0; b < static_cast<int>(body_count_); ++b)
+    if (absent[place(garment, b)] != 0 && !planned(garment, b, deep)) ++out.count, out.vertex = b;
+  return out;
+}
+
+void Absence::bring_back(const ClothModel& model, std::span<const Crossing> crossings, const CheckedSurface& collider,
+                         std::span<const char> deep, ClothMotion& motion) const {
+  const auto parts = model.collider->part_of_vertex();
+  const std::span<const Vec3> body = collider.positions();
+  const auto triangles = collider.triangles();
+  for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
+    std::vector<char> returning(body_count_, 0), stays(body_count_, 0), gone(parents_.size(), 0);
+    Box box;
+    for (int b = 0; b < static_cast<int>(body_count_); ++b)
+      if (motion.absent[place(g, b)] != 0 && !planned(g, b, deep)) returning[at(b)] = 1, box.include(body[at(b)]);
+    const auto is_returning = [&](const auto& element) {
+      return std::any_of(element.begin(), element.end(), [&](int b) { return returning[at(b)] != 0; });
+    };
+    const auto keep = [&](const auto& element, bool is_through) {
+      for (const int b : element) {
+        if (deep[at(b)] != 0) continue;
+        stays[at(b)] = 1;
+        if (is_through && worn_[at(g)][at(parts[at(b)])] == 0) gone[at(parts[at(b)])] = 1;
+      }
+    };
+    for (const Crossing& c : crossings) {
+      const int garment = model.garment_of(c.edge_of_first ? c.edge[0] : c.triangle[0]);
+      if (garment != g) continue;
+      // What crosses where it is planned that it may says nothing of the rest of the limb.
+      if (c.edge_of_first && is_returning(c.triangle)) keep(c.triangle, true);
+      if (!c.edge_of_first && is_returning(c.edge)) keep(c.edge, true);
+    }
+    if (box.lo.x() <= box.hi.x()) {
+      box.inflate(k_margin);
+      std::vector<int> near;
+      for (int i = model.first_vertex[at(g)]; i < model.first_vertex[at(g + 1)]; ++i) {
+        const Vec3& p = motion.x[at(i)];
+        if ((p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all()) near.push_back(i);
+      }
+      struct Held {
+        int triangle = -1;
+        bool inside = false;
+      };
+      std::vector<Held> held(near.size());
+      parallel_for(near.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const Vec3& p = motion.x[at(near[k])];
+          const Nearest n = nearest(p, body, triangles, collider.tree(), 0.2);
+          if (n.triangle < 0 || !is_returning(triangles[at(n.triangle)])) continue;
+          const bool inside = n.behind && is_inside(p, body, triangles, collider.tree());
+          if (inside || n.distance < k_touching) held[k] = {n.triangle, inside};
+        }
+      });
+      for (const Held& h : held)
+        if (h.triangle >= 0) keep(triangles[at(h.triangle)], h.inside);
+    }
+    bool more = true;
+    while (more) {
+      more = false;
+      for (std::size_t p = 0; p < parents_.size(); ++p)
+        if (gone[p] == 0 && parents_[p] >= 0 && gone[at(parents_[p])] != 0) gone[p] = 1, more = true;
+    }
+    grow(model, body, k_margin, 0, stays);
+    for (int b = 0; b < static_cast<int>(body_count_); ++b) {
+      char& is = motion.absent[place(g, b)];
+      const bool limb = gone[at(parts[at(b)])] != 0;
+      is = static_cast<char>(planned(g, b, deep) || limb || (is != 0 && stays[at(b)] != 0));
+    }
+  }
+}
+
+void Absence::push_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+                       const ClothMotion& motion, std::span<Vec3> acceleration) const {
+  TriangleTree tree;
+  const auto triangles = model.collider->triangles();
+  for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
+    Box box;
+    std::vector<char> out(body_count_, 0);
+    for (int b = 0; b < static_cast<int>(body_count_); ++b)
+      if (motion.absent[place(g, b)] != 0 && !planned(g, b, deep)) out[at(b)] = 1, box.include(body[at(b)]);
+    if (!(box.lo.x() <= box.hi.x())) continue;
+    if (tree.empty()) tree = TriangleTree(body, triangles);
+    box.inflate(k_margin);
+    const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
+    parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = at(first) + k;
+        const Vec3& p = motion.x[i];
+        if (!((p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all())) continue;
+        const Nearest n = nearest(p, body, triangles, tree, 0.2);
+        if (n.triangle < 0 || !n.behind) continue;
+        const Triangle& t = triangles[at(n.triangle)];
+        if (out[at(t[0])] == 0 && out[at(t[1])] == 0 && out[at(t[2])] == 0) continue;
+        if (is_inside(p, body, triangles, tree)) acceleration[i] += k_push * n.way_out;
+      }
+    });
+  }
+}
+
+}  // namespace ft

@@ -1,0 +1,80 @@
+// Which of the collider's vertices a garment does not meet, because there is no room for it. A feature (vertex, edge,
+// triangle) of the collider is absent for a garment where one of its vertices is.
+//
+//   planned    the body is too deep in itself there (collision/absent_vertices.h), or the shot has it ignored
+//   let go     cloth was blocked on all sides (Candidates::release_blocked), or what was planned is over but the cloth
+//              is still on the wrong side or crosses it. A part that a garment does not wear (a hand, for a skirt) and
+//              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook.
+//
+// What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it; until
+// then the cloth is pushed out of it. What is absent for a garment drags nothing of it along.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/checked_surface.h"
+#include "collision/crossings.h"
+#include "solvers/cloth/cloth_motion.h"
+
+namespace ft {
+
+struct ClothModel;
+
+/// What never changes of a body's absence: of each garment and each of the collider's vertices or parts.
+class Absence {
+ public:
+  Absence() = default;
+  /// Of a model with its collider in place.
+  explicit Absence(const ClothModel& model);
+
+  std::size_t body_count() const { return body_count_; }
+  /// Where ClothMotion::absent has a vertex of the collider.
+  std::size_t place(int garment, int body_vertex) const {
+    return static_cast<std::size_t>(garment) * body_count_ + static_cast<std::size_t>(body_vertex);
+  }
+  /// What is absent at the start.
+  std::vector<char> at_start(std::span<const char> deep) const;
+  /// Takes out what is too deep at either end of a substep (per vertex of the collider).
+  void take_out(std::span<const char> deep_t0, std::span<const char> deep_t1, std::vector<char>& absent) const;
+  /// Lets go of these vertices of the collider for a garment, and of what is around them; returns how many are new.
+  /// whole_limb: of their parts, and of smaller ones, all that is near, not only what is next to them.
+  int let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, bool whole_limb,
+             std::span<const Vec3> body, std::vector<char>& absent) const;
+  /// At the end of a frame: what is clear of a garment comes back, what it has got through goes. crossings: of the
+  /// cloth (first) with the collider, absent or not.
+  void bring_back(const ClothModel& model, std::span<const Crossing> crossings, const CheckedSurface& collider,
+                  std::span<const char> deep, ClothMotion& motion) const;
+  /// Of a garment's vertices that are let go, how many, and one of them, or -1.
+  struct LetGo {
+    int count = 0, vertex = -1;
+  };
+  LetGo let_go_now(int garment, std::span<const char> deep, std::span<const char> absent) const;
+  /// Adds to the acceleration [m/s2] of cloth that is inside of what is let go the way out of it.
+  void push_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+                const ClothMotion& motion, std::span<Vec3> acceleration) const;
+
+  /// Whether an element of the collider (vertices from 0) is absent for the garment.
+  template <class Vertices>
+  bool is_absent(std::span<const char> absent, int garment, const Vertices& vertices) const {
+    for (const int v : vertices)
+      if (absent[place(garment, v)] != 0) return true;
+    return false;
+  }
+  bool is_absent(const ClothModel& model, const Crossing& crossing, std::span<const char> absent) const;
+
+ private:
+  bool planned(int garment, int body_vertex, std::span<const char> deep) const {
+    return deep[static_cast<std::size_t>(body_vertex)] != 0 || ignored_[place(garment, body_vertex)] != 0;
+  }
+  void grow(const ClothModel& model, std::span<const Vec3> body, double reach, int least_rank,
+            std::vector<char>& marked) const;
+
+  std::size_t body_count_ = 0;
+  std::vector<char> ignored_;            ///< as ClothMotion::absent
+  std::vector<std::vector<char>> worn_;  ///< per garment and part
+  std::vector<int> parents_;             ///< per part
+  Adjacency neighbours_;                 ///< of the collider's vertices
+};
+
+}  // namespace ft
