@@ -1,5 +1,6 @@
 #include "collision/absent_vertices.h"
 
+#include "baker/core/parallel.h"
 #include "collision/penetration.h"
 
 namespace ft {
@@ -7,18 +8,28 @@ namespace {
 
 /// A surface point is asked for its side from so far outside its own triangles [m].
 constexpr double k_above = 1e-4;
+/// Surfaces look at each other where the cosine of their normals is below the negative of this.
+constexpr double k_facing = 0.3;
 
 }  // namespace
 
 AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind,
-                               std::span<const int> part_of_vertex, std::span<const int> rank, double deepest)
-    : surface_(&surface), tree_(bind, surface.triangles()), deepest_(deepest) {
+                               std::span<const int> part_of_vertex, std::span<const int> rank, double deepest, double room)
+    : surface_(&surface), tree_(bind, surface.triangles()), deepest_(deepest), room_(room) {
   rank_of_vertex_.reserve(part_of_vertex.size());
   for (const int part : part_of_vertex) rank_of_vertex_.push_back(rank[at(part)]);
   neighbours_ = vertex_neighbours(bind.size(), unique_edges(surface.triangles()));
 }
 
 void AbsentVertices::find(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const {
+  find_deep(before, after, absent);
+  find_folds(after, absent);
+  const auto representative = surface_->representative();
+  for (std::size_t v = 0; v < absent.size(); ++v) absent[v] = absent[at(representative[v])];
+}
+
+void AbsentVertices::find_deep(std::span<const Vec3> before, std::span<const Vec3> after,
+                               std::span<char> absent) const {
   const auto triangles = surface_->triangles();
   std::vector<int> queue;
   for (std::size_t v = 0; v < before.size(); ++v) {
@@ -43,8 +54,38 @@ void AbsentVertices::find(std::span<const Vec3> before, std::span<const Vec3> af
       queue.push_back(w);
     }
   }
+}
+
+void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> absent) const {
+  const auto triangles = surface_->triangles();
   const auto representative = surface_->representative();
-  for (std::size_t v = 0; v < absent.size(); ++v) absent[v] = absent[at(representative[v])];
+  TriangleTree tree = tree_;
+  tree.refit(after, triangles);
+  const std::vector<Vec3> normals = vertex_normals(after, triangles);
+  std::vector<char> folded(after.size(), 0);
+  parallel_for(after.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (absent[v] != 0 || at(representative[v]) != v || normals[v] == Vec3::Zero()) continue;
+      const Vec3 &p = after[v], &along = normals[v];
+      tree.for_each_along(p, along, room_, [&](int index) {
+        const Triangle& t = triangles[at(index)];
+        if (rank_of_vertex_[at(t[0])] >= rank_of_vertex_[v]) return;
+        for (const int corner : t)
+          if (at(corner) == v || absent[at(corner)] != 0) return;
+        const Vec3& a = after[at(t[0])];
+        const Vec3 e = after[at(t[1])] - a, f = after[at(t[2])] - a, normal = e.cross(f);
+        const double facing = -normal.dot(along);
+        if (!(facing > k_facing * normal.norm())) return;
+        const double distance = normal.dot(p - a) / facing;
+        if (!(distance > 0) || distance > room_) return;
+        const Vec3 s = p + distance * along - a;
+        const double u = s.cross(f).dot(normal), w = e.cross(s).dot(normal), area = normal.squaredNorm();
+        if (u >= 0 && w >= 0 && u + w <= area) folded[v] = 1;
+      });
+    }
+  });
+  for (std::size_t v = 0; v < folded.size(); ++v)
+    if (folded[v] != 0) absent[v] = 1;
 }
 
 }  // namespace ft

@@ -2,8 +2,11 @@
 // (carver.h) moves what is inside a larger part onto that part's surface; from some depth on that leaves a limb pressed
 // flat, which jumps when another side of the larger part becomes the nearest. Such vertices are absent: cloth does not
 // meet a feature that one of them belongs to. A function of the pose alone, so that nothing is remembered from frame to
-// frame: a vertex is absent where it had to move too far, or where it is inside and connected to such a one without
-// having been moved (carving does not know a way out of the middle of a trunk).
+// frame. A vertex is absent where
+//   - it had to move too far, or is inside and connected to such a one without having been moved (carving does not know
+//     a way out of the middle of a trunk);
+//   - it looks at a larger part that is nearer than the cloth between needs: in an armpit or the pit of an elbow, where
+//     skin folds on skin and carving leaves what touches in the bind pose as it is.
 #pragma once
 
 #include <span>
@@ -18,18 +21,21 @@ class AbsentVertices {
  public:
   AbsentVertices() = default;
   /// The surface has to outlive this. rank: per part, 0 is the largest. deepest: farthest that a vertex may have been
-  /// moved by carving [m].
+  /// moved by carving [m]; room: what cloth needs between two surfaces [m].
   AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind, std::span<const int> part_of_vertex,
-                 std::span<const int> rank, double deepest);
+                 std::span<const int> rank, double deepest, double room);
   /// before and after carving, per vertex [m]. Fills absent with 0 and 1. Thread-safe.
   void find(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const;
 
  private:
+  void find_deep(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const;
+  void find_folds(std::span<const Vec3> after, std::span<char> absent) const;
+
   const PartSurface* surface_ = nullptr;
   std::vector<int> rank_of_vertex_;
   Adjacency neighbours_;
   TriangleTree tree_;
-  double deepest_ = 0;
+  double deepest_ = 0, room_ = 0;
 };
 
 }  // namespace ft

@@ -11,7 +11,7 @@ namespace {
 
 /// A garment wears a part that is the nearest in the bind pose to this share of its vertices [1].
 constexpr double k_worn_share = 0.02;
-/// What is let go around a place where cloth is blocked by a part that closes on it [m].
+/// What is let go of a part that is not worn around a place where it blocks cloth [m].
 constexpr double k_limb_reach = 0.08;
 /// What stays away around a place where cloth crosses, or is inside of, what would come back [m].
 constexpr double k_margin = 0.04;
@@ -106,20 +106,21 @@ void Absence::grow(const ClothModel& model, std::span<const Vec3> body, double r
   }
 }
 
-int Absence::let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, bool whole_limb,
+int Absence::let_go(const ClothModel& model, int garment, std::span<const int> body_vertices,
                     std::span<const Vec3> body, std::vector<char>& absent) const {
   const auto parts = model.collider->part_of_vertex();
   std::vector<char> marked(body_count_, 0);
   int rank = std::numeric_limits<int>::max();
   for (const int v : body_vertices) {
+    if (worn_[at(garment)][at(parts[at(v)])] != 0) continue;
     marked[at(v)] = 1;
     rank = std::min(rank, model.part_rank[at(parts[at(v)])]);
   }
-  if (whole_limb)
-    grow(model, body, k_limb_reach, rank, marked);
-  else
-    for (const int v : body_vertices)
-      for (const int w : neighbours_.row(v)) marked[at(w)] = 1;
+  grow(model, body, k_limb_reach, rank, marked);
+  for (const int v : body_vertices) {
+    marked[at(v)] = 1;
+    for (const int w : neighbours_.row(v)) marked[at(w)] = 1;
+  }
   int added = 0;
   for (std::size_t b = 0; b < body_count_; ++b)
     if (char& is = absent[place(garment, static_cast<int>(b))]; marked[b] != 0 && is == 0) is = 1, ++added;

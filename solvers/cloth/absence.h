@@ -38,9 +38,10 @@ class Absence {
   /// Takes out what is too deep at either end of a substep (per vertex of the collider).
   void take_out(std::span<const char> deep_t0, std::span<const char> deep_t1, std::vector<char>& absent) const;
   /// Lets go of these vertices of the collider for a garment, and of what is around them; returns how many are new.
-  /// whole_limb: of their parts, and of smaller ones, all that is near, not only what is next to them.
-  int let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, bool whole_limb,
-             std::span<const Vec3> body, std::vector<char>& absent) const;
+  /// Of parts that the garment does not wear, and of smaller ones, it is all that is near, else what is next to them: a
+  /// hole in what a sleeve lies on swallows it.
+  int let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, std::span<const Vec3> body,
+             std::vector<char>& absent) const;
   /// At the end of a frame: what is clear of a garment comes back, what it has got through goes. crossings: of the
   /// cloth (first) with the collider, absent or not.
   void bring_back(const ClothModel& model, std::span<const Crossing> crossings, const CheckedSurface& collider,

@@ -41,27 +41,24 @@ int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece) {
   const int n = model_.vertex_count();
   const std::span<const Vec3> body = std::span(piece.start).subspan(at(n));
   const auto parts = model_.collider ? model_.collider->part_of_vertex() : std::span<const int>{};
-  // Of each garment: what blocks it alone, and what closes on it.
-  std::vector<std::vector<int>> alone(model_.setup.garments.size()), closing(alone.size());
+  std::vector<std::vector<int>> goes(model_.setup.garments.size());  // per garment
   for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge})
     for (const Stencil& stencil : *blocked) {
       if (part_of(stencil) < 0) continue;
       for (const int v : stencil.v) {
         if (v >= n || through[at(v)] >= 0) continue;
         for (const int b : stencil.v)
-          if (b >= n) alone[at(model_.garment_of(v))].push_back(b - n);
+          if (b >= n) goes[at(model_.garment_of(v))].push_back(b - n);
       }
     }
   for (const MotionZones::BodyMotion& m : zones_.body_met()) {
     const int part = through[at(m.vertex)], b = m.body_vertex - n;
     if (part >= 0 && model_.part_rank[at(parts[at(b)])] >= model_.part_rank[at(part)])
-      closing[at(model_.garment_of(m.vertex))].push_back(b);
+      goes[at(model_.garment_of(m.vertex))].push_back(b);
   }
   int freed = 0;
-  for (int g = 0; g < static_cast<int>(alone.size()); ++g) {
-    if (!alone[at(g)].empty()) freed += model_.absence.let_go(model_, g, alone[at(g)], false, body, cloth.absent);
-    if (!closing[at(g)].empty()) freed += model_.absence.let_go(model_, g, closing[at(g)], true, body, cloth.absent);
-  }
+  for (int g = 0; g < static_cast<int>(goes.size()); ++g)
+    if (!goes[at(g)].empty()) freed += model_.absence.let_go(model_, g, goes[at(g)], body, cloth.absent);
   drop_blocked();
   return freed;
 }

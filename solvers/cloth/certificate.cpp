@@ -206,8 +206,13 @@ void Certificate::describe(double time, std::span<const Vec3> drawn, const Cloth
     for (CheckedSurface* surface : {&cloth_, &drawn_, &collider_}) surface->forget_boxes();
   }
   describe_seams(model_, time, m, report);
-  std::stable_sort(report.incidents.begin(), report.incidents.end(),
-                   [](const Incident& a, const Incident& b) { return a.depth > b.depth; });
+  // What the promise is about goes first, then by depth.
+  const auto weight = [](const Incident& i) {
+    return i.kind == Incident::Kind::k_crossing ? 2 : i.kind == Incident::Kind::k_released ? 1 : 0;
+  };
+  std::stable_sort(report.incidents.begin(), report.incidents.end(), [&](const Incident& a, const Incident& b) {
+    return weight(a) != weight(b) ? weight(a) > weight(b) : a.depth > b.depth;
+  });
   if (report.incidents.size() > k_incidents_per_frame) report.incidents.resize(k_incidents_per_frame);
 }
 
