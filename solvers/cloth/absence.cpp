@@ -20,6 +20,9 @@ constexpr double k_touching = 5e-4;
 /// Of cloth that is on its way out [m/s2]: five times what holds it there.
 constexpr double k_push = 50;
 
+/// Cloth that was put on lies no farther from the skin [m].
+constexpr double k_on_skin = 0.05;
+
 struct Nearest {
   int triangle = -1;
   double distance = 0;   ///< m
@@ -49,31 +52,53 @@ Nearest nearest(const Vec3& p, std::span<const Vec3> body, std::span<const Trian
 Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->vertex_count())) {
   const ClothSetup& setup = model.setup;
   const auto parts = model.collider->part_of_vertex();
-  const Surface& surface = model.collider->trajectory().surface();
-  for (const SurfacePart& part : surface.parts) parents_.push_back(part.parent);
-  neighbours_ = vertex_neighbours(body_count_, unique_edges(model.collider->triangles()));
-  const std::vector<Vec3> bind = bind_pose_of(model.collider->trajectory());
-  const TriangleTree tree(bind, surface.triangles);
+  const auto triangles = model.collider->triangles();
+  for (const SurfacePart& part : model.collider->trajectory().surface().parts) parents_.push_back(part.parent);
+  neighbours_ = vertex_neighbours(body_count_, unique_edges(triangles));
+  std::vector<Vec3> bind(body_count_);
+  model.collider->refined_bind(bind);
+  const TriangleTree tree(bind, triangles);
+  std::vector<int> nearest_part(model.contact.rest.size(), -1);
+  anchors_.resize(nearest_part.size());
+  parallel_for(nearest_part.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      TriangleTree::Hit hit;
+      const Vec3& p = model.contact.rest[i];
+      tree.closest(p, bind, triangles, hit);
+      if (hit.triangle < 0) continue;
+      const Triangle& t = triangles[at(hit.triangle)];
+      nearest_part[i] = parts[at(t[0])];
+      const Vec3 e = bind[at(t[1])] - bind[at(t[0])], f = bind[at(t[2])] - bind[at(t[0])], n = e.cross(f);
+      const Vec3 s = hit.closest.point - bind[at(t[0])];
+      const double area = n.squaredNorm(), height = std::sqrt(hit.closest.squared_distance);
+      if (height > k_on_skin || !(area > 0)) continue;
+      const double u = s.cross(f).dot(n) / area, w = e.cross(s).dot(n) / area;
+      anchors_[i] = {t,
+                     {static_cast<float>(1 - u - w), static_cast<float>(u), static_cast<float>(w)},
+                     static_cast<float>(std::max(height, model.contact.radius[i]))};
+    }
+  });
   for (std::size_t g = 0; g < setup.garments.size(); ++g) {
     const ClothGarment& garment = setup.garments[g];
     for (const int part : parts)
       ignored_.push_back(std::find(garment.ignores.begin(), garment.ignores.end(), part) != garment.ignores.end());
-    const auto rest = model.contact.rest.subspan(at(model.first_vertex[g]),
-                                                 at(model.first_vertex[g + 1] - model.first_vertex[g]));
-    std::vector<int> nearest_part(rest.size(), -1), count(surface.parts.size(), 0);
-    parallel_for(rest.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        TriangleTree::Hit hit;
-        tree.closest(rest[i], bind, surface.triangles, hit);
-        if (hit.triangle >= 0) nearest_part[i] = surface.part_of_vertex[at(surface.triangles[at(hit.triangle)][0])];
-      }
-    });
-    for (const int part : nearest_part)
-      if (part >= 0) ++count[at(part)];
+    std::vector<int> count(parents_.size(), 0);
+    const int first = model.first_vertex[g], end = model.first_vertex[g + 1];
+    for (int i = first; i < end; ++i)
+      if (nearest_part[at(i)] >= 0) ++count[at(nearest_part[at(i)])];
     std::vector<char> worn;
-    for (const int c : count) worn.push_back(c >= k_worn_share * static_cast<double>(rest.size()));
+    for (const int c : count) worn.push_back(c >= k_worn_share * (end - first));
+    for (int i = first; i < end; ++i)
+      if (nearest_part[at(i)] >= 0 && worn[at(nearest_part[at(i)])] == 0) anchors_[at(i)].triangle[0] = -1;
     worn_.push_back(std::move(worn));
   }
+}
+
+Vec3 Absence::place_on_skin(int vertex, std::span<const Vec3> body) const {
+  const Anchor& anchor = anchors_[at(vertex)];
+  const Vec3 &a = body[at(anchor.triangle[0])], &b = body[at(anchor.triangle[1])], &c = body[at(anchor.triangle[2])];
+  return anchor.weight[0] * a + anchor.weight[1] * b + anchor.weight[2] * c +
+         anchor.height * (b - a).cross(c - a).normalized();
 }
 
 std::vector<char> Absence::at_start(std::span<const char> deep) const {
@@ -205,8 +230,10 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
   }
 }
 
-void Absence::push_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
-                       const ClothMotion& motion, std::span<Vec3> acceleration) const {
+void Absence::find_ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+                            const ClothMotion& motion, std::vector<int>& draw_back,
+                            std::span<Vec3> acceleration) const {
+  draw_back.clear();
   TriangleTree tree;
   const auto triangles = model.collider->triangles();
   for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
@@ -217,19 +244,31 @@ void Absence::push_out(const ClothModel& model, std::span<const Vec3> body, std:
     if (!(box.lo.x() <= box.hi.x())) continue;
     if (tree.empty()) tree = TriangleTree(body, triangles);
     box.inflate(k_margin);
+    const auto is_out = [&](const Triangle& t) {
+      return out[at(t[0])] != 0 || out[at(t[1])] != 0 || out[at(t[2])] != 0;
+    };
+    const auto is_planned = [&](const Triangle& t) {
+      return std::any_of(t.begin(), t.end(), [&](int b) { return planned(g, b, deep); });
+    };
     const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
+    std::vector<char> drawn(at(count), 0);
     parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = at(first) + k;
         const Vec3& p = motion.x[i];
+        const Triangle& skin = anchors_[i].triangle;
+        if (skin[0] >= 0 && is_out(skin) && !is_planned(skin)) {
+          drawn[k] = 1;
+          continue;
+        }
         if (!((p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all())) continue;
         const Nearest n = nearest(p, body, triangles, tree, 0.2);
-        if (n.triangle < 0 || !n.behind) continue;
-        const Triangle& t = triangles[at(n.triangle)];
-        if (out[at(t[0])] == 0 && out[at(t[1])] == 0 && out[at(t[2])] == 0) continue;
+        if (n.triangle < 0 || !n.behind || !is_out(triangles[at(n.triangle)])) continue;
         if (is_inside(p, body, triangles, tree)) acceleration[i] += k_push * n.way_out;
       }
     });
+    for (int k = 0; k < count; ++k)
+      if (drawn[at(k)] != 0) draw_back.push_back(first + k);
   }
 }
 

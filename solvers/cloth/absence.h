@@ -6,8 +6,9 @@
 //              is still on the wrong side or crosses it. A part that a garment does not wear (a hand, for a skirt) and
 //              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook.
 //
-// What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it; until
-// then the cloth is pushed out of it. What is absent for a garment drags nothing of it along.
+// What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it. Until
+// then cloth that it lay on is drawn back there (draw_back.h), and other cloth inside is pushed out. What is absent for a
+// garment drags nothing of it along.
 #pragma once
 
 #include <span>
@@ -51,9 +52,12 @@ class Absence {
     int count = 0, vertex = -1;
   };
   LetGo let_go_now(int garment, std::span<const char> deep, std::span<const char> absent) const;
-  /// Adds to the acceleration [m/s2] of cloth that is inside of what is let go the way out of it.
-  void push_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
-                const ClothMotion& motion, std::span<Vec3> acceleration) const;
+  /// Cloth that has to get out of what is let go: fills the list with what lay on it and nothing planned, to be drawn
+  /// back there, and adds to the acceleration [m/s2] of other cloth that is inside. body: of the collider [m].
+  void find_ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+                     const ClothMotion& motion, std::vector<int>& draw_back, std::span<Vec3> acceleration) const;
+  /// Where a vertex of the cloth lay on the collider in the bind pose, as that is now [m].
+  Vec3 place_on_skin(int vertex, std::span<const Vec3> body) const;
 
   /// Whether an element of the collider (vertices from 0) is absent for the garment.
   template <class Vertices>
@@ -68,6 +72,12 @@ class Absence {
   bool planned(int garment, int body_vertex, std::span<const char> deep) const {
     return deep[static_cast<std::size_t>(body_vertex)] != 0 || ignored_[place(garment, body_vertex)] != 0;
   }
+  /// Where a vertex of the cloth lay on the collider in the bind pose.
+  struct Anchor {
+    Triangle triangle{-1, -1, -1};  ///< -1: it did not lie on it
+    float weight[3] = {0, 0, 0};
+    float height = 0;  ///< along the triangle's normal [m]
+  };
   void grow(const ClothModel& model, std::span<const Vec3> body, double reach, int least_rank,
             std::vector<char>& marked) const;
 
@@ -76,6 +86,7 @@ class Absence {
   std::vector<std::vector<char>> worn_;  ///< per garment and part
   std::vector<int> parents_;             ///< per part
   Adjacency neighbours_;                 ///< of the collider's vertices
+  std::vector<Anchor> anchors_;          ///< per vertex of the cloth
 };
 
 }  // namespace ft

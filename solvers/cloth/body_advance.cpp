@@ -6,6 +6,7 @@
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "solvers/cloth/candidates.h"
+#include "solvers/cloth/draw_back.h"
 
 namespace ft {
 namespace {
@@ -125,6 +126,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     report.seconds_candidates += seconds_since(clock);
     return all;
   };
+  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, in.draw_back, h);
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;

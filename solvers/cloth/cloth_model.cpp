@@ -9,6 +9,7 @@
 #include "collision/carve_plan.h"
 #include "solvers/cloth/attach.h"
 #include "solvers/cloth/cloth_check.h"
+#include "solvers/cloth/draw_back.h"
 #include "solvers/cloth/pins.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/energies/registry.h"
@@ -144,6 +145,11 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
   air.wind = s.wind;
   air.density = s.air_density;
   model->energies = make_cloth_energies(*model->topology, air);
+  if (s.primary) {
+    auto draw_back = std::make_unique<DrawBack>();
+    model->draw_back = draw_back.get();
+    model->energies.push_back(std::move(draw_back));
+  }
   std::vector<std::vector<std::array<int, 4>>> stencils;
   for (const auto& energy : model->energies) stencils.push_back(energy->stencils());
   model->pattern = make_pattern(model->vertex_count(), stencils);

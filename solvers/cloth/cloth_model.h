@@ -21,6 +21,8 @@
 
 namespace ft {
 
+class DrawBack;
+
 /// A vertex held to a point of the drawn body's surface, with an offset that turns with the triangle.
 struct PinPoint {
   int vertex = 0;
@@ -57,6 +59,7 @@ struct ClothModel {
   std::vector<double> sewn_until;  ///< per vertex: when its garment's seams are closed [s]; empty: nothing is sewn
   std::vector<PinPoint> pins;
   std::vector<std::unique_ptr<Energy>> energies;
+  DrawBack* draw_back = nullptr;  ///< one of the energies; null without a collider
   BlockPattern pattern;
   std::unique_ptr<ClothTopology> topology;  ///< while the model is built; energies copy what they need
   std::vector<AttachPoint> attachments;

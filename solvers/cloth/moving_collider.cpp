@@ -70,6 +70,10 @@ double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const
   return deepest;
 }
 
+void MovingCollider::refined_bind(std::span<Vec3> positions) const {
+  poses_->collider().refine(bind_pose_of(trajectory()), positions);
+}
+
 void MovingCollider::drawn(double time, std::vector<Vec3>& positions) const {
   positions.resize(at(trajectory().surface().vertex_count()));
   trajectory().sample(time, positions);

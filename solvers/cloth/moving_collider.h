@@ -27,6 +27,8 @@ class MovingCollider {
   /// Largest inset [m].
   double largest_inset() const { return largest_inset_; }
 
+  /// The bind pose of the collider, before anything gives way.
+  void refined_bind(std::span<Vec3> positions) const;
   void drawn(double time, std::vector<Vec3>& positions) const;
   /// Feasible positions, from the drawn ones at the same time. absent: per vertex, where the body is too deep in itself
   /// for cloth to meet it, see FeasibleCollider::evaluate(); null: not asked for.
