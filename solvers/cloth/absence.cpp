@@ -14,7 +14,7 @@ constexpr double k_worn_share = 0.02;
 /// What is let go of a part that is not worn around a place where it blocks cloth [m].
 constexpr double k_limb_reach = 0.08;
 /// What stays away around a place where cloth crosses, or is inside of, what would come back [m].
-constexpr double k_margin = 0.04;
+constexpr double k_margin = 0.025;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
 /// Of cloth that is on its way out [m/s2]: five times what holds it there.
@@ -177,6 +177,12 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
     const auto is_returning = [&](const auto& element) {
       return std::any_of(element.begin(), element.end(), [&](int b) { return returning[at(b)] != 0; });
     };
+    /// Cloth has to get out where it lay.
+    const auto open_skin = [&](std::span<const int> cloth) {
+      for (const int v : cloth)
+        for (const int b : anchors_[at(v)].triangle)
+          if (anchors_[at(v)].triangle[0] >= 0) stays[at(b)] = 1;
+    };
     const auto keep = [&](const auto& element, bool is_through) {
       for (const int b : element) {
         if (deep[at(b)] != 0) continue;
@@ -188,8 +194,14 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
       const int garment = model.garment_of(c.edge_of_first ? c.edge[0] : c.triangle[0]);
       if (garment != g) continue;
       // What crosses where it is planned that it may says nothing of the rest of the limb.
-      if (c.edge_of_first && is_returning(c.triangle)) keep(c.triangle, true);
-      if (!c.edge_of_first && is_returning(c.edge)) keep(c.edge, true);
+      if (!(c.edge_of_first ? is_returning(c.triangle) : is_returning(c.edge))) continue;
+      if (c.edge_of_first) {
+        keep(c.triangle, true);
+        open_skin(c.edge);
+      } else {
+        keep(c.edge, true);
+        open_skin(c.triangle);
+      }
     }
     if (box.lo.x() <= box.hi.x()) {
       box.inflate(k_margin);
@@ -212,8 +224,11 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
           if (inside || n.distance < k_touching) held[k] = {n.triangle, inside};
         }
       });
-      for (const Held& h : held)
-        if (h.triangle >= 0) keep(triangles[at(h.triangle)], h.inside);
+      for (std::size_t k = 0; k < held.size(); ++k) {
+        if (held[k].triangle < 0) continue;
+        keep(triangles[at(held[k].triangle)], held[k].inside);
+        if (held[k].inside) open_skin(std::span(&near[k], 1));
+      }
     }
     bool more = true;
     while (more) {
@@ -225,7 +240,7 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
     for (int b = 0; b < static_cast<int>(body_count_); ++b) {
       char& is = motion.absent[place(g, b)];
       const bool limb = gone[at(parts[at(b)])] != 0;
-      is = static_cast<char>(planned(g, b, deep) || limb || (is != 0 && stays[at(b)] != 0));
+      is = static_cast<char>(planned(g, b, deep) || limb || stays[at(b)] != 0);
     }
   }
 }

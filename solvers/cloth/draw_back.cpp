@@ -6,8 +6,8 @@
 namespace ft {
 namespace {
 
-/// As firm pins have it: N/m3 and Pa of the cloth's area.
-constexpr double k_stiffness = 1e6, k_most_pull = 5e3;
+/// Softer than firm pins: N/m3 and Pa of the cloth's area.
+constexpr double k_stiffness = 2e5, k_most_pull = 1e3;
 
 }  // namespace
 
