@@ -17,8 +17,9 @@ constexpr double k_limb_reach = 0.08;
 constexpr double k_margin = 0.025;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
-/// Of cloth that is on its way out [m/s2]: five times what holds it there.
-constexpr double k_push = 50;
+/// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away
+/// it is on the wrong side.
+constexpr double k_same_side = 0.08;
 
 /// Cloth that was put on lies no farther from the skin [m].
 constexpr double k_on_skin = 0.05;
@@ -245,46 +246,52 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
   }
 }
 
-void Absence::find_ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
-                            const ClothMotion& motion, std::vector<int>& draw_back,
-                            std::span<Vec3> acceleration) const {
-  draw_back.clear();
+std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+                                      const ClothMotion& motion) const {
+  std::vector<WayOut> out;
   TriangleTree tree;
   const auto triangles = model.collider->triangles();
   for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
     Box box;
-    std::vector<char> out(body_count_, 0);
+    std::vector<char> gone(body_count_, 0);
     for (int b = 0; b < static_cast<int>(body_count_); ++b)
-      if (motion.absent[place(g, b)] != 0 && !planned(g, b, deep)) out[at(b)] = 1, box.include(body[at(b)]);
+      if (motion.absent[place(g, b)] != 0 && !planned(g, b, deep)) gone[at(b)] = 1, box.include(body[at(b)]);
     if (!(box.lo.x() <= box.hi.x())) continue;
     if (tree.empty()) tree = TriangleTree(body, triangles);
     box.inflate(k_margin);
-    const auto is_out = [&](const Triangle& t) {
-      return out[at(t[0])] != 0 || out[at(t[1])] != 0 || out[at(t[2])] != 0;
+    const auto is_gone = [&](const Triangle& t) {
+      return gone[at(t[0])] != 0 || gone[at(t[1])] != 0 || gone[at(t[2])] != 0;
     };
     const auto is_planned = [&](const Triangle& t) {
       return std::any_of(t.begin(), t.end(), [&](int b) { return planned(g, b, deep); });
     };
     const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
-    std::vector<char> drawn(at(count), 0);
+    std::vector<WayOut> ways(at(count), WayOut{-1, false, Vec3::Zero(), Vec3::Zero()});
     parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = at(first) + k;
         const Vec3& p = motion.x[i];
         const Triangle& skin = anchors_[i].triangle;
-        if (skin[0] >= 0 && is_out(skin) && !is_planned(skin)) {
-          drawn[k] = 1;
+        const bool may_return = skin[0] >= 0 && is_gone(skin) && !is_planned(skin);
+        const bool is_near = (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
+        if (!may_return && !is_near) continue;
+        const Nearest n = nearest(p, body, triangles, tree, 0.2);
+        if (n.triangle < 0) continue;
+        const Triangle& t = triangles[at(n.triangle)];
+        const Vec3 place = p + n.distance * n.way_out;
+        if (may_return && (place_on_skin(static_cast<int>(i), body) - place).norm() > k_same_side) {
+          ways[k] = {static_cast<int>(i), true, Vec3::Zero(), Vec3::Zero()};
           continue;
         }
-        if (!((p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all())) continue;
-        const Nearest n = nearest(p, body, triangles, tree, 0.2);
-        if (n.triangle < 0 || !n.behind || !is_out(triangles[at(n.triangle)])) continue;
-        if (is_inside(p, body, triangles, tree)) acceleration[i] += k_push * n.way_out;
+        if (!is_gone(t) || is_planned(t) || (n.behind && !is_inside(p, body, triangles, tree))) continue;
+        const Vec3 normal = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).normalized();
+        ways[k] = {static_cast<int>(i), false, place, normal};
       }
     });
-    for (int k = 0; k < count; ++k)
-      if (drawn[at(k)] != 0) draw_back.push_back(first + k);
+    for (const WayOut& way : ways)
+      if (way.vertex >= 0) out.push_back(way);
   }
+  return out;
 }
 
 }  // namespace ft

@@ -22,6 +22,14 @@ namespace ft {
 
 struct ClothModel;
 
+/// What becomes of a vertex of the cloth in a substep, see draw_back.h.
+struct WayOut {
+  int vertex = 0;
+  bool to_skin = false;        ///< it is drawn back to Absence::place_on_skin()
+  Vec3 place = Vec3::Zero();   ///< else: it stays above the plane through this [m]
+  Vec3 normal = Vec3::Zero();  ///< of the plane
+};
+
 /// What never changes of a body's absence: of each garment and each of the collider's vertices or parts.
 class Absence {
  public:
@@ -52,10 +60,9 @@ class Absence {
     int count = 0, vertex = -1;
   };
   LetGo let_go_now(int garment, std::span<const char> deep, std::span<const char> absent) const;
-  /// Cloth that has to get out of what is let go: fills the list with what lay on it and nothing planned, to be drawn
-  /// back there, and adds to the acceleration [m/s2] of other cloth that is inside. body: of the collider [m].
-  void find_ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
-                     const ClothMotion& motion, std::vector<int>& draw_back, std::span<Vec3> acceleration) const;
+  /// What becomes of cloth in and around what is let go. body: of the collider [m].
+  std::vector<WayOut> ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+                               const ClothMotion& motion) const;
   /// Where a vertex of the cloth lay on the collider in the bind pose, as that is now [m].
   Vec3 place_on_skin(int vertex, std::span<const Vec3> body) const;
 

@@ -126,7 +126,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     report.seconds_candidates += seconds_since(clock);
     return all;
   };
-  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, in.draw_back, h);
+  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, in.ways_out, h);
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;

@@ -94,8 +94,7 @@ class ClothSolver final : public Solver {
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
-  bool push_cloth(double time, const BodyPose& body, ClothMotion& motion, std::vector<Vec3>& push,
-                  std::vector<int>& draw_back) const;
+  bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
 
   std::unique_ptr<ClothModel> model_;
   std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
@@ -173,7 +172,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
   double lost = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
-  std::vector<int> draw_back;
+  std::vector<WayOut> ways_out;
   std::vector<char> deep = body_.start().absent;
   for (int k = 0; k < substeps; ++k) {
     const double t0 = frame.t0 + k * h;
@@ -190,8 +189,9 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
     if (!m.absent.empty()) model_->absence.take_out(deep, next.absent, m.absent);
-    if (push_cloth(t0 + h, next, m, push, draw_back)) in.push = push;
-    in.draw_back = draw_back;
+    if (push_cloth(t0 + h, m, push)) in.push = push;
+    if (model_->collider) ways_out = model_->absence.ways_out(*model_, next.feasible, next.absent, m);
+    in.ways_out = ways_out;
     if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
     const AdvanceReport step = advance_.substep(in, m);
@@ -223,25 +223,19 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
          std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
-/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and of what of the
-/// collider was let go, and the ease of sewing. False when nothing does.
-bool ClothSolver::push_cloth(double time, const BodyPose& body, ClothMotion& m, std::vector<Vec3>& push,
-                             std::vector<int>& draw_back) const {
-  draw_back.clear();
+/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of
+/// sewing. False when nothing does.
+bool ClothSolver::push_cloth(double time, ClothMotion& m, std::vector<Vec3>& push) const {
   const bool tangled = any_tangled(m.tangled), sewn = !model_->sewn_until.empty();
-  bool let_go = false;
-  for (int g = 0; model_->collider && !let_go && g < system_count(); ++g)
-    let_go = model_->absence.let_go_now(g, body.absent, m.absent).count > 0;
-  if (!tangled && !sewn && !let_go) return false;
+  if (!tangled && !sewn) return false;
   push.assign(m.x.size(), Vec3::Zero());
   if (tangled) {
     const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
     mark_tangled(*model_, crossings, m.tangled);
     untangling(m.x, model_->triangles, crossings, push);
   }
-  if (let_go) model_->absence.find_ways_out(*model_, body.feasible, body.absent, m, draw_back, push);
   const bool eased = sewn && ease_sewing(*model_, time, m.v, push);
-  return tangled || let_go || eased;
+  return tangled || eased;
 }
 
 FrameReport ClothSolver::advance_frame(State& state) const {

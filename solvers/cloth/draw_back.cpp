@@ -1,31 +1,44 @@
 #include "solvers/cloth/draw_back.h"
 
+#include <algorithm>
+
 #include "solvers/cloth/candidates.h"
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
 namespace {
 
-/// Softer than firm pins: N/m3 and Pa of the cloth's area.
-constexpr double k_stiffness = 2e5, k_most_pull = 1e3;
+/// As firm pins have it: N/m3 and Pa of the cloth's area.
+constexpr double k_stiffness = 1e5, k_most_pull = 300;
+/// Of what stays above the skin [N/m3].
+constexpr double k_above_stiffness = 2e6;
 
 }  // namespace
 
 void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece,
-                      std::span<const int> vertices, double h) {
+                      std::span<const WayOut> ways, double h) {
   held_.clear();
+  above_.clear();
   const std::size_t n = cloth.x.size();
   std::vector<Vec3> end;
-  for (const int v : vertices) {
+  for (const WayOut& way : ways) {
+    const int v = way.vertex;
+    const double area = model.contact.area[at(v)];
+    if (!way.to_skin) {
+      above_.push_back(
+          {v, way.normal, way.normal.dot(way.place) + model.contact.radius[at(v)], k_above_stiffness * area});
+      continue;
+    }
     if (end.empty()) {
       end.assign(piece.start.begin() + static_cast<std::ptrdiff_t>(n), piece.start.end());
       for (std::size_t b = 0; b < end.size(); ++b) end[b] += piece.body_motion[b];
     }
-    const Vec3 from = model.absence.place_on_skin(v, std::span(piece.start).subspan(n)), to = model.absence.place_on_skin(v, end);
+    const Vec3 from = model.absence.place_on_skin(v, std::span(piece.start).subspan(n));
+    const Vec3 to = model.absence.place_on_skin(v, end);
     PinPoint pin;
     pin.vertex = v;
-    pin.stiffness = k_stiffness * model.contact.area[at(v)];
-    pin.max_pull = k_most_pull * model.contact.area[at(v)];
+    pin.stiffness = k_stiffness * area;
+    pin.max_pull = k_most_pull * area;
     held_.push_back({v, PinPull(pin, cloth.x[at(v)], cloth.v[at(v)], to, to - from, h, 0)});
   }
 }
@@ -33,17 +46,27 @@ void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const P
 double DrawBack::value(std::span<const Vec3> x) const {
   double energy = 0;
   for (const Held& held : held_) energy += held.pull.energy(x[at(held.vertex)]);
+  for (const Above& a : above_) {
+    const double missing = std::max(0.0, a.height - a.normal.dot(x[at(a.vertex)]));
+    energy += 0.5 * a.stiffness * missing * missing;
+  }
   return energy;
 }
 
 void DrawBack::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   for (const Held& held : held_) gradient[at(held.vertex)] += held.pull.gradient(x[at(held.vertex)]);
+  for (const Above& a : above_)
+    gradient[at(a.vertex)] -= a.stiffness * std::max(0.0, a.height - a.normal.dot(x[at(a.vertex)])) * a.normal;
 }
 
 void DrawBack::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   for (const Held& held : held_)
     hessian.blocks[at(hessian.pattern->diagonal[at(held.vertex)])].diagonal().array() +=
         static_cast<float>(held.pull.stiffness(x[at(held.vertex)]));
+  for (const Above& a : above_)
+    if (a.normal.dot(x[at(a.vertex)]) < a.height)
+      hessian.blocks[at(hessian.pattern->diagonal[at(a.vertex)])] +=
+          (a.stiffness * a.normal * a.normal.transpose()).cast<float>();
 }
 
 }  // namespace ft

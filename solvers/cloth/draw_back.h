@@ -1,6 +1,7 @@
-// Draws cloth back to where it lay on the skin when the garment was put on (in the bind pose), where what it lies on has
-// been let go (absence.h): a hole in the body would swallow the sleeve on it, and what has got into the body has to come
-// out on the side where it belongs. As pins do (pin_pull.h): no harder than a limit, and no faster than they.
+// Holds cloth where what it lies on has been let go (absence.h): a hole in the body would swallow the sleeve on it, and
+// what has got into the body has to come out on the side where it belongs. Cloth that is on its side stays above the
+// skin and slides on it; what is not is drawn back to where it lay when the garment was put on (in the bind pose), as
+// pins do (pin_pull.h): no harder than a limit, and no faster than they.
 #pragma once
 
 #include <span>
@@ -17,8 +18,8 @@ struct PieceMotion;
 
 class DrawBack final : public Energy {
  public:
-  /// Takes up the vertices that are to be drawn back, to where the piece of h [s] takes their places on the skin.
-  void follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece, std::span<const int> vertices,
+  /// Takes up the ways out for a piece of h [s].
+  void follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece, std::span<const WayOut> ways,
               double h);
 
   std::string_view name() const override { return "draw_back"; }
@@ -33,7 +34,14 @@ class DrawBack final : public Energy {
     int vertex;
     PinPull pull;
   };
+  struct Above {
+    int vertex;
+    Vec3 normal;
+    double height;     ///< of the plane along its normal, with the contact radius [m]
+    double stiffness;  ///< N/m
+  };
   std::vector<Held> held_;
+  std::vector<Above> above_;
 };
 
 }  // namespace ft
