@@ -9,7 +9,6 @@
 
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
-#include "baker/heap.h"
 #include "baker/interaction.h"
 #include "baker/report_json.h"
 #include "baker/signals.h"
@@ -176,7 +175,6 @@ Status Walk::frames() {
   }
   const int interval = checkpoint_interval(states_);
   int newest_checkpoint = states_[0].frame;
-  empty_heap();  // of what it took to get here
   while (states_[0].frame < shot.last_frame) {
     if (signal_received() != 0) {
       if (newest_checkpoint != states_[0].frame) {
