@@ -73,12 +73,16 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     garment.mesh = std::move(welded.mesh);
     garment.mesh.name = spec.name;
     output.joined_of = std::move(welded.joined_of);
+    output.in_file = std::move(welded.in_file);
+    output.weld = spec.weld;
   }
   if (const Status checked = check_garment(garment.mesh); !checked) {
     Error error = located(checked.error());
     if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
     return error;
   }
+  if (spec.faces == k_faces_triangles)
+    output.mesh = std::make_shared<const Mesh>(with_triangles_of(*output.mesh, garment.mesh, output.in_file));
   for (const std::string& note : inspect_garment(garment.mesh).notes) mesh_notes.push_back(note);
   for (const std::string& note : mesh_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
 

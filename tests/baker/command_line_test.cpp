@@ -183,6 +183,23 @@ TEST_F(CommandLine, Frames_outside_the_clip_are_refused_before_anything_is_baked
   EXPECT_TRUE(before.exit_code == 2 || before.exit_code == 3) << before.err;
 }
 
+TEST_F(CommandLine, Check_fails_a_bake_that_is_not_finished_and_says_how_many_frames_are_missing) {
+  ASSERT_EQ(run({"bake", shot("1-2"), "--out", out()}).exit_code, 0);
+  auto manifest = read_manifest(out());
+  ASSERT_TRUE(manifest);
+  manifest->complete = false;
+  ASSERT_TRUE(write_text_durably(out() + "/manifest.json", to_text(*manifest)).ok());
+  const Answer whole = run({"check", out()});
+  EXPECT_EQ(whole.exit_code, 4);
+  EXPECT_NE(whole.err.find("not finished: it stopped after its last frame"), std::string::npos) << whole.err;
+  manifest->last_frame = 9;
+  ASSERT_TRUE(write_text_durably(out() + "/manifest.json", to_text(*manifest)).ok());
+  const Answer part = run({"check", out()});
+  EXPECT_EQ(part.exit_code, 4);
+  EXPECT_NE(part.err.find("the bake is not finished: 7 of 9 frames are missing"), std::string::npos) << part.err;
+  EXPECT_NE(part.out.find("FAILED: 2 frames"), std::string::npos) << part.out;
+}
+
 TEST_F(CommandLine, Folder_that_cannot_be_written_is_exit_code_6) {
   EXPECT_EQ(run({"bake", shot("1-3"), "--out", "/proc/bake"}).exit_code, 6);
   EXPECT_EQ(run({"bake", shot("1-3"), "--out", (scratch_ / "sheet.obj").string() + "/bake"}).exit_code, 6);
