@@ -9,6 +9,7 @@
 #include "baker/plan_common.h"
 #include "baker/quality.h"
 #include "baker/vertex_maps.h"
+#include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
 #include "solvers/cloth/coarse_garment.h"
@@ -119,8 +120,10 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
 
   const Box cloth_box = bounds(garment.mesh.positions);
   Box body_box = bounds(bind_pose_of(*primary.trajectory));
+  const std::string doubt = doubt_of_size(cloth_box.size().maxCoeff(), spec.unit_scale);
+  if (!doubt.empty()) notes.push_back("cloth \"" + spec.name + "\" " + doubt);
   const double ratio = cloth_box.size().maxCoeff() / body_box.size().maxCoeff();
-  if (ratio > 10 || ratio < 0.01)
+  if (doubt.empty() && (ratio > 10 || ratio < 0.01))
     notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?",
                                 spec.name, cloth_box.size().maxCoeff(), body_box.size().maxCoeff()));
   body_box.inflate(0.1 * body_box.size().maxCoeff());

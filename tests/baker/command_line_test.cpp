@@ -183,6 +183,23 @@ TEST_F(CommandLine, Frames_outside_the_clip_are_refused_before_anything_is_baked
   EXPECT_TRUE(before.exit_code == 2 || before.exit_code == 3) << before.err;
 }
 
+TEST_F(CommandLine, Info_and_bake_doubt_a_garment_in_centimetres_that_is_read_in_metres) {
+  const std::string file = shot("1-3", "", "offset = [0, 1, 0]");
+  auto mesh = read_obj(scratch_ / "sheet.obj");
+  ASSERT_TRUE(mesh);
+  EXPECT_NE(run({"info", (scratch_ / "sheet.obj").string()}).out.find("as a garment: good\n"), std::string::npos);
+  for (Vec3& p : mesh->positions) p *= 580;  // 0.1 m -> 58 m
+  ASSERT_TRUE(write_obj(scratch_ / "sheet.obj", *mesh).ok());
+  const std::string words =
+      "is 58 m in size, which no garment is: with unit_scale = 0.01 (a file in centimetres) it would be 0.58 m";
+  const Answer info = run({"info", (scratch_ / "sheet.obj").string()});
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_NE(info.out.find("note: the mesh " + words), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("as a garment: good but for its size"), std::string::npos) << info.out;
+  const Answer plan = run({"bake", file, "--dry-run", "--out", out()});
+  EXPECT_NE(plan.out.find("cloth \"sheet\" " + words), std::string::npos) << plan.out << plan.err;
+}
+
 TEST_F(CommandLine, Check_fails_a_bake_that_is_not_finished_and_says_how_many_frames_are_missing) {
   ASSERT_EQ(run({"bake", shot("1-2"), "--out", out()}).exit_code, 0);
   auto manifest = read_manifest(out());
