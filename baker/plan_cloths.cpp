@@ -77,19 +77,19 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     output.in_file = std::move(welded.in_file);
     output.weld = spec.weld;
   }
-  if (const Status checked = check_garment(garment.mesh); !checked) {
+  if (const Status checked = check_garment(garment.mesh, output.in_file); !checked) {
     Error error = located(checked.error());
     if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
     return error;
   }
   if (spec.faces == k_faces_triangles)
     output.mesh = std::make_shared<const Mesh>(with_triangles_of(*output.mesh, garment.mesh, output.in_file));
-  for (const std::string& note : inspect_garment(garment.mesh).notes) mesh_notes.push_back(note);
+  for (const std::string& note : inspect_garment(garment.mesh, output.in_file).notes) mesh_notes.push_back(note);
   for (const std::string& note : mesh_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
 
   if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
     std::vector<std::string> pattern_notes;
-    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes); !cut)
+    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes, output.in_file); !cut)
       return located(cut.error());
     for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
     garment.pattern_scale = spec.pattern_scale;

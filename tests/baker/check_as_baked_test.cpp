@@ -158,6 +158,33 @@ TEST(CheckAsBaked, A_crossing_is_told_of_by_the_vertex_of_the_file) {
   EXPECT_EQ(incident.place, x[at(incident.vertex)].cast<double>());
 }
 
+TEST(CheckAsBaked, Incidents_of_the_manifest_have_the_numbers_of_the_file) {
+  FakeScene scene;
+  Mesh panels = two_panels();
+  scene.write_garment(panels);
+  scene.write_shot(2, "weld = 1e-4");
+  FakeBehaviour behaviour;
+  behaviour.after_frame = [](int frame, FrameReport& report, State&) {
+    Incident incident;
+    incident.frame = frame;
+    incident.system = "sheet";
+    incident.vertex = 12;  // of the joined mesh: the second panel's first vertex is the file's twelfth, its last joins
+    report.incidents.push_back(incident);
+    incident.vertex = 15;  // 15 of the file is 3 again: the next that is not joined
+    report.incidents.push_back(incident);
+    incident.system = "another";
+    report.incidents.push_back(incident);
+  };
+  ASSERT_EQ(scene.run(scene.options(), behaviour).exit_code, 0);
+  const auto manifest = read_manifest(scene.folder().path);
+  ASSERT_TRUE(manifest) << manifest.error().text();
+  const auto& incidents = manifest->frames.back().incidents;
+  ASSERT_EQ(incidents.size(), 3u);
+  EXPECT_EQ(incidents[0].vertex, 12);
+  EXPECT_EQ(incidents[1].vertex, 16);
+  EXPECT_EQ(incidents[2].vertex, 15);
+}
+
 TEST(CheckAsBaked, Of_a_bake_that_was_interrupted_the_missing_frames_are_counted) {
   FakeScene scene;
   for (const int last : {-1, 0, 4, 9}) {
