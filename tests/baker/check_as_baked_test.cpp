@@ -140,8 +140,6 @@ TEST(CheckAsBaked, A_crossing_is_told_of_by_the_vertex_of_the_file) {
     }
   folded.positions.insert(folded.positions.begin(), folded.positions[0]);  // vertex 1 joins vertex 0: numbers shift
   for (int& v : folded.face_vertices) ++v;
-  folded.face_sizes.push_back(3);
-  for (const int v : {0, 2, 6}) folded.face_vertices.push_back(v);
   scene.write_garment(folded);
   scene.write_shot(1, "weld = 1e-4");
   const BakeResult baked = scene.run();
