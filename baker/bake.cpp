@@ -10,7 +10,6 @@
 #include "baker/body_only.h"
 #include "baker/cache_set.h"
 #include "baker/core/file.h"
-#include "baker/heap.h"
 #include "baker/hybrid_files.h"
 #include "baker/interaction.h"
 #include "baker/lock_file.h"
@@ -174,7 +173,6 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   if (!plan) return failed(plan.error());
   for (const std::string& note : plan->notes) progress.note(note);
   manifest.notes = plan->notes;
-  empty_heap();  // of what the import took
   const RoomReport room = find_room(*plan);
   for (const std::string& line : room_lines(room, k_room_lines)) progress.note(line);
   for (std::string& line : start_lines(find_start(*plan))) {

@@ -36,6 +36,7 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       const GarmentOutput& output = outputs[static_cast<std::size_t>(s)];
       add({g, s, false, output.mesh}, output.mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
       systems_.back().pattern_scale = output.pattern_scale;
+      systems_.back().weld = output.weld;
     }
     const bool alone = outputs.empty();
     if (!plan.shot().cache_collider && !alone) continue;

@@ -21,7 +21,7 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   const auto path = folder / system.caches[0].file;
   auto reader = open_cache(path);
   if (!reader) return reader.error();
-  CacheTrack track{system.name, std::move(*reader), {}, {}, system.pattern_scale};
+  CacheTrack track{system.name, std::move(*reader), {}, {}, system.pattern_scale, system.weld};
   auto rest = read_obj(folder / system.topology);
   if (!rest) return rest.error();
   track.rest = std::move(*rest);
@@ -40,13 +40,12 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   return track;
 }
 
-RestEdges rest_edges_of(const CacheTrack& cloth) {
-  RestEdges out = rest_edges(cloth.rest.positions, cloth.triangles);
-  if (!(cloth.pattern_scale > 0)) return out;
-  const ClothPiece piece{0, cloth.rest.vertex_count(), Fabric{}, cloth.pattern_scale};
-  lengths_from_pattern(make_cloth_topology(cloth.rest.positions, cloth.triangles, std::span(&piece, 1),
-                                           corner_uvs(cloth.rest, cloth.triangles)),
-                       out);
+RestEdges rest_edges_of(const Mesh& rest, std::span<const Triangle> triangles, double pattern_scale) {
+  RestEdges out = rest_edges(rest.positions, triangles);
+  if (!(pattern_scale > 0)) return out;
+  const ClothPiece piece{0, rest.vertex_count(), Fabric{}, pattern_scale};
+  lengths_from_pattern(
+      make_cloth_topology(rest.positions, triangles, std::span(&piece, 1), corner_uvs(rest, triangles)), out);
   return out;
 }
 

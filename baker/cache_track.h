@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct CacheTrack {
   Mesh rest;                        ///< from the topology file: rest shape, in the garment's own order [m]
   std::vector<Triangle> triangles;  ///< of rest
   double pattern_scale = 0;         ///< m per unit of its uvs, which are the rest shape then; 0: the positions are
+  double weld = 0;  ///< what lies nearer than this at rest was joined for the simulation [m]; 0: nothing
 
   /// Appends the positions of a frame, counted from 0 [m].
   Status read(int index, std::vector<Vec3>& out) const;
@@ -27,7 +29,8 @@ struct CacheTrack {
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest);
 
-/// The lengths from which the bake of a cloth measured its strain.
-RestEdges rest_edges_of(const CacheTrack& cloth);
+/// The lengths from which the bake of a cloth measured its strain, in a mesh at rest and the triangles that it is split
+/// into; pattern_scale as in CacheTrack.
+RestEdges rest_edges_of(const Mesh& rest, std::span<const Triangle> triangles, double pattern_scale);
 
 }  // namespace ft

@@ -91,6 +91,12 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
   inputs.shot = std::move(*shot);
   Shot& s = inputs.shot;
   if (frames) {
+    if (frames->first < s.first_frame || frames->last > s.last_frame)
+      return usage_error(fmt::format("--frames {} is not within the shot, which has {}", frames_text(*frames),
+                                     frames_text({s.first_frame, s.last_frame})),
+                         shot_file.string(),
+                         fmt::format("--set shot.frames={} makes it another shot, which starts at frame {}",
+                                     frames_text(*frames), frames->first));
     const double later = (frames->first - s.first_frame) / s.fps;
     for (PrimarySpec& primary : s.primaries) {
       if (later != 0) primary.clip_bind = primary.clip_start;

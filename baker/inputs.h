@@ -32,8 +32,8 @@ struct BakeInputs {
 /// What the registries of the floors below know, for read_shot().
 ShotVocabulary shot_vocabulary();
 
-/// frames: overrides the shot's range; the clip then starts that much later, so that a frame has the same pose in any
-/// range. faults: every fault of the shot file, for printing.
+/// frames: a part of the shot, else k_usage; the clip then starts that much later, so that a frame has the same pose in
+/// any range. faults: every fault of the shot file, for printing.
 Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std::vector<std::string>& overrides,
                                std::optional<FrameRange> frames, ShotFaults& faults);
 

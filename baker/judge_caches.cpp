@@ -13,13 +13,46 @@
 #include "collision/crossings.h"
 #include "collision/penetration.h"
 #include "collision/sewn_pairs.h"
+#include "io/shot/weld.h"
 
 namespace ft {
 namespace {
 
+/// A cloth as it was simulated: vertices that its bake joined are one.
+struct JudgedCloth {
+  CacheTrack track;
+  Mesh mesh;  ///< at rest
+  FileNumbers in_file;
+  std::vector<Triangle> triangles;
+
+  /// Appends the positions of a frame, counted from 0 [m].
+  Status read(int index, std::vector<Vec3>& out) const;
+};
+
+Status JudgedCloth::read(int index, std::vector<Vec3>& out) const {
+  if (!(track.weld > 0)) return track.read(index, out);
+  std::vector<Vec3> in_file_order;
+  if (const Status read = track.read(index, in_file_order); !read) return read;
+  for (int v = 0; v < mesh.vertex_count(); ++v) out.push_back(in_file_order[at(in_file.vertex(v))]);
+  return {};
+}
+
+JudgedCloth as_simulated(CacheTrack track) {
+  JudgedCloth out;
+  out.mesh = track.rest;
+  if (track.weld > 0) {
+    WeldedMesh welded = weld(track.rest, track.weld);
+    out.mesh = std::move(welded.mesh);
+    out.in_file = std::move(welded.in_file);
+  }
+  out.triangles = triangulate(out.mesh);
+  out.track = std::move(track);
+  return out;
+}
+
 /// What moves with one primary.
 struct Group {
-  std::vector<CacheTrack> cloths;
+  std::vector<JudgedCloth> cloths;
   std::vector<CacheTrack> collider, body;  ///< none or one
   std::vector<Triangle> cloth_triangles;
   RestEdges rest_edges;
@@ -32,18 +65,18 @@ struct Group {
 void prepare(Group& group) {
   int first = 0;
   std::vector<Stitch> stitches;
-  for (const CacheTrack& cloth : group.cloths) {
+  for (const JudgedCloth& cloth : group.cloths) {
     group.first_vertex.push_back(first);
     for (const Triangle& t : cloth.triangles)
       group.cloth_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    for (Stitch s : cloth.rest.stitches) {
+    for (Stitch s : cloth.mesh.stitches) {
       s.vertex += first, s.edge[0] += first, s.edge[1] += first;
       stitches.push_back(s);
     }
-    const RestEdges own = rest_edges_of(cloth);
+    const RestEdges own = rest_edges_of(cloth.mesh, cloth.triangles, cloth.track.pattern_scale);
     for (const Edge& e : own.edges) group.rest_edges.edges.push_back({e[0] + first, e[1] + first});
     group.rest_edges.lengths.insert(group.rest_edges.lengths.end(), own.lengths.begin(), own.lengths.end());
-    first += cloth.rest.vertex_count();
+    first += cloth.mesh.vertex_count();
   }
   group.first_vertex.push_back(first);
   group.sewn = SewnPairs(first, stitches, group.cloth_triangles);
@@ -52,8 +85,8 @@ void prepare(Group& group) {
 void place_incident(const Group& group, int vertex, Incident& incident) {
   const auto next = std::upper_bound(group.first_vertex.begin(), group.first_vertex.end(), vertex);
   const auto garment = static_cast<std::size_t>(next - group.first_vertex.begin()) - 1;
-  incident.system = group.cloths[garment].name;
-  incident.vertex = vertex - group.first_vertex[garment];
+  incident.system = group.cloths[garment].track.name;
+  incident.vertex = group.cloths[garment].in_file.vertex(vertex - group.first_vertex[garment]);
 }
 
 Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
@@ -61,7 +94,7 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   report.frame = frame;
   report.smallest_gap = std::numeric_limits<double>::infinity();
   std::vector<Vec3> x;
-  for (const CacheTrack& cloth : group.cloths)
+  for (const JudgedCloth& cloth : group.cloths)
     if (const Status read = cloth.read(index, x); !read) return read.error();
   report.finite = all_finite(x);
   const auto incident = [&](Incident::Kind kind, int vertex, double depth, std::string text) {
@@ -106,6 +139,12 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   return report;
 }
 
+/// Whether the file is there that open_track() opens.
+bool has_cache(const std::filesystem::path& folder, const ManifestSystem& system) {
+  std::error_code error;
+  return !system.caches.empty() && std::filesystem::exists(folder / system.caches[0].file, error);
+}
+
 /// A prop is its own collider, as drawn.
 Result<FrameReport> judge_cords_in_frame(const Group& group, std::size_t cords, int index, int frame) {
   const CacheTrack& track = group.cords[cords];
@@ -147,8 +186,14 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
   if (!manifest) return manifest.error();
   CacheJudgement out;
   out.shot = manifest->shot;
+  out.complete = manifest->complete;
+  int frames = manifest->written_count();
   std::map<std::string, Group> groups;
   for (const ManifestSystem& system : manifest->systems) {
+    if (!manifest->complete && !has_cache(bake_folder, system)) {
+      frames = 0;
+      continue;
+    }
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
     Group& group = groups[system.primary];
@@ -157,13 +202,16 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
       if (!lines) return lines.error();
       group.lines.push_back(std::move(*lines));
     }
-    (system.role == "cloth"      ? group.cloths
-     : system.role == "cords"    ? group.cords
+    if (system.role == "cloth") {
+      group.cloths.push_back(as_simulated(std::move(*track)));
+      continue;
+    }
+    (system.role == "cords"      ? group.cords
      : system.role == "collider" ? group.collider
                                  : group.body)
         .push_back(std::move(*track));
   }
-  int frames = manifest->written_count();
+  if (groups.empty()) frames = 0;
   for (auto& [primary, group] : groups) {
     prepare(group);
     out.has_collider = out.has_collider || !group.collider.empty();
@@ -174,12 +222,12 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     if (!group.cloths.empty() && group.collider.empty())
       out.notes.push_back("the feasible collider of \"" + primary +
                           "\" is not cached: crossings with it are not judged");
-    for (const auto* tracks : {&group.cloths, &group.cords, &group.collider, &group.body})
+    for (const JudgedCloth& cloth : group.cloths) frames = std::min(frames, cloth.track.reader->info().frame_count);
+    for (const auto* tracks : {&group.cords, &group.collider, &group.body})
       for (const CacheTrack& track : *tracks) frames = std::min(frames, track.reader->info().frame_count);
   }
-  if (!manifest->complete)
-    out.notes.push_back(
-        fmt::format("the bake is not finished: {} of {} frames are judged", frames, manifest->written_count()));
+  out.frame_count = manifest->written_count();
+  out.missing_frames = out.frame_count - frames;
   for (int i = 0; i < frames; ++i) {
     bool first = true;
     FrameReport all;

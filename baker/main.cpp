@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "baker/commands/command_line.h"
-#include "baker/heap.h"
 #include "io/import/import.h"
 
 namespace {
@@ -27,7 +26,6 @@ __attribute__((constructor(101))) void check_machine() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ft::set_up_heap();
   if (argc > 1 && std::strcmp(argv[1], "--import-child") == 0) return ft::import_child_main(argc, argv);
   return ft::run_command_line(argc, argv);
 }

@@ -23,6 +23,7 @@ Json system_json(const ManifestSystem& system) {
            {"faces", system.face_count}, {"topology", system.topology},
            {"caches", std::move(caches)}};
   if (system.pattern_scale > 0) out["pattern_scale"] = system.pattern_scale;
+  if (system.weld > 0) out["weld"] = system.weld;
   return out;
 }
 
@@ -35,6 +36,7 @@ ManifestSystem system_from(const Json& json) {
   out.face_count = json.at("faces").get<int>();
   out.topology = json.at("topology").get<std::string>();
   out.pattern_scale = json.value("pattern_scale", 0.0);
+  out.weld = json.value("weld", 0.0);
   for (const Json& c : json.at("caches"))
     out.caches.push_back({c.at("format").get<std::string>(), c.at("file").get<std::string>(),
                           c.at("bytes").get<std::uint64_t>(), c.at("content").get<std::string>()});

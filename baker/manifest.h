@@ -36,6 +36,7 @@ struct ManifestSystem {
   std::string topology;  ///< OBJ of the rest shape, for formats that hold points only
   std::vector<ManifestCache> caches;
   double pattern_scale = 0;  ///< of a cloth whose rest lengths are those of its flat pattern: m per unit of vt; else 0
+  double weld = 0;  ///< what lay nearer than this at rest was one vertex for the simulation [m]; 0: nothing was joined
 };
 
 /// A file beside the caches, of an adjusted motion.

@@ -15,6 +15,7 @@
 #include "baker/yielding_character.h"
 #include "io/import/import.h"
 #include "io/import/teleport_scan.h"
+#include "io/shot/file_numbers.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "solvers/lockstep/lockstep_solver.h"
 
@@ -34,9 +35,11 @@ struct PrimaryPlan {
 
 /// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation. Cords leave as tubes.
 struct GarmentOutput {
-  std::shared_ptr<const Mesh> mesh;  ///< the file's, placed
+  std::shared_ptr<const Mesh> mesh;  ///< the file's, placed; with the simulated triangles if the shot file wants those
   std::vector<int> joined_of;        ///< per vertex of the file: its vertex in the simulation; empty: the same
   double pattern_scale = 0;          ///< of the garment
+  double weld = 0;                   ///< what is nearer than this was joined [m]; 0: nothing
+  FileNumbers in_file;               ///< of the simulated mesh
 };
 
 /// All garments of one primary are solved together and feel each other, and so are all cords of one primary; cloth and

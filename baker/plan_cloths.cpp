@@ -9,6 +9,7 @@
 #include "baker/plan_common.h"
 #include "baker/quality.h"
 #include "baker/vertex_maps.h"
+#include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
 #include "solvers/cloth/coarse_garment.h"
@@ -73,18 +74,22 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     garment.mesh = std::move(welded.mesh);
     garment.mesh.name = spec.name;
     output.joined_of = std::move(welded.joined_of);
+    output.in_file = std::move(welded.in_file);
+    output.weld = spec.weld;
   }
-  if (const Status checked = check_garment(garment.mesh); !checked) {
+  if (const Status checked = check_garment(garment.mesh, output.in_file); !checked) {
     Error error = located(checked.error());
     if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
     return error;
   }
-  for (const std::string& note : inspect_garment(garment.mesh).notes) mesh_notes.push_back(note);
+  if (spec.faces == k_faces_triangles)
+    output.mesh = std::make_shared<const Mesh>(with_triangles_of(*output.mesh, garment.mesh, output.in_file));
+  for (const std::string& note : inspect_garment(garment.mesh, output.in_file).notes) mesh_notes.push_back(note);
   for (const std::string& note : mesh_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
 
   if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
     std::vector<std::string> pattern_notes;
-    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes); !cut)
+    if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes, output.in_file); !cut)
       return located(cut.error());
     for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
     garment.pattern_scale = spec.pattern_scale;
@@ -115,8 +120,10 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
 
   const Box cloth_box = bounds(garment.mesh.positions);
   Box body_box = bounds(bind_pose_of(*primary.trajectory));
+  const std::string doubt = doubt_of_size(cloth_box.size().maxCoeff(), spec.unit_scale);
+  if (!doubt.empty()) notes.push_back("cloth \"" + spec.name + "\" " + doubt);
   const double ratio = cloth_box.size().maxCoeff() / body_box.size().maxCoeff();
-  if (ratio > 10 || ratio < 0.01)
+  if (doubt.empty() && (ratio > 10 || ratio < 0.01))
     notes.push_back(fmt::format("cloth \"{}\" is {:.3g} m in size on a body of {:.3g} m: is unit_scale right?",
                                 spec.name, cloth_box.size().maxCoeff(), body_box.size().maxCoeff()));
   body_box.inflate(0.1 * body_box.size().maxCoeff());

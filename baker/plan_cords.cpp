@@ -97,7 +97,9 @@ Status plan_cords(const Shot& shot, std::size_t p, BakePlan& plan) {
     }
     Mesh mesh = CordTubes(system->graph, system->radius, spec.name).mesh();
     mesh.name = spec.name;
-    group.outputs.push_back({std::make_shared<const Mesh>(std::move(mesh)), {}, 0});
+    GarmentOutput output;
+    output.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    group.outputs.push_back(std::move(output));
     setup.cords.push_back(std::move(*system));
     (spec.coupling == "two-way" ? two_way : one_way) = true;
   }

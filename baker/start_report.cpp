@@ -111,7 +111,8 @@ StartReport find_start(const BakePlan& plan) {
     for (BadStart& b : bad) {
       if (b.vertex < 0) continue;
       b.place = start.x[at(b.vertex)];
-      b.vertex -= start.first_vertex[start.garment_of(b.vertex)];
+      const std::size_t garment = start.garment_of(b.vertex);
+      b.vertex = group.outputs[garment].in_file.vertex(b.vertex - start.first_vertex[garment]);
       out.bad.push_back(std::move(b));
     }
   }

@@ -19,7 +19,7 @@ struct BadStart {
   int crossings = 0;          ///< edges through triangles, exact
   int inside = 0;             ///< vertices inside the body
   double depth = 0;           ///< of the deepest of them [m]
-  int vertex = -1;            ///< the deepest, else one that crosses; in the simulated mesh
+  int vertex = -1;            ///< the deepest, else one that crosses; in file order
   Vec3 place = Vec3::Zero();  ///< of that [m]
 };
 

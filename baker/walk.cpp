@@ -9,7 +9,6 @@
 
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
-#include "baker/heap.h"
 #include "baker/interaction.h"
 #include "baker/report_json.h"
 #include "baker/signals.h"
@@ -93,6 +92,8 @@ class Walk {
   Status complete();
   Status write_report() const;
   FrameReport advance();
+  /// Solvers number the vertices that they simulate, messages those of the garment's file.
+  void number_as_in_file(std::size_t group, std::span<Incident> incidents) const;
   using SharedSnapshot = std::shared_ptr<const Snapshot>;
   SharedSnapshot take() const { return std::make_shared<const Snapshot>(caches_.take(states_)); }
   /// before: null at the start.
@@ -130,12 +131,23 @@ Status Walk::start(std::optional<Checkpoint> from) {
   return caches_.open(0);
 }
 
+void Walk::number_as_in_file(std::size_t group, std::span<Incident> incidents) const {
+  const auto& outputs = plan_.groups[group].outputs;
+  for (Incident& incident : incidents)
+    for (int s = 0; s < solvers_[group]->system_count() && incident.vertex >= 0; ++s)
+      if (solvers_[group]->system_mesh(s).name == incident.system) {
+        incident.vertex = outputs[at(s)].in_file.vertex(incident.vertex);
+        break;
+      }
+}
+
 FrameReport Walk::advance() {
   FrameReport report;
   for (std::size_t g = 0; g < solvers_.size(); ++g) {
     const int expected = states_[g].frame + 1;
     FrameReport one = solvers_[g]->advance_frame(states_[g]);
     CHECK(states_[g].frame == expected && one.frame == expected);
+    number_as_in_file(g, one.incidents);
     report = g == 0 ? std::move(one) : merge(report, one);
   }
   return report;
@@ -176,7 +188,6 @@ Status Walk::frames() {
   }
   const int interval = checkpoint_interval(states_);
   int newest_checkpoint = states_[0].frame;
-  empty_heap();  // of what it took to get here
   while (states_[0].frame < shot.last_frame) {
     if (signal_received() != 0) {
       if (newest_checkpoint != states_[0].frame) {

@@ -1,18 +1,8 @@
 #include "baker/writer_thread.h"
 
-#include <chrono>
 #include <utility>
 
-#include "baker/heap.h"
-
 namespace ft {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-/// What is given back has to be had again: after every frame of a small scene that would be 3 % of its time.
-constexpr auto k_between_trims = std::chrono::seconds(1);
-
-}  // namespace
 
 WriterThread::WriterThread(std::size_t capacity) : capacity_(capacity), thread_([this] { run(); }) {
   CHECK(capacity_ > 0);
@@ -46,7 +36,6 @@ Status WriterThread::finish() {
 }
 
 void WriterThread::run() {
-  auto next_trim = Clock::now();
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
@@ -58,10 +47,6 @@ void WriterThread::run() {
       lock.unlock();
       const Status done = job();
       job = nullptr;  // and what it has
-      if (const auto now = Clock::now(); now >= next_trim) {
-        trim_heap();
-        next_trim = now + k_between_trims;
-      }
       lock.lock();
       if (!done) failure_ = done.error();
     }

@@ -1,6 +1,6 @@
 // The one thread that writes. Jobs run in the order in which they were handed in, so a checkpoint handed in after a
 // frame's caches is never older than them. The queue is bounded: a slow disk slows the bake instead of filling the
-// memory. Once a second it also returns to the system what the heap keeps (heap.h). After the first failure nothing
+// memory. After the first failure nothing
 // more is written; the failure comes back from the next submit() or finish().
 #pragma once
 

@@ -28,7 +28,7 @@ struct Incident {
   Kind kind = Kind::k_crossing;
   int frame = 0;
   std::string system;         ///< name of the garment
-  int vertex = -1;            ///< in the garment's file order
+  int vertex = -1;            ///< of system_mesh(); in manifests, and of cords, of the cached mesh; from 0
   Vec3 place = Vec3::Zero();  ///< m, world
   double depth = 0;           ///< m (or 1 for strain)
   std::string text;           ///< one sentence

@@ -63,7 +63,8 @@ void add_bake_command(CLI::App& app, int& exit_code) {
   command->add_option("shot", a->options.shot_file, "The shot file (TOML)")->required()->type_name("SHOT.toml");
   command->add_option("--out,-o", a->options.folder, "Output folder; without it SHOT.bake beside the shot file")
       ->type_name("DIR");
-  command->add_option("--frames", a->frames, "Bake these frames only, with a pre-roll of their own")->type_name("A-B");
+  command->add_option("--frames", a->frames, "Bake these frames of the shot only, with a pre-roll of their own")
+      ->type_name("A-B");
   command
       ->add_option("--quality", a->quality,
                    "preview: about four times as fast, on garments with a fifth of the vertices; final: as they are")

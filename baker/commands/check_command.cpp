@@ -1,5 +1,5 @@
 // `check DIR`: judges a bake from its caches alone, frame by frame. Exit code 4 when a gate fails; crossings with the
-// feasible collider, which a prop is to its cords, and among cloths always do.
+// feasible collider, which a prop is to its cords, and among cloths always do, and so does a bake that is not finished.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -43,8 +43,13 @@ Totals add_up(const std::vector<FrameReport>& frames) {
   return out;
 }
 
-std::vector<std::string> failed_gates(const CheckArguments& a, const Totals& t) {
+std::vector<std::string> failed_gates(const CheckArguments& a, const CacheJudgement& judgement, const Totals& t) {
   std::vector<std::string> out;
+  if (judgement.missing_frames > 0)
+    out.push_back(fmt::format("the bake is not finished: {} of {} frames are missing (bake --resume goes on with it)",
+                              judgement.missing_frames, judgement.frame_count));
+  else if (!judgement.complete)
+    out.push_back("the bake is not finished: it stopped after its last frame (bake --resume goes on with it)");
   if (t.crossing_frames > 0)
     out.push_back(fmt::format("{} crossings with the feasible collider and {} among cloths, in {} frames",
                               t.crossings_body, t.crossings_self, t.crossing_frames));
@@ -60,9 +65,16 @@ std::vector<std::string> failed_gates(const CheckArguments& a, const Totals& t) 
 Json json_of(const CacheJudgement& judgement, const Totals& t, const std::vector<std::string>& failed) {
   Json frames = Json::array();
   for (const FrameReport& f : judgement.frames) frames.push_back(to_json(f));
-  return Json{{"shot", judgement.shot},     {"passed", failed.empty()},           {"failed", failed},
-              {"notes", judgement.notes},   {"crossings_body", t.crossings_body}, {"crossings_self", t.crossings_self},
-              {"deepest_drawn", t.deepest}, {"strain_p99", t.strain_p99},         {"frames", std::move(frames)}};
+  return Json{{"shot", judgement.shot},
+              {"passed", failed.empty()},
+              {"failed", failed},
+              {"notes", judgement.notes},
+              {"missing_frames", judgement.missing_frames},
+              {"crossings_body", t.crossings_body},
+              {"crossings_self", t.crossings_self},
+              {"deepest_drawn", t.deepest},
+              {"strain_p99", t.strain_p99},
+              {"frames", std::move(frames)}};
 }
 
 int run(const CheckArguments& a) {
@@ -87,7 +99,7 @@ int run(const CheckArguments& a) {
                     i.place.x(), i.place.y(), i.place.z(), i.text.c_str());
   for (const std::string& note : judgement->notes) std::printf("note: %s\n", note.c_str());
   const Totals totals = add_up(judgement->frames);
-  const auto failed = failed_gates(a, totals);
+  const auto failed = failed_gates(a, *judgement, totals);
   std::printf(
       "%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, "
       "worst p99 strain %.2f %%%s\n",

@@ -15,6 +15,7 @@
 #include "baker/room_report.h"
 #include "io/cache/cache.h"
 #include "io/import/import.h"
+#include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/shot.h"
 
@@ -107,7 +108,11 @@ Result<Lines> mesh_info(const std::filesystem::path& path) {
   if (!mesh->stitches.empty()) out.push_back(fmt::format("  {} panels, {}", panel_count(*mesh), sewing_text(*mesh)));
   for (const std::string& note : notes) out.push_back("  note: " + note);
   const Status garment = check_garment(*mesh);
-  out.push_back(garment ? "  as a garment: good" : "  as a garment: " + garment.error().what);
+  const std::string doubt = doubt_of_size(bounds(mesh->positions).size().maxCoeff(), 1);
+  out.push_back(!garment        ? "  as a garment: " + garment.error().what
+                : doubt.empty() ? "  as a garment: good"
+                                : "  as a garment: good but for its size");
+  if (!doubt.empty()) out.push_back("  note: the mesh " + doubt);
   return out;
 }
 

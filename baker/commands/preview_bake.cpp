@@ -100,7 +100,7 @@ Status measure(std::vector<Clip>& clips, int frames) {
   for (Clip& clip : clips) {
     if (!is_secondary(clip.system.role)) continue;
     const bool cloth = clip.system.role == "cloth";
-    if (cloth) clip.rest_edges = rest_edges_of(clip.track);
+    if (cloth) clip.rest_edges = rest_edges_of(clip.track.rest, clip.track.triangles, clip.track.pattern_scale);
     const Clip* surface = nullptr;
     for (const Clip& other : clips)
       if (other.system.primary == clip.system.primary &&

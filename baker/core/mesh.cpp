@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "baker/core/triangle_corners.h"
+
 namespace ft {
 
 Mesh make_triangle_mesh(std::string name, std::vector<Vec3> positions, std::span<const Triangle> triangles) {
@@ -15,26 +17,9 @@ Mesh make_triangle_mesh(std::string name, std::vector<Vec3> positions, std::span
 }
 
 std::vector<Triangle> triangulate(const Mesh& mesh) {
-  std::vector<Triangle> out;
-  out.reserve(mesh.face_sizes.size());
-  std::size_t begin = 0;
-  for (const int size : mesh.face_sizes) {
-    const int* v = mesh.face_vertices.data() + begin;
-    if (size == 4) {
-      const auto p = [&](int k) -> const Vec3& { return mesh.positions[static_cast<std::size_t>(v[k])]; };
-      // Equal diagonals (a regular grid) always split the same way: the strict comparison decides.
-      if ((p(3) - p(1)).squaredNorm() < (p(2) - p(0)).squaredNorm()) {
-        out.push_back({v[0], v[1], v[3]});
-        out.push_back({v[1], v[2], v[3]});
-      } else {
-        out.push_back({v[0], v[1], v[2]});
-        out.push_back({v[0], v[2], v[3]});
-      }
-    } else {
-      for (int k = 1; k + 1 < size; ++k) out.push_back({v[0], v[k], v[k + 1]});
-    }
-    begin += static_cast<std::size_t>(size);
-  }
+  std::vector<Triangle> out = triangle_corners(mesh);
+  for (Triangle& t : out)
+    for (int& v : t) v = mesh.face_vertices[at(v)];
   return out;
 }
 

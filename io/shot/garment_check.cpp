@@ -73,15 +73,15 @@ bool names_vertices(const Mesh& mesh, const Stitch& s) {
   return exists(s.vertex) && exists(s.edge[0]) && exists(s.edge[1]) && s.place >= 0 && s.place <= 1;
 }
 
-void judge_numbers(const Mesh& mesh, GarmentFindings& out) {
+void judge_numbers(const Mesh& mesh, const FileNumbers& in_file, GarmentFindings& out) {
   Finding bad;
   for (int i = 0; i < mesh.vertex_count(); ++i)
-    if (!mesh.positions[at(i)].allFinite()) bad.add(std::to_string(i + 1));
+    if (!mesh.positions[at(i)].allFinite()) bad.add(std::to_string(in_file.vertex(i)));
   if (bad.count > 0)
     out.faults.push_back(places(bad.count, "vertex is", "vertices are", bad.first) + " not a finite point");
 }
 
-void judge_faces(const Mesh& mesh, GarmentFindings& out) {
+void judge_faces(const Mesh& mesh, const FileNumbers& in_file, GarmentFindings& out) {
   Finding repeated, flat;
   std::size_t begin = 0;
   Mesh one;
@@ -94,14 +94,14 @@ void judge_faces(const Mesh& mesh, GarmentFindings& out) {
     one.face_vertices = corners;
     std::sort(corners.begin(), corners.end());
     if (std::adjacent_find(corners.begin(), corners.end()) != corners.end()) {
-      repeated.add(std::to_string(f + 1));
+      repeated.add(std::to_string(in_file.face(f)));
       continue;
     }
     for (const Triangle& t : triangulate(one)) {
       const Vec3 &a = mesh.positions[at(t[0])], &b = mesh.positions[at(t[1])], &c = mesh.positions[at(t[2])];
       const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
       if (!(2 * triangle_area(a, b, c) > k_flat_triangle * longest)) {
-        flat.add(std::to_string(f + 1));
+        flat.add(std::to_string(in_file.face(f)));
         break;
       }
     }
@@ -113,14 +113,14 @@ void judge_faces(const Mesh& mesh, GarmentFindings& out) {
                          " no area, or a corner in line with its neighbours");
 }
 
-void judge_edges(const Mesh& mesh, GarmentFindings& out) {
+void judge_edges(const Mesh& mesh, const FileNumbers& in_file, GarmentFindings& out) {
   const auto half_edges = sorted_half_edges(mesh);
   Finding crowded, mixed;
   for (std::size_t i = 0, end = 0; i < half_edges.size(); i = end) {
     end = i + 1;
     while (end < half_edges.size() && half_edges[end].edge == half_edges[i].edge) ++end;
-    const std::string name =
-        std::to_string(half_edges[i].edge[0] + 1) + "-" + std::to_string(half_edges[i].edge[1] + 1);
+    const std::string name = std::to_string(in_file.vertex(half_edges[i].edge[0])) + "-" +
+                             std::to_string(in_file.vertex(half_edges[i].edge[1]));
     if (end - i > 2)
       crowded.add(name);
     else if (end - i == 2 && half_edges[i].forward == half_edges[i + 1].forward)
@@ -134,7 +134,7 @@ void judge_edges(const Mesh& mesh, GarmentFindings& out) {
                         " between faces of opposite winding; normals point both ways");
 }
 
-void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
+void judge_vertices(const Mesh& mesh, const FileNumbers& in_file, GarmentFindings& out) {
   std::vector<char> used(mesh.positions.size(), 0);
   for (const int v : mesh.face_vertices) used[at(v)] = 1;
   Finding isolated, coincident;
@@ -142,7 +142,7 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
   Box box;
   for (int i = 0; i < mesh.vertex_count(); ++i) {
     if (!used[at(i)]) {
-      isolated.add(std::to_string(i + 1));
+      isolated.add(std::to_string(in_file.vertex(i)));
       continue;
     }
     order.push_back(i);
@@ -169,7 +169,7 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
   for (const auto& [later, earlier] : twins) {
     if (later == last) continue;
     last = later;
-    coincident.add(std::to_string(later + 1) + " on " + std::to_string(earlier + 1));
+    coincident.add(std::to_string(in_file.vertex(later)) + " on " + std::to_string(in_file.vertex(earlier)));
   }
   if (coincident.count > 0)
     out.faults.push_back(
@@ -181,11 +181,11 @@ void judge_vertices(const Mesh& mesh, GarmentFindings& out) {
 /// ways.
 constexpr int k_most_stitches = 16;
 
-void judge_stitches(const Mesh& mesh, GarmentFindings& out) {
+void judge_stitches(const Mesh& mesh, const FileNumbers& in_file, GarmentFindings& out) {
   std::vector<char> used(mesh.positions.size(), 0);
   for (const int v : mesh.face_vertices) used[at(v)] = 1;
   Finding own, loose, crowded;
-  const auto name = [](std::size_t s) { return std::to_string(s + 1); };
+  const auto name = [&](std::size_t s) { return std::to_string(in_file.stitch(static_cast<int>(s))); };
   std::vector<Stitch> sorted = mesh.stitches;
   for (Stitch& s : sorted) s.seam = 0;
   for (std::size_t s = 0; s < mesh.stitches.size(); ++s) {
@@ -200,7 +200,7 @@ void judge_stitches(const Mesh& mesh, GarmentFindings& out) {
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   std::vector<int> count(mesh.positions.size(), 0);
   for (const Stitch& stitch : sorted)
-    if (++count[at(stitch.vertex)] == k_most_stitches + 1) crowded.add(std::to_string(stitch.vertex));
+    if (++count[at(stitch.vertex)] == k_most_stitches + 1) crowded.add(std::to_string(in_file.vertex(stitch.vertex)));
   if (own.count > 0)
     out.faults.push_back(places(own.count, "stitch sews", "stitches sew", own.first) + " a vertex to itself");
   if (loose.count > 0)
@@ -251,7 +251,7 @@ int panel_count(const Mesh& mesh) {
   return static_cast<int>(pieces_of(mesh, false));
 }
 
-GarmentFindings inspect_garment(const Mesh& mesh) {
+GarmentFindings inspect_garment(const Mesh& mesh, const FileNumbers& in_file) {
   GarmentFindings out;
   if (mesh.positions.empty() || mesh.face_sizes.empty()) {
     out.faults.push_back(mesh.positions.empty() ? "has no vertices" : "has no faces");
@@ -266,25 +266,25 @@ GarmentFindings inspect_garment(const Mesh& mesh) {
     out.faults.push_back("has stitches that name vertices which do not exist");
     return out;
   }
-  judge_numbers(mesh, out);
+  judge_numbers(mesh, in_file, out);
   if (!out.faults.empty()) return out;
-  judge_faces(mesh, out);
-  judge_edges(mesh, out);
-  judge_vertices(mesh, out);
-  judge_stitches(mesh, out);
+  judge_faces(mesh, in_file, out);
+  judge_edges(mesh, in_file, out);
+  judge_vertices(mesh, in_file, out);
+  judge_stitches(mesh, in_file, out);
   count_pieces(mesh, out);
   return out;
 }
 
-Status check_garment(const Mesh& mesh) {
-  const GarmentFindings findings = inspect_garment(mesh);
+Status check_garment(const Mesh& mesh, const FileNumbers& in_file) {
+  const GarmentFindings findings = inspect_garment(mesh, in_file);
   if (findings.faults.empty()) return {};
   std::string what = "cannot be simulated: ";
   for (std::size_t i = 0; i < findings.faults.size(); ++i) what += (i > 0 ? "; " : "") + findings.faults[i];
   return input_error(what, mesh.name.empty() ? "mesh" : "mesh \"" + mesh.name + "\"");
 }
 
-Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes) {
+Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes, const FileNumbers& in_file) {
   const std::string where = mesh.name.empty() ? "mesh" : "mesh \"" + mesh.name + "\"";
   if (mesh.uvs.empty() || mesh.face_uvs.size() != mesh.face_vertices.size())
     return input_error("has no pattern: its faces need texture vertices (vt)", where,
@@ -303,7 +303,7 @@ Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& n
       longest = std::max(longest, (b - a).squaredNorm());
       if (k > 0 && k + 1 < size) mesh_area += triangle_area(x(0), x(k), x(k + 1));
     }
-    if (!(std::abs(twice) > k_flat_triangle * longest)) flat.add(std::to_string(f + 1));
+    if (!(std::abs(twice) > k_flat_triangle * longest)) flat.add(std::to_string(in_file.face(f)));
     pattern_area += 0.5 * std::abs(twice) * scale * scale;
     begin += size;
   }

@@ -10,6 +10,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/result.h"
+#include "io/shot/file_numbers.h"
 
 namespace ft {
 
@@ -27,24 +28,24 @@ Result<Mesh> parse_obj(std::string_view text, std::string_view where, std::vecto
 /// 1; groups "red", "green", "blue" are written as vertex colours.
 Status write_obj(const std::filesystem::path& path, const Mesh& mesh);
 
-/// What stands against simulating a mesh. Vertices and faces are numbered from 1, as in an OBJ file.
+/// What stands against simulating a mesh. Vertices, faces and stitches have their numbers `in_file`.
 struct GarmentFindings {
   std::vector<std::string> faults;  ///< cannot be simulated
   std::vector<std::string> notes;   ///< tolerated: isolated vertices (carried rigidly), mixed winding, several pieces
 };
-GarmentFindings inspect_garment(const Mesh& mesh);
+GarmentFindings inspect_garment(const Mesh& mesh, const FileNumbers& in_file = {});
 
 /// Refuses what cannot be simulated: no faces, NaN or infinite vertices, zero-area faces, edges with more than two
 /// faces, vertices used twice in a face, coincident vertices, stitches of a vertex with itself or with what is in no
 /// face. One message with the count and the first places of each fault. Vertices that no face uses are tolerated: they
 /// stay in the cache.
-Status check_garment(const Mesh& mesh);
+Status check_garment(const Mesh& mesh, const FileNumbers& in_file = {});
 
 /// Pieces of connected faces, before anything is sewn.
 int panel_count(const Mesh& mesh);
 
 /// Refuses a mesh whose uvs are no pattern to cut it from: none, or faces without an area in them. Assumes a mesh that
 /// is good. `notes` says what looks wrong: a pattern of quite another size than the mesh, at `scale` m per unit of uvs.
-Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes);
+Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes, const FileNumbers& in_file = {});
 
 }  // namespace ft

@@ -278,9 +278,11 @@ class ObjParser {
         line_number_ = face_lines_[f];
         const int v = mesh_.face_vertices[corner], uv = mesh_.face_uvs[corner];
         if (v >= vertex_count)
-          fault("face names vertex " + std::to_string(v + 1) + ", the file has " + std::to_string(vertex_count));
+          fault("face names vertex " + std::to_string(v + 1) + " as OBJ counts, from 1; the file has " +
+                std::to_string(vertex_count));
         if (uv >= uv_count)
-          fault("face names texture vertex " + std::to_string(uv + 1) + ", the file has " + std::to_string(uv_count));
+          fault("face names texture vertex " + std::to_string(uv + 1) + " as OBJ counts, from 1; the file has " +
+                std::to_string(uv_count));
       }
     for (std::size_t s = 0; s < mesh_.stitches.size(); ++s) {
       line_number_ = stitch_lines_[s];

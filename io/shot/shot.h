@@ -91,6 +91,8 @@ struct MapSpec {
   std::optional<double> low, high;  ///< value at 0 and at 1; without them the file's numbers are the values
 };
 
+inline constexpr std::string_view k_faces_triangles = "triangles";  ///< ClothSpec::faces
+
 /// [cloth.NAME]: what follows.
 struct ClothSpec {
   std::string name;
@@ -104,6 +106,7 @@ struct ClothSpec {
   double unit_scale = 1;  ///< m per mesh unit
   std::string up = "y";
   Vec3 offset = Vec3::Zero();  ///< m, added after scale and axis
+  std::string faces = "file";  ///< of the caches: those of the file, or the "triangles" that are simulated
   std::string rest;  ///< "mesh": rest lengths of the placed mesh; "pattern": of the flat pattern in vt; "": pattern if
                      ///< it is sewn
   double pattern_scale = 1;    ///< m per unit of vt

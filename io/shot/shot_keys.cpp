@@ -76,6 +76,8 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"up", &ClothSpec::up, 0, 0, "", "y z", false, "up_axis axis", "Up axis of the mesh"},
       {"offset", &ClothSpec::offset, -1000, 1000, "m", "", false, "translate position move",
        "Added after scale and axis"},
+      {"faces", &ClothSpec::faces, 0, 0, "", "file triangles", false, "topology polygons triangulate",
+       "Faces of the caches: those of the file, or the triangles that they are split into for the simulation"},
       {"rest", &ClothSpec::rest, 0, 0, "", "mesh pattern", false, "rest_shape rest_length rest_lengths",
        "Where rest lengths come from: the `mesh` as it is placed, or the flat `pattern` in `vt`. Without it the "
        "pattern where "

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "baker/core/check.h"
+#include "baker/core/triangle_corners.h"
 
 namespace ft {
 namespace {
@@ -40,6 +41,7 @@ WeldedMesh weld(const Mesh& mesh, double distance) {
         }
     if (joined < 0) {
       joined = out.mesh.vertex_count();
+      out.in_file.vertices.push_back(static_cast<int>(out.joined_of.size()));
       out.mesh.positions.push_back(p);
       kept_in[home].push_back(joined);
     }
@@ -47,26 +49,31 @@ WeldedMesh weld(const Mesh& mesh, double distance) {
   }
 
   out.mesh.uvs = mesh.uvs;
-  std::size_t begin = 0;
-  for (const int size : mesh.face_sizes) {
-    std::vector<int> corners, corner_uvs;
-    for (int k = 0; k < size; ++k) {
-      const int v = out.joined_of[at(mesh.face_vertices[begin + at(k)])];
-      if (std::find(corners.begin(), corners.end(), v) != corners.end()) continue;
-      corners.push_back(v);
-      if (!mesh.face_uvs.empty()) corner_uvs.push_back(mesh.face_uvs[begin + at(k)]);
+  int begin = 0;
+  for (int f = 0; f < mesh.face_count(); begin += mesh.face_sizes[at(f)], ++f) {
+    std::vector<int> vertices, corners;
+    for (int corner = begin; corner < begin + mesh.face_sizes[at(f)]; ++corner) {
+      const int v = out.joined_of[at(mesh.face_vertices[at(corner)])];
+      if (std::find(vertices.begin(), vertices.end(), v) != vertices.end()) continue;
+      vertices.push_back(v);
+      corners.push_back(corner);
     }
-    begin += at(size);
     if (corners.size() < 3) continue;
     out.mesh.face_sizes.push_back(static_cast<int>(corners.size()));
-    out.mesh.face_vertices.insert(out.mesh.face_vertices.end(), corners.begin(), corners.end());
-    out.mesh.face_uvs.insert(out.mesh.face_uvs.end(), corner_uvs.begin(), corner_uvs.end());
+    out.mesh.face_vertices.insert(out.mesh.face_vertices.end(), vertices.begin(), vertices.end());
+    if (!mesh.face_uvs.empty())
+      for (const int corner : corners) out.mesh.face_uvs.push_back(mesh.face_uvs[at(corner)]);
+    out.in_file.corners.insert(out.in_file.corners.end(), corners.begin(), corners.end());
+    out.in_file.faces.push_back(f);
   }
 
-  for (Stitch stitch : mesh.stitches) {
+  for (std::size_t s = 0; s < mesh.stitches.size(); ++s) {
+    Stitch stitch = mesh.stitches[s];
     stitch.vertex = out.joined_of[at(stitch.vertex)];
     for (int& v : stitch.edge) v = out.joined_of[at(v)];
-    if (stitch.vertex != stitch.edge[0] && stitch.vertex != stitch.edge[1]) out.mesh.stitches.push_back(stitch);
+    if (stitch.vertex == stitch.edge[0] || stitch.vertex == stitch.edge[1]) continue;
+    out.mesh.stitches.push_back(stitch);
+    out.in_file.stitches.push_back(static_cast<int>(s));
   }
 
   for (const VertexGroup& group : mesh.groups) {
@@ -79,6 +86,22 @@ WeldedMesh weld(const Mesh& mesh, double distance) {
     for (const auto& [vertex, weight] : weights)
       joined_group.vertices.push_back(vertex), joined_group.weights.push_back(weight);
     out.mesh.groups.push_back(std::move(joined_group));
+  }
+  return out;
+}
+
+Mesh with_triangles_of(const Mesh& file, const Mesh& simulated, const FileNumbers& in_file) {
+  Mesh out = file;
+  out.face_sizes.clear();
+  out.face_vertices.clear();
+  out.face_uvs.clear();
+  for (const Triangle& triangle : triangle_corners(simulated)) {
+    out.face_sizes.push_back(3);
+    for (const int k : triangle) {
+      const std::size_t corner = at(in_file.corner(k));
+      out.face_vertices.push_back(file.face_vertices[corner]);
+      if (!file.face_uvs.empty()) out.face_uvs.push_back(file.face_uvs[corner]);
+    }
   }
   return out;
 }

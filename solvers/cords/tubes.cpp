@@ -132,6 +132,14 @@ Quat CordTubes::rotation(const Piece& piece, std::span<const Vec3> points) const
   return Quat(nearest_rotation(sum));  // Kabsch 1976
 }
 
+int CordTubes::vertex_of(int point) const {
+  for (std::size_t s = 0; s < strands_.size(); ++s) {
+    const auto found = std::find(strands_[s].begin(), strands_[s].end(), point);
+    if (found != strands_[s].end()) return first_vertex_[s] + k_sides * static_cast<int>(found - strands_[s].begin());
+  }
+  return -1;
+}
+
 void CordTubes::place(std::span<const Vec3> points, std::span<Vec3> out) const {
   CHECK(points.size() == rest_.size() && out.size() == mesh_.positions.size());
   std::vector<Quat> turns;

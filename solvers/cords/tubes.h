@@ -21,6 +21,9 @@ class CordTubes {
   /// At rest: tubes in the order of the strands, each a ring of k_sides vertices after the other.
   const Mesh& mesh() const { return mesh_; }
 
+  /// The first vertex of mesh() around a point, where strands meet of the first of them; -1: no strand has it.
+  int vertex_of(int point) const;
+
   /// Vertices of mesh() for these points (as many as the graph has) into `out`. Moved rigidly as a whole, the tubes
   /// move along; those of a straight rope up to a turn about itself. Points in one place are no harm.
   void place(std::span<const Vec3> points, std::span<Vec3> out) const;

@@ -65,6 +65,7 @@ class LockstepSolver final : public Solver {
   };
   void substep(double time, double h, double frame_time, int halvings, Moving& moving, Unsettled& unsettled,
                FrameReport& report) const;
+  Incident incident_at(int point, Incident::Kind kind, const Moving& moving, const FrameReport& report) const;
   bool is_released(double time, double h, const Moving& moving) const;
   void hold_again(Moving& moving, FrameReport& report) const;
   void judge(const Moving& moving, FrameReport& report) const;
@@ -207,17 +208,24 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
   }
 }
 
+Incident LockstepSolver::incident_at(int point, Incident::Kind kind, const Moving& m, const FrameReport& report) const {
+  Incident out;
+  const int system = model_.system_of[at(point)];
+  out.kind = kind;
+  out.frame = report.frame;
+  out.system = model_.cords_of(point).name;
+  out.vertex = tubes_[at(system)].vertex_of(point - model_.first_point[at(system)]);
+  out.place = m.motion.x[at(point)];
+  return out;
+}
+
 /// What was let through and is out of the prop's reach again, is held back by it again.
 void LockstepSolver::hold_again(Moving& m, FrameReport& report) const {
   report.released_vertices = static_cast<int>(std::count(m.through.begin(), m.through.end(), 1.0));
   if (report.released_vertices == 0) return;
-  Incident incident;
-  incident.kind = Incident::Kind::k_released;
-  incident.frame = report.frame;
-  incident.vertex = static_cast<int>(std::find(m.through.begin(), m.through.end(), 1.0) - m.through.begin());
-  incident.system = model_.cords_of(incident.vertex).name;
-  incident.place = m.motion.x[at(incident.vertex)];
-  incident.vertex -= model_.first_point[at(model_.system_of[at(incident.vertex)])];
+  Incident incident =
+      incident_at(static_cast<int>(std::find(m.through.begin(), m.through.end(), 1.0) - m.through.begin()),
+                  Incident::Kind::k_released, m, report);
   incident.text = fmt::format("{} points are let through \"{}\", which goes its way whatever stands in it",
                               report.released_vertices, model_.setup.prop->name);
   report.incidents.push_back(std::move(incident));
@@ -245,11 +253,7 @@ void LockstepSolver::judge(const Moving& m, FrameReport& report) const {
   for (int i = 0; i < model_.point_count(); ++i)
     report.kinetic_energy += 0.5 * model_.mass[at(i)] * m.motion.v[at(i)].squaredNorm();
   if (crossings.empty()) return;
-  Incident incident;
-  incident.kind = Incident::Kind::k_crossing;
-  incident.frame = report.frame;
-  incident.system = model_.cords_of(crossings[0].edge[0]).name;
-  incident.place = m.motion.x[at(crossings[0].edge[0])];
+  Incident incident = incident_at(crossings[0].edge[0], Incident::Kind::k_crossing, m, report);
   incident.text = "cords cross the prop";
   report.incidents.push_back(std::move(incident));
 }

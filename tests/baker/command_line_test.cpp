@@ -179,8 +179,52 @@ TEST_F(CommandLine, Frames_outside_the_clip_are_refused_before_anything_is_baked
   EXPECT_TRUE(a.exit_code == 2 || a.exit_code == 3) << a.err;
   EXPECT_NE(a.err.find("clip"), std::string::npos) << a.err;
   EXPECT_FALSE(std::filesystem::exists(out() + "/sheet.pc2"));
-  const Answer before = run({"bake", shot("100-110"), "--frames", "50-60", "--out", out()});
-  EXPECT_TRUE(before.exit_code == 2 || before.exit_code == 3) << before.err;
+}
+
+TEST_F(CommandLine, Frames_that_are_not_within_the_shot_are_refused) {
+  for (const char* frames : {"50-60", "105-111", "99-101", "111"}) {
+    const Answer a = run({"bake", shot("100-110"), "--frames", frames, "--out", out()});
+    EXPECT_EQ(a.exit_code, 2) << a.err;
+    EXPECT_NE(a.err.find(std::string("--frames ") + frames + " is not within the shot, which has 100-110"),
+              std::string::npos)
+        << a.err;
+  }
+  EXPECT_EQ(run({"bake", shot("100-110"), "--frames", "100-110", "--out", out(), "--dry-run"}).exit_code, 0);
+  EXPECT_EQ(run({"bake", shot("100-110"), "--frames", "104", "--out", out(), "--dry-run"}).exit_code, 0);
+}
+
+TEST_F(CommandLine, Info_and_bake_doubt_a_garment_in_centimetres_that_is_read_in_metres) {
+  const std::string file = shot("1-3", "", "offset = [0, 1, 0]");
+  auto mesh = read_obj(scratch_ / "sheet.obj");
+  ASSERT_TRUE(mesh);
+  EXPECT_NE(run({"info", (scratch_ / "sheet.obj").string()}).out.find("as a garment: good\n"), std::string::npos);
+  for (Vec3& p : mesh->positions) p *= 580;  // 0.1 m -> 58 m
+  ASSERT_TRUE(write_obj(scratch_ / "sheet.obj", *mesh).ok());
+  const std::string words =
+      "is 58 m in size, which no garment is: with unit_scale = 0.01 (a file in centimetres) it would be 0.58 m";
+  const Answer info = run({"info", (scratch_ / "sheet.obj").string()});
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_NE(info.out.find("note: the mesh " + words), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("as a garment: good but for its size"), std::string::npos) << info.out;
+  const Answer plan = run({"bake", file, "--dry-run", "--out", out()});
+  EXPECT_NE(plan.out.find("cloth \"sheet\" " + words), std::string::npos) << plan.out << plan.err;
+}
+
+TEST_F(CommandLine, Check_fails_a_bake_that_is_not_finished_and_says_how_many_frames_are_missing) {
+  ASSERT_EQ(run({"bake", shot("1-2"), "--out", out()}).exit_code, 0);
+  auto manifest = read_manifest(out());
+  ASSERT_TRUE(manifest);
+  manifest->complete = false;
+  ASSERT_TRUE(write_text_durably(out() + "/manifest.json", to_text(*manifest)).ok());
+  const Answer whole = run({"check", out()});
+  EXPECT_EQ(whole.exit_code, 4);
+  EXPECT_NE(whole.err.find("not finished: it stopped after its last frame"), std::string::npos) << whole.err;
+  manifest->last_frame = 9;
+  ASSERT_TRUE(write_text_durably(out() + "/manifest.json", to_text(*manifest)).ok());
+  const Answer part = run({"check", out()});
+  EXPECT_EQ(part.exit_code, 4);
+  EXPECT_NE(part.err.find("the bake is not finished: 7 of 9 frames are missing"), std::string::npos) << part.err;
+  EXPECT_NE(part.out.find("FAILED: 2 frames"), std::string::npos) << part.out;
 }
 
 TEST_F(CommandLine, Folder_that_cannot_be_written_is_exit_code_6) {

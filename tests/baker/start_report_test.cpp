@@ -1,6 +1,7 @@
 // How garments lie where a bake starts is said before it: crossings, how deep, where, and what is done about them.
 #include "baker/start_report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/baker/fake_bake.h"
@@ -35,6 +36,21 @@ TEST(StartReport, A_garment_through_the_body_is_named_with_place_and_depth) {
   expect_words(plan, " crossings with \"box\", 4 vertices up to 150.0 mm inside (vertex ");
   expect_words(plan, " at (0.850, ");
   expect_words(plan, "start: the 3 frames of pre-roll are there to take out what starts through something");
+}
+
+TEST(StartReport, Vertices_have_the_numbers_of_the_file_where_some_are_joined) {
+  FakeScene scene;
+  Mesh sheet = FakeScene::sheet();
+  sheet.positions.insert(sheet.positions.begin(), 3, sheet.positions[0]);  // three more where the first one lies
+  for (int& v : sheet.face_vertices) v += 3;
+  scene.write_garment(sheet);
+  scene.write_shot(3, "weld = 1e-4\noffset = [-0.2, 0.1, 0.1]");
+  const std::string plan = plan_of(scene);
+  const std::size_t begin = plan.find("(vertex ");
+  ASSERT_NE(begin, std::string::npos) << plan;
+  const int vertex = std::stoi(plan.substr(begin + 8));
+  const Vec3 p = sheet.positions.at(static_cast<std::size_t>(vertex)) + Vec3(-0.2, 0.1, 0.1);
+  expect_words(plan, fmt::format("(vertex {} at ({:.3f}, {:.3f}, {:.3f}))", vertex, p.x(), p.y(), p.z()));
 }
 
 TEST(StartReport, Without_a_pre_roll_log_and_manifest_say_that_nothing_sorts_it_out) {

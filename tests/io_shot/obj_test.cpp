@@ -148,7 +148,8 @@ TEST(Obj, Uvs_are_kept_only_when_every_corner_has_one) {
 
 TEST(Obj, Faults_name_line_and_cause) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_EQ(fault_of(three + "f 1 2 4\n").substr(0, 49), "x.obj:4: face names vertex 4, the file has 3 (the");
+  EXPECT_EQ(fault_of(three + "f 1 2 4\n").substr(0, 68),
+            "x.obj:4: face names vertex 4 as OBJ counts, from 1; the file has 3 (");
   EXPECT_NE(fault_of("v 0 nan 0\n").find("x.obj:1: vertex has the value nan, which is not finite"), std::string::npos);
   EXPECT_NE(fault_of("v 0 1e999 0\n").find("not finite"), std::string::npos);
   EXPECT_NE(fault_of("v 0 -inf 0\n").find("not finite"), std::string::npos);
@@ -159,7 +160,8 @@ TEST(Obj, Faults_name_line_and_cause) {
   EXPECT_NE(fault_of(three + "f 1 2 -4\n").find("vertex -4, which does not exist"), std::string::npos);
   EXPECT_NE(fault_of(three + "f 1 2 99999999999\n").find("does not exist"), std::string::npos);
   EXPECT_NE(fault_of(three + "f 1 2 99999999999999999999999\n").find("for a vertex"), std::string::npos);
-  EXPECT_NE(fault_of(three + "f 1/1 2/1 3/1\n").find("texture vertex 1, the file has 0"), std::string::npos);
+  EXPECT_NE(fault_of(three + "f 1/1 2/1 3/1\n").find("texture vertex 1 as OBJ counts, from 1; the file has 0"),
+            std::string::npos);
   EXPECT_NE(fault_of(three + "f 1 2 x\n").find("face has \"x\" for a vertex"), std::string::npos);
   EXPECT_NE(fault_of("").find("holds no vertices"), std::string::npos);
   EXPECT_NE(fault_of("PK\x03\x04 binary").find("holds no vertices"), std::string::npos);

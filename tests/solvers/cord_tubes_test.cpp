@@ -60,6 +60,21 @@ TEST(CordTubes, Are_closed_and_turned_outwards) {
   EXPECT_NEAR(volume(mesh, mesh.positions), section * length, 0.01 * section * length) << "negative if turned inwards";
 }
 
+TEST(CordTubes, Know_the_ring_of_every_point) {
+  CordGraph graph;
+  graph.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {5, 5, 5}};
+  graph.cords = {{0, 1}, {1, 2}, {1, 3}};
+  graph.strands = {{2, 1, 0}, {3, 1}};
+  const CordTubes tubes(graph, 0.01);
+  for (int point = 0; point < 4; ++point) {
+    const int first = tubes.vertex_of(point);
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < CordTubes::k_sides; ++k) sum += tubes.mesh().positions[at(first + k)] / CordTubes::k_sides;
+    EXPECT_LT((sum - graph.points[at(point)]).norm(), 1e-2) << point;
+  }
+  EXPECT_EQ(tubes.vertex_of(4), -1);
+}
+
 TEST(CordTubes, Keep_their_radius_through_bends) {
   const CordGraph net = diamond_net({});
   const CordTubes tubes(net, k_radius);
