@@ -49,7 +49,7 @@ void AbsentVertices::find_deep(std::span<const Vec3> before, std::span<const Vec
       // The larger part that a limb is in stays, although it is inside the limb.
       if (rank_of_vertex_[at(w)] < rank_of_vertex_[at(v)] || after[at(w)] != before[at(w)]) continue;
       asked[at(w)] = 1;
-      if (!is_inside(before[at(w)] + k_above * normals[at(w)], before, triangles, tree)) continue;
+      if (!rays_say_inside(before[at(w)] + k_above * normals[at(w)], tree, before, triangles)) continue;
       absent[at(w)] = 1;
       queue.push_back(w);
     }

@@ -2,22 +2,25 @@
 #include "collision/penetration.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "baker/core/disjoint_sets.h"
 #include "baker/core/parallel.h"
+#include "collision/winding_number.h"
 
 namespace ft {
 namespace {
 
-/// Signed crossings of a ray: leaving counts +1, entering -1; positive when the ray starts inside.
-int winding(const TriangleTree& tree, const Vec3& p, const Vec3& direction, std::span<const Vec3> x,
-            std::span<const Triangle> triangles) {
+/// Signed crossings of a ray: leaving counts +1, entering -1; the winding number where it starts.
+int winding_along(const Vec3& direction, const Vec3& p, const TriangleTree& tree, std::span<const Vec3> x,
+                  std::span<const Triangle> triangles) {
   int sum = 0;
   tree.for_each_along(p, direction, std::numeric_limits<double>::infinity(), [&](int i) {
-    const Triangle& t = triangles[static_cast<std::size_t>(i)];
-    const Vec3& a = x[static_cast<std::size_t>(t[0])];
-    const Vec3 e = x[static_cast<std::size_t>(t[1])] - a, f = x[static_cast<std::size_t>(t[2])] - a, s = p - a;
+    const Triangle& t = triangles[at(i)];
+    const Vec3& a = x[at(t[0])];
+    const Vec3 e = x[at(t[1])] - a, f = x[at(t[2])] - a, s = p - a;
     const Vec3 h = direction.cross(f);
     const double determinant = e.dot(h);
     if (determinant == 0) return;
@@ -30,31 +33,56 @@ int winding(const TriangleTree& tree, const Vec3& p, const Vec3& direction, std:
   return sum;
 }
 
-}  // namespace
+const std::array<Vec3, 3>& rays() {
+  static const std::array<Vec3, 3> directions{Vec3(0.577, 0.61, 0.543).normalized(),
+                                              Vec3(-0.31, 0.88, 0.36).normalized(),
+                                              Vec3(0.23, -0.41, -0.88).normalized()};
+  return directions;
+}
 
-bool is_inside(const Vec3& p, std::span<const Vec3> surface, std::span<const Triangle> triangles,
-               const TriangleTree& tree) {
-  static const Vec3 directions[3] = {Vec3(0.577, 0.61, 0.543).normalized(), Vec3(-0.31, 0.88, 0.36).normalized(),
-                                     Vec3(0.23, -0.41, -0.88).normalized()};
+/// Of a closed surface, whose winding numbers are whole: every ray tells. Two of three have to agree, so that none that
+/// runs along an edge decides.
+bool is_inside_closed(const Vec3& p, const TriangleTree& tree, std::span<const Vec3> surface,
+                      std::span<const Triangle> triangles) {
   int votes = 0;
   for (int k = 0; k < 3 && votes < 2 && votes + 3 - k >= 2; ++k)
-    votes += winding(tree, p, directions[k], surface, triangles) > 0 ? 1 : 0;
+    votes += winding_along(rays()[at(k)], p, tree, surface, triangles) != 0 ? 1 : 0;
   return votes >= 2;
 }
 
-std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& checked, double least_depth) {
+/// Of open shells a ray only says that there is something to ask: where all three leave as if there were nothing, there
+/// is nothing. That spares most of the cloth the question, which costs more than its rays.
+bool is_inside_open(const Vec3& p, const CheckedSurface& surface, const WindingTree& winding) {
+  const auto sees_something = [&](const Vec3& ray) {
+    return winding_along(ray, p, surface.tree(), surface.positions(), surface.triangles()) != 0;
+  };
+  return std::any_of(rays().begin(), rays().end(), sees_something) && winding.is_inside(p);
+}
+
+}  // namespace
+
+bool rays_say_inside(const Vec3& p, const TriangleTree& tree, std::span<const Vec3> surface,
+                     std::span<const Triangle> triangles) {
+  return is_inside_closed(p, tree, surface, triangles);
+}
+
+std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& surface, double least_depth) {
   std::vector<Penetration> out;
-  if (points.empty() || checked.empty()) return out;
-  const std::span<const Vec3> surface = checked.positions();
-  const std::span<const Triangle> triangles = checked.triangles();
-  const TriangleTree& tree = checked.tree();
+  if (points.empty() || surface.empty()) return out;
+  const TriangleTree& tree = surface.tree();
+  const auto in_reach = [&](const Vec3& p) { return !(tree.box().squared_distance(p) > 0); };
+  std::optional<WindingTree> winding;
+  if (!surface.closed() && std::any_of(points.begin(), points.end(), in_reach))
+    winding.emplace(tree, surface.positions(), surface.triangles());
   std::vector<double> depth(points.size(), 0.0);
   parallel_for(points.size(), 128, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (tree.box().squared_distance(points[i]) > 0) continue;
-      if (!is_inside(points[i], surface, triangles, tree)) continue;
+      if (!in_reach(points[i])) continue;
+      const bool inside = winding ? is_inside_open(points[i], surface, *winding)
+                                  : is_inside_closed(points[i], tree, surface.positions(), surface.triangles());
+      if (!inside) continue;
       TriangleTree::Hit hit;
-      tree.closest(points[i], surface, triangles, hit);
+      tree.closest(points[i], surface.positions(), surface.triangles(), hit);
       depth[i] = std::sqrt(hit.closest.squared_distance);
     }
   });

@@ -1,7 +1,11 @@
 // How deep points are inside a drawn surface: for garments that start inside the body, for reports and for judging a
-// bake. Inside is decided by the winding along three rays, the majority wins, so that a slightly open mesh (a missing
-// cap, a neck hole) still has an inside; depth is the distance to the nearest triangle, whichever part of the body that
-// is.
+// bake. Inside is where the generalized winding number w is above 1/2, or below -1/2 (winding_number.h). Of a closed
+// surface it is whole and three rays tell, the majority wins: 1 in one shell, 2 where two overlap, 0 in a mouth that is
+// a shell of its own and faces into its air, -1 in a body that is inside out, whose garments are no less inside. Of
+// open shells (cards of hair, eyes, sleeves) rays tell nothing, for one that leaves through a dome may have come from
+// anywhere below it; w does: it is above 1/2 up to about where a lid would be, so that a body without a few triangles
+// still has an inside, and a card has none. Depth is the distance to the nearest triangle, whichever part of the body
+// that is.
 #pragma once
 
 #include <span>
@@ -19,9 +23,10 @@ struct Penetration {
   double depth = 0;  ///< distance to the surface [m]
 };
 
-/// Whether a point is inside: tree is of these triangles, refitted to these positions [m].
-bool is_inside(const Vec3& p, std::span<const Vec3> surface, std::span<const Triangle> triangles,
-               const TriangleTree& tree);
+/// Whether a point near a surface's triangles is inside, as of a closed surface: where a wrong answer at the rim of an
+/// open shell does no harm. tree is of these triangles, refitted to these positions [m].
+bool rays_say_inside(const Vec3& p, const TriangleTree& tree, std::span<const Vec3> surface,
+                     std::span<const Triangle> triangles);
 
 /// Points inside by more than least_depth [m], by ascending vertex. Triangles counter-clockwise seen from outside.
 std::vector<Penetration> penetrations(std::span<const Vec3> points, const CheckedSurface& surface,

@@ -4,11 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+
+#include "collision/checked_surface.h"
+#include "collision/winding_number.h"
 
 namespace ft::garments {
 namespace {
 
 constexpr double k_cell = 5e-3;  // m; a wrist is ten cells wide
+/// Times the waist: no chest is so wide, a trunk with its arms is.
+constexpr double k_arms = 2;
 
 /// The cells of one slice; 0 outside, otherwise the number of the connected piece.
 struct Cells {
@@ -45,8 +51,10 @@ void number_pieces(Cells& cells) {
   }
 }
 
-/// Fills the rows of the plane y = height between the surface's crossings.
-Cells slice_cells(const Body& body, std::span<const int> candidates, double height, const Box& bounds) {
+/// Fills the rows of the plane y = height between the surface's crossings. winding_tree: of a body that is not closed,
+/// whose crossings do not tell.
+Cells slice_cells(const Body& body, std::span<const int> candidates, double height, const Box& bounds,
+                  const WindingTree* winding_tree) {
   Cells cells;
   cells.origin = Vec2(bounds.lo.x() - 2 * k_cell, bounds.lo.z() - 2 * k_cell);
   cells.columns = static_cast<int>(std::ceil(bounds.size().x() / k_cell)) + 4;
@@ -83,7 +91,8 @@ Cells slice_cells(const Body& body, std::span<const int> candidates, double heig
     int winding = 0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
       winding -= line[k].second;  // entering the body, the normal points back along the row
-      if (winding == 0) continue;
+      const Vec3 middle(0.5 * (line[k].first + line[k + 1].first), height, cells.origin.y() + (row + 0.5) * k_cell);
+      if (winding_tree != nullptr ? !winding_tree->is_inside(middle) : winding == 0) continue;
       const int from = static_cast<int>(std::ceil((line[k].first - cells.origin.x()) / k_cell - 0.5));
       const int to = static_cast<int>(std::ceil((line[k + 1].first - cells.origin.x()) / k_cell - 0.5));
       for (int column = std::max(0, from); column < std::min(to, cells.columns); ++column)
@@ -101,8 +110,11 @@ Slice describe(const Cells& cells, const std::vector<bool>& kept, double height)
   std::vector<Vec2> points;
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (int cell = 0; cell < cells.columns * cells.rows; ++cell) {
-    if (!kept[at(cells.piece[at(cell)])]) continue;
     const Vec2 p = cells.centre(cell);
+    if (!kept[at(cells.piece[at(cell)])]) {
+      if (cells.piece[at(cell)] > 0) slice.beside.push_back(p);
+      continue;
+    }
     slice.centre += p;
     slice.area += k_cell * k_cell;
     lo = std::min(lo, p.x()), hi = std::max(hi, p.x());
@@ -211,23 +223,35 @@ Result<BodyShape> measure_body(const Body& body, double waist) {
     for (int k = first; k < count && slice_height(k) <= box.hi.y(); ++k)
       if (slice_height(k) >= box.lo.y()) candidates[at(k)].push_back(t);
   }
+  CheckedSurface surface(body.triangles);
+  surface.move(body.positions);
+  std::optional<WindingTree> winding;
+  if (!surface.closed()) winding.emplace(surface.tree(), body.positions, body.triangles);
   std::vector<Cells> cells(at(count));
-  for (int k = 0; k < count; ++k) cells[at(k)] = slice_cells(body, candidates[at(k)], slice_height(k), shape.bounds);
+  for (int k = 0; k < count; ++k)
+    cells[at(k)] = slice_cells(body, candidates[at(k)], slice_height(k), shape.bounds, winding ? &*winding : nullptr);
 
   // The waist: the narrowest of the torso slices, the torso being the largest piece there.
-  const auto index_of = [&](double share) { return std::clamp(static_cast<int>(share * 350) - 1, 0, count - 1); };
   const auto largest = [&](int k) {
     const auto& sizes = cells[at(k)].piece_size;
     return static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   };
-  int waist_index = index_of(waist);
+  // Shares of the height of somebody whose neck is at 0.86 of it; of a large head, the body below counts.
+  const auto largest_size = [&](int k) { return cells[at(k)].piece_size[at(largest(k))]; };
+  double whole = 350;
+  const auto index_of = [&](double share) { return std::clamp(static_cast<int>(share * whole) - 1, 0, count - 1); };
+  int throat = index_of(0.52);
+  for (int k = throat; k <= index_of(0.92); ++k)
+    if (largest_size(k) < largest_size(throat)) throat = k;
+  if (throat < index_of(0.75)) whole = (throat + 1) / 0.86;
+  shape.figure_height = whole * shape.spacing;
+  int waist_index = std::clamp(static_cast<int>(waist * 350) - 1, 0, count - 1);
   if (waist <= 0) {
     waist_index = index_of(0.55);
     for (int k = index_of(0.55); k <= index_of(0.68); ++k)
-      if (cells[at(k)].piece_size[at(largest(k))] < cells[at(waist_index)].piece_size[at(largest(waist_index))])
-        waist_index = k;
+      if (largest_size(k) < largest_size(waist_index)) waist_index = k;
   }
-  if (cells[at(waist_index)].piece_size[at(largest(waist_index))] == 0)
+  if (largest_size(waist_index) == 0)
     return input_error("no closed cross-section at the height of the waist: is this a standing body with Y up?");
 
   std::vector<std::vector<bool>> kept(at(count));
@@ -253,7 +277,15 @@ Result<BodyShape> measure_body(const Body& body, double waist) {
   int base = neck_index;
   while (base > waist_index + 1 && shape.slices[at(base)].width_x < 1.4 * neck_width) --base;
   shape.neck_base = slice_height(base);
-  shape.chest_half_width = 0.5 * shape.slice_at(shape.waist + 0.45 * (shape.neck_base - shape.waist)).width_x;
+  // Where arms leave the trunk below the chest, it is as wide as it was under them.
+  double chest = shape.slice_at(shape.waist).width_x;
+  const double widest = k_arms * chest;
+  for (const Slice& slice : shape.slices)
+    if (slice.height > shape.waist && slice.height <= shape.waist + 0.45 * (shape.neck_base - shape.waist)) {
+      if (slice.width_x > widest) break;
+      chest = slice.width_x;
+    }
+  shape.chest_half_width = 0.5 * chest;
   return shape;
 }
 

@@ -3,26 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/parallel.h"
+#include "collision/checked_surface.h"
+#include "collision/winding_number.h"
+
 namespace ft::garments {
 namespace {
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  const double length2 = d.squaredNorm();
-  const double s = length2 > 0 ? std::clamp((p - a).dot(d) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - s * d).norm();
-}
-
-double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = (b - a).cross(c - a);
-  const double area2 = n.squaredNorm();
-  if (area2 > 1e-24) {
-    const bool over =
-        n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 && n.dot((a - c).cross(p - c)) >= 0;
-    if (over) return std::abs(n.dot(p - a)) / std::sqrt(area2);
-  }
-  return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
-}
 
 /// Adds one to inside[node] where the ray along the axis says that the node is inside.
 void vote(const Body& body, const DistanceGrid& grid, int axis, std::vector<unsigned char>& inside) {
@@ -120,14 +106,29 @@ DistanceGrid make_distance_grid(const Body& body, const Box& box, double cell, d
           double& d = grid.values[at(grid.index(x, y, z))];
           const Vec3 p = grid.node(x, y, z);
           if ((own.lo - p).cwiseMax(p - own.hi).cwiseMax(0.0).squaredNorm() >= d * d) continue;
-          d = std::min(
-              d, distance_to_triangle(p, body.positions[at(t[0])], body.positions[at(t[1])], body.positions[at(t[2])]));
+          d = std::min(d, std::sqrt(closest_on_triangle(p, body.positions[at(t[0])], body.positions[at(t[1])],
+                                                        body.positions[at(t[2])])
+                                        .squared_distance));
         }
   }
   std::vector<unsigned char> inside(grid.values.size(), 0);
   for (int axis = 0; axis < 3; ++axis) vote(body, grid, axis, inside);
-  for (std::size_t k = 0; k < inside.size(); ++k)
-    if (inside[k] >= 2) grid.values[k] = -grid.values[k];
+  CheckedSurface surface(body.triangles);
+  surface.move(body.positions);
+  if (surface.closed()) {
+    for (std::size_t k = 0; k < inside.size(); ++k)
+      if (inside[k] >= 2) grid.values[k] = -grid.values[k];
+    return grid;
+  }
+  // Of open shells the axes only say where there is something to ask.
+  const WindingTree winding(surface.tree(), body.positions, body.triangles);
+  parallel_for(inside.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const int n = static_cast<int>(k), row = grid.size[0], layer = grid.size[0] * grid.size[1];
+      if (inside[k] > 0 && winding.is_inside(grid.node(n % row, n % layer / row, n / layer)))
+        grid.values[k] = -grid.values[k];
+    }
+  });
   return grid;
 }
 

@@ -1,6 +1,6 @@
 // Signed distance to a body on a regular grid, exact near the surface: negative inside, +-band far away. For
 // make_garments. Overlapping shells count as one body (inside where the winding number is not zero, by the vote of
-// three axes).
+// three axes; of open shells where the generalized one is above one half).
 #pragma once
 
 #include <vector>

@@ -1,59 +1,145 @@
 #include "samples/tools/garment_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+
+#include "collision/crossings.h"
+#include "collision/penetration.h"
+#include "collision/winding_number.h"
 
 namespace ft::garments {
 namespace {
 
-bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto volume = [](const Vec3& u, const Vec3& v, const Vec3& w, const Vec3& x) {
-    return (v - u).cross(w - u).dot(x - u);
-  };
-  const double sp = volume(a, b, c, p), sq = volume(a, b, c, q);
-  if ((sp > 0) == (sq > 0)) return false;
-  const double s0 = volume(p, q, a, b), s1 = volume(p, q, b, c), s2 = volume(p, q, c, a);
-  return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
+constexpr int k_rounds = 40;         ///< of pushes
+constexpr double k_farthest = 0.08;  ///< that a way out of the body is looked for [m]
+constexpr double k_step = 2e-3;      ///< by which what still crosses is pushed [m]
+constexpr double k_carried = 0.85;   ///< of its neighbours' push that a vertex goes along with [1]
+constexpr int k_carried_rings = 12;  ///< of neighbours
+
+/// Garment and body as they are checked again and again.
+struct Pair {
+  CheckedSurface cloth, skin;
+  std::optional<WindingTree> winding;  ///< of the body
+  std::vector<Crossing> crossings;
+  std::vector<Penetration> inside;
+
+  Pair(std::span<const Triangle> triangles, const Body& body) : cloth(triangles), skin(body.triangles) {
+    skin.move(body.positions);
+    winding.emplace(skin.tree(), body.positions, body.triangles);
+  }
+  Fit look(std::span<const Vec3> garment) {
+    cloth.move(garment);
+    crossings = crossings_between(cloth, skin);
+    inside = penetrations(garment, skin, 0);
+    const std::vector<Crossing> own = crossings_within(cloth);
+    Fit fit;
+    fit.crossings = static_cast<int>(crossings.size());
+    fit.own_crossings = static_cast<int>(own.size());
+    fit.inside = static_cast<int>(inside.size());
+    fit.gap = std::numeric_limits<double>::infinity();
+    std::vector<char> is_inside(garment.size(), 0);
+    for (const Penetration& p : inside) {
+      is_inside[at(p.vertex)] = 1;
+      if (p.depth > fit.depth) fit.depth = p.depth, fit.worst = p.vertex;
+    }
+    int nearest = -1;
+    for (int v = 0; v < static_cast<int>(garment.size()); ++v)
+      if (const double d = to_body(garment[at(v)]).norm(); !is_inside[at(v)] && d < fit.gap) fit.gap = d, nearest = v;
+    if (fit.worst < 0 && !crossings.empty())
+      fit.worst = crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0];
+    if (fit.worst < 0 && !own.empty()) fit.worst = own[0].edge[0];
+    if (fit.worst < 0) fit.worst = nearest;
+    return fit;
+  }
+  /// From a point to the nearest of the body.
+  Vec3 to_body(const Vec3& p) const {
+    TriangleTree::Hit hit;
+    skin.tree().closest(p, skin.positions(), skin.triangles(), hit);
+    return hit.triangle < 0 ? Vec3::Constant(std::numeric_limits<double>::infinity()) : Vec3(hit.closest.point - p);
+  }
+};
+
+/// The shorter way out of the body along the garment's normal or against it, and `clearance` more. The nearest triangle
+/// of the body would not do: it may be a wall within, where shells overlap.
+Vec3 way_out(const Pair& pair, const Vec3& p, const Vec3& normal, double clearance) {
+  for (double t = k_step; t < k_farthest; t += k_step)
+    for (const double side : {1.0, -1.0})
+      if (!pair.winding->is_inside(p + side * t * normal)) return side * (t + clearance) * normal;
+  return Vec3::Zero();
 }
 
-/// Triangles sorted into slabs along y: enough for a few ten thousand triangles.
-int edges_through(std::span<const Vec3> a, std::span<const Triangle> a_triangles, std::span<const Vec3> b,
-                  std::span<const Triangle> b_triangles) {
-  const Box box = bounds(b);
-  const int count = 256;
-  const double height = std::max(1e-9, box.size().y()) / count;
-  const auto slab = [&](double y) { return std::clamp(static_cast<int>((y - box.lo.y()) / height), 0, count - 1); };
-  std::vector<std::vector<int>> slabs(at(count));
-  std::vector<Box> boxes(b_triangles.size());
-  for (int t = 0; t < static_cast<int>(b_triangles.size()); ++t) {
-    for (const int v : b_triangles[at(t)]) boxes[at(t)].include(b[at(v)]);
-    for (int k = slab(boxes[at(t)].lo.y()); k <= slab(boxes[at(t)].hi.y()); ++k) slabs[at(k)].push_back(t);
+/// What each vertex has to move to be `clearance` outside. normals: of the body.
+std::vector<Vec3> needed_moves(const Pair& pair, std::span<const Vec3> garment, std::span<const Vec3> normals,
+                               double clearance) {
+  const std::vector<Vec3> outwards = vertex_normals(garment, pair.cloth.triangles());
+  std::vector<Vec3> move(garment.size(), Vec3::Zero());
+  std::vector<char> is_inside(garment.size(), 0);
+  for (const Penetration& p : pair.inside) is_inside[at(p.vertex)] = 1;
+  for (std::size_t v = 0; v < garment.size(); ++v) {
+    if (is_inside[v]) {
+      move[v] = way_out(pair, garment[v], outwards[v], clearance);
+      continue;
+    }
+    const Vec3 to = pair.to_body(garment[v]);
+    const double d = to.norm();
+    if (d > 0 && d < clearance) move[v] = (d - clearance) / d * to;
   }
-  int crossings = 0;
-  std::vector<int> seen(b_triangles.size(), -1);
-  int number = 0;
-  for (const Edge& edge : unique_edges(a_triangles)) {
-    ++number;
-    Box reach;
-    reach.include(a[at(edge[0])]), reach.include(a[at(edge[1])]);
-    if (!reach.overlaps(box)) continue;
-    for (int k = slab(reach.lo.y()); k <= slab(reach.hi.y()); ++k)
-      for (const int t : slabs[at(k)]) {
-        if (seen[at(t)] == number || !boxes[at(t)].overlaps(reach)) continue;
-        seen[at(t)] = number;
-        const Triangle& f = b_triangles[at(t)];
-        if (segment_meets_triangle(a[at(edge[0])], a[at(edge[1])], b[at(f[0])], b[at(f[1])], b[at(f[2])])) ++crossings;
-      }
+  // A finger through a face, or an edge through a fold of the body: the vertices about it may be far enough away.
+  const auto push = [&](int v, const Vec3& normal) {
+    if (move[at(v)].squaredNorm() < k_step * k_step) move[at(v)] += k_step * normal;
+  };
+  for (const Crossing& c : pair.crossings) {
+    const Vec3 normal = c.edge_of_first
+                            ? Vec3(normals[at(c.triangle[0])] + normals[at(c.triangle[1])] + normals[at(c.triangle[2])])
+                            : Vec3(normals[at(c.edge[0])] + normals[at(c.edge[1])]);
+    if (!(normal.squaredNorm() > 0)) continue;
+    if (c.edge_of_first)
+      for (const int v : c.edge) push(v, normal.normalized());
+    else
+      for (const int v : c.triangle) push(v, normal.normalized());
   }
-  return crossings;
+  return move;
 }
 
 }  // namespace
 
-int count_crossings(std::span<const Vec3> a, std::span<const Triangle> a_triangles, std::span<const Vec3> b,
-                    std::span<const Triangle> b_triangles) {
-  return edges_through(a, a_triangles, b, b_triangles) + edges_through(b, b_triangles, a, a_triangles);
+std::string Fit::text() const {
+  std::string out;
+  const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
+  if (crossings > 0) add(fmt::format("{} crossings with the body", crossings));
+  if (inside > 0) add(fmt::format("{} vertices up to {:.1f} mm inside it", inside, 1e3 * depth));
+  if (own_crossings > 0) add(fmt::format("{} crossings with itself", own_crossings));
+  return out;
+}
+
+Fit fit_of(std::span<const Vec3> garment, std::span<const Triangle> triangles, const Body& body) {
+  return Pair(triangles, body).look(garment);
+}
+
+Fit move_out(std::vector<Vec3>& garment, std::span<const Triangle> triangles, const Body& body, double clearance,
+             double least_gap) {
+  Pair pair(triangles, body);
+  Fit fit = pair.look(garment);
+  const std::vector<Edge> edges = unique_edges(triangles);
+  const std::vector<Vec3> normals = vertex_normals(body.positions, body.triangles);
+  for (int round = 0; round < k_rounds && !(fit.clear() && fit.gap >= least_gap); ++round) {
+    std::vector<Vec3> move = needed_moves(pair, garment, normals, clearance);
+    for (int ring = 0; ring < k_carried_rings; ++ring) {
+      const std::vector<Vec3> before = move;
+      for (const Edge& e : edges)
+        for (int k = 0; k < 2; ++k) {
+          const Vec3 carried = k_carried * before[at(e[at(1 - k)])];
+          if (carried.squaredNorm() > move[at(e[at(k)])].squaredNorm()) move[at(e[at(k)])] = carried;
+        }
+    }
+    for (std::size_t v = 0; v < garment.size(); ++v) garment[v] += move[v];
+    fit = pair.look(garment);
+  }
+  return fit;
 }
 
 ShapeQuality shape_quality(std::span<const Vec3> positions, std::span<const Triangle> triangles) {

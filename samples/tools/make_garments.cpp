@@ -1,7 +1,8 @@
 // make_garments CHARACTER --kind skirt|top --out FILE.obj: tailors a garment to a character's bind pose, for the
 // samples. The character is read as a bake reads it (import_primary), so the garment fits in place; a plain OBJ is
-// taken as the body itself, in metres, Y-up. Says how well the result fits and ends with 1 when it touches the body.
-// Caution: the tailoring is geometric and knows standing two-legged bodies only.
+// taken as the body itself, in metres, Y-up. Says how well the result fits. No garment is written that starts through
+// the body or through itself: it is moved out, or the tool ends with 1 and says where. Caution: the tailoring is
+// geometric and knows standing two-legged bodies only.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -44,7 +45,31 @@ Result<Body> read_body(const Arguments& arguments) {
   return body;
 }
 
-Result<Mesh> tailor(Body body, const Arguments& arguments) {
+/// A garment that is nowhere nearer to the body than this [m] is left as it was cut.
+constexpr double k_least_gap = 3e-3;
+
+Result<Mesh> cut(const Body& body, const BodyShape& shape, const Arguments& arguments, bool within_arms) {
+  if (arguments.kind == "top") return make_top(body, shape, arguments.top);
+  SkirtSettings skirt = arguments.skirt;
+  skirt.within_arms = within_arms;
+  return make_skirt(shape, skirt);
+}
+
+/// A hundredth of a millimetre is fine enough for a tailor, and keeps the file short.
+void round_places(Mesh& mesh) {
+  for (Vec3& p : mesh.positions) p = (p * 1e5).array().round() / 1e5;
+  for (Vec2& uv : mesh.uvs) uv = (uv * 1e5).array().round() / 1e5;
+}
+
+struct Tailored {
+  Mesh mesh;
+  Fit fit;
+  double moved = 0;  ///< farthest that a vertex was pushed [m]
+};
+
+/// Cuts it, between hands and hips where it would run into the hands; then moves it out of what it still touches.
+Result<Tailored> tailor(const Body& as_it_stands, const Arguments& arguments) {
+  Body body = as_it_stands;
   const Eigen::Isometry3d turn = arms_along_x(body);
   for (Vec3& p : body.positions) p = turn * p;
   auto shape = measure_body(body, arguments.waist);
@@ -54,14 +79,29 @@ Result<Mesh> tailor(Body body, const Arguments& arguments) {
       "wide\n",
       shape->bounds.size().y(), shape->waist, shape->crotch, shape->neck, shape->neck_base,
       2 * shape->chest_half_width);
-  Result<Mesh> mesh = arguments.kind == "top" ? make_top(body, *shape, arguments.top)
-                                              : Result<Mesh>(make_skirt(*shape, arguments.skirt));
-  if (!mesh) return mesh;
-  // A hundredth of a millimetre is fine enough for a tailor, and keeps the file short.
-  for (Vec3& p : mesh->positions) p = ((turn.inverse() * p) * 1e5).array().round() / 1e5;
-  for (Vec2& uv : mesh->uvs) uv = (uv * 1e5).array().round() / 1e5;
-  if (!arguments.name.empty()) mesh->name = arguments.name;
-  return mesh;
+  Tailored out;
+  for (const bool within_arms : {false, true}) {
+    if (within_arms && arguments.kind == "top") break;
+    Result<Mesh> mesh = cut(body, *shape, arguments, within_arms);
+    if (!mesh) return mesh.error();
+    out.mesh = std::move(*mesh);
+    if (Status status = check_garment(out.mesh); !status) return status.error();
+    for (Vec3& p : out.mesh.positions) p = turn.inverse() * p;
+    round_places(out.mesh);
+    out.fit = fit_of(out.mesh.positions, triangulate(out.mesh), as_it_stands);
+    if (out.fit.clear() && out.fit.gap >= k_least_gap) break;
+  }
+  if (!arguments.name.empty()) out.mesh.name = arguments.name;
+  if (out.fit.clear() && out.fit.gap >= k_least_gap) return out;
+  const std::vector<Vec3> before = out.mesh.positions;
+  const std::vector<Triangle> triangles = triangulate(out.mesh);
+  move_out(out.mesh.positions, triangles, as_it_stands,
+           arguments.kind == "top" ? arguments.top.clearance : arguments.skirt.clearance, k_least_gap);
+  round_places(out.mesh);
+  out.fit = fit_of(out.mesh.positions, triangles, as_it_stands);
+  for (std::size_t v = 0; v < before.size(); ++v)
+    out.moved = std::max(out.moved, (out.mesh.positions[v] - before[v]).norm());
+  return out;
 }
 
 int run(const Arguments& arguments) {
@@ -75,19 +115,28 @@ int run(const Arguments& arguments) {
     if (Status status = write_obj(arguments.body_out, make_triangle_mesh("body", body->positions, body->triangles));
         !status)
       return fail(status.error());
-  auto mesh = tailor(*body, arguments);
-  if (!mesh) return fail(mesh.error());
-  if (Status status = check_garment(*mesh); !status) return fail(status.error());
-  if (Status status = write_obj(arguments.out, *mesh); !status) return fail(status.error());
-  const std::vector<Triangle> triangles = triangulate(*mesh);
-  const ShapeQuality quality = shape_quality(mesh->positions, triangles);
-  const int crossings = count_crossings(mesh->positions, triangles, body->positions, body->triangles);
+  auto garment = tailor(*body, arguments);
+  if (!garment) return fail(garment.error());
+  const Mesh& mesh = garment->mesh;
+  const Fit& fit = garment->fit;
+  if (!fit.clear()) {
+    const Vec3& p = mesh.positions[at(fit.worst)];
+    fmt::print(stderr,
+               "make_garments: {}: not written, for it would start with {}, the worst at vertex {} ({:.3f}, {:.3f}, "
+               "{:.3f}) (try another --waist, --length, --flare or --sleeve, or --mesh to leave out what is worn over "
+               "it)\n",
+               arguments.out, fit.text(), fit.worst, p.x(), p.y(), p.z());
+    return 1;
+  }
+  if (Status status = write_obj(arguments.out, mesh); !status) return fail(status.error());
+  const ShapeQuality quality = shape_quality(mesh.positions, triangulate(mesh));
   fmt::print(
       "{}: {} vertices, {} faces, edges {:.1f} to {:.1f} mm (median {:.1f}), smallest angle {:.0f} degrees (1 % below "
-      "{:.0f}), {} crossings with the body\n",
-      arguments.out, mesh->vertex_count(), mesh->face_count(), 1e3 * quality.shortest_edge, 1e3 * quality.longest_edge,
-      1e3 * quality.median_edge, quality.smallest_angle_deg, quality.angle_deg_p1, crossings);
-  return crossings == 0 ? 0 : 1;
+      "{:.0f}), {:.1f} mm from the body at least{}\n",
+      arguments.out, mesh.vertex_count(), mesh.face_count(), 1e3 * quality.shortest_edge, 1e3 * quality.longest_edge,
+      1e3 * quality.median_edge, quality.smallest_angle_deg, quality.angle_deg_p1, 1e3 * fit.gap,
+      garment->moved > 0 ? fmt::format(", moved out by up to {:.1f} mm", 1e3 * garment->moved) : "");
+  return 0;
 }
 
 int main_checked(int argc, char** argv) {

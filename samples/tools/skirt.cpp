@@ -29,6 +29,52 @@ std::vector<double> profile(const BodyShape& shape, double from, double to, doub
   return radius;
 }
 
+/// How wide the cloth may be at most in every direction and at every level, so that it passes between the body and
+/// what hangs beside it, `clearance` away from that. Slopes of one half around and of one third along the height lead
+/// there. Infinite where nothing hangs.
+std::vector<std::vector<double>> room_within_arms(const BodyShape& shape, std::span<const double> heights,
+                                                  double clearance) {
+  std::vector<std::vector<double>> room(heights.size(),
+                                        std::vector<double>(k_directions, std::numeric_limits<double>::infinity()));
+  const double turn = 2 * std::numbers::pi / k_directions;
+  for (std::size_t level = 0; level < heights.size(); ++level)
+    for (const Slice& slice : shape.slices) {
+      if (std::abs(slice.height - heights[level]) > clearance + shape.spacing) continue;
+      for (const Vec2& place : slice.beside) {
+        const Vec2 p = place - shape.waist_centre;
+        const double r = p.norm(), middle = std::atan2(p.y(), p.x());
+        if (!(r > clearance)) continue;
+        const int reach = static_cast<int>(std::asin(clearance / r) / turn) + 1;
+        for (int j = -reach; j <= reach; ++j) {
+          const int k = static_cast<int>(std::lround(middle / turn)) + j;
+          const double off = r * std::sin(k * turn - middle);
+          if (std::abs(off) >= clearance) continue;
+          double& widest = room[level][at((k % k_directions + k_directions) % k_directions)];
+          widest = std::min(widest, r * std::cos(k * turn - middle) - std::sqrt(clearance * clearance - off * off));
+        }
+      }
+    }
+  for (int sweep = 0; sweep < 2; ++sweep)  // twice, for the way around
+    for (std::vector<double>& around : room)
+      for (int k = 0; k < k_directions; ++k) {
+        double &here = around[at(k)], &next = around[at((k + 1) % k_directions)];
+        next = std::min(next, here * (1 + 0.5 * turn));
+      }
+  for (int sweep = 0; sweep < 2; ++sweep)
+    for (std::vector<double>& around : room)
+      for (int k = k_directions; k-- > 0;) {
+        double &here = around[at((k + 1) % k_directions)], &next = around[at(k)];
+        next = std::min(next, here * (1 + 0.5 * turn));
+      }
+  const auto lead = [&](std::size_t from, std::size_t to) {
+    for (int k = 0; k < k_directions; ++k)
+      room[to][at(k)] = std::min(room[to][at(k)], room[from][at(k)] + std::abs(heights[to] - heights[from]) / 3);
+  };
+  for (std::size_t level = 1; level < heights.size(); ++level) lead(level - 1, level);
+  for (std::size_t level = heights.size() - 1; level > 0; --level) lead(level, level - 1);
+  return room;
+}
+
 /// Averages over +-8 degrees and +-24 mm of height: the slices are pixels, the cloth shall not show them. Convex places
 /// lose about a millimetre.
 void round_off(std::vector<std::vector<double>>& levels) {
@@ -67,8 +113,8 @@ std::vector<Vec2> share_equally(const std::vector<double>& radius, const Vec2& c
 }  // namespace
 
 Mesh make_skirt(const BodyShape& shape, const SkirtSettings& settings) {
-  const double body_height = shape.bounds.size().y();
-  const double length = settings.length > 0 ? settings.length : shape.waist - shape.bounds.lo.y() - 0.30 * body_height;
+  const double length =
+      settings.length > 0 ? settings.length : shape.waist - shape.bounds.lo.y() - 0.30 * shape.figure_height;
   // Fine levels from waist to hem; the rings are chosen among them afterwards.
   const int level_count = std::max(2, static_cast<int>(std::ceil(length / 4e-3)));
   std::vector<std::vector<double>> levels;
@@ -80,15 +126,26 @@ Mesh make_skirt(const BodyShape& shape, const SkirtSettings& settings) {
     levels.push_back(profile(shape, y - 15e-3, y + 8e-3, allowance));
   }
   round_off(levels);
-  for (int level = 1; level <= level_count; ++level) {
-    double sum = 0;
+  const std::vector<std::vector<double>> body = levels;
+  for (int level = 1; level <= level_count; ++level)
     for (int k = 0; k < k_directions; ++k) {
       // Below the widest of the hips the body no longer counts: only the flare goes on.
       const double above = levels[at(level - 1)][at(k)];
       double& radius = levels[at(level)][at(k)];
       radius = std::max({radius, above, levels[0][at(k)] + settings.flare * level / level_count});
-      sum += std::hypot(radius - above, length / level_count);
     }
+  if (settings.within_arms) {
+    std::vector<double> heights;
+    for (int level = 0; level <= level_count; ++level) heights.push_back(shape.waist - length * level / level_count);
+    const auto room = room_within_arms(shape, heights, allowance);
+    for (std::size_t level = 0; level < heights.size(); ++level)
+      for (std::size_t k = 0; k < at(k_directions); ++k)
+        levels[level][k] = std::max(body[level][k], std::min(levels[level][k], room[level][k]));
+  }
+  for (int level = 1; level <= level_count; ++level) {
+    double sum = 0;
+    for (int k = 0; k < k_directions; ++k)
+      sum += std::hypot(levels[at(level)][at(k)] - levels[at(level - 1)][at(k)], length / level_count);
     meridian.push_back(meridian.back() + sum / k_directions);
   }
 

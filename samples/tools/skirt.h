@@ -9,11 +9,12 @@
 namespace ft::garments {
 
 struct SkirtSettings {
-  int rings = 40;           ///< points from waist to hem
-  int segments = 100;       ///< points around
-  double length = 0;        ///< m along the height; 0: to just above the knee
-  double flare = 0.14;      ///< m, growth of the radius from waist to hem
-  double clearance = 8e-3;  ///< m, waist ring to body
+  int rings = 40;            ///< points from waist to hem
+  int segments = 100;        ///< points around
+  double length = 0;         ///< m along the height; 0: to just above the knee
+  double flare = 0.14;       ///< m, growth of the radius from waist to hem
+  double clearance = 8e-3;   ///< m, waist ring to body
+  bool within_arms = false;  ///< keeps the clearance to arms and hands that hang beside it, too: narrower there
 };
 
 /// Vertex (ring, segment) is ring * segments + segment; group "waist" holds the two uppermost rings.

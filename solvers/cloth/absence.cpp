@@ -221,7 +221,7 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
           const Vec3& p = motion.x[at(near[k])];
           const Nearest n = nearest(p, body, triangles, collider.tree(), 0.2);
           if (n.triangle < 0 || !is_returning(triangles[at(n.triangle)])) continue;
-          const bool inside = n.behind && is_inside(p, body, triangles, collider.tree());
+          const bool inside = n.behind && rays_say_inside(p, collider.tree(), body, triangles);
           if (inside || n.distance < k_touching) held[k] = {n.triangle, inside};
         }
       });
@@ -283,7 +283,7 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
           ways[k] = {static_cast<int>(i), true, Vec3::Zero(), Vec3::Zero()};
           continue;
         }
-        if (!is_gone(t) || is_planned(t) || (n.behind && !is_inside(p, body, triangles, tree))) continue;
+        if (!is_gone(t) || is_planned(t) || (n.behind && !rays_say_inside(p, tree, body, triangles))) continue;
         const Vec3 normal = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).normalized();
         ways[k] = {static_cast<int>(i), false, place, normal};
       }

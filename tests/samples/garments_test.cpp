@@ -79,7 +79,7 @@ TEST(Garments, Skirt_clears_the_body_and_can_be_simulated) {
   EXPECT_EQ(skirt.vertex_count(), settings.rings * settings.segments);
   EXPECT_TRUE(check_garment(skirt).ok());
   const auto triangles = triangulate(skirt);
-  EXPECT_EQ(count_crossings(skirt.positions, triangles, body.positions, body.triangles), 0);
+  EXPECT_TRUE(fit_of(skirt.positions, triangles, body).clear());
   // The waist ring lies 8 mm off; rounding off takes a little and half a cell is added.
   for (int k = 0; k < settings.segments; ++k) {
     const Vec3& p = skirt.positions[static_cast<std::size_t>(k)];
@@ -110,7 +110,7 @@ TEST(Garments, Top_clears_the_body_has_four_openings_and_faces_outwards) {
   ASSERT_TRUE(top.ok()) << top.error().text();
   EXPECT_TRUE(check_garment(*top).ok());
   const auto triangles = triangulate(*top);
-  EXPECT_EQ(count_crossings(top->positions, triangles, body.positions, body.triangles), 0);
+  EXPECT_TRUE(fit_of(top->positions, triangles, body).clear());
   EXPECT_GT(shape_quality(top->positions, triangles).smallest_angle_deg, 3);
   // A sphere with four holes: V - E + F = 2 - 4.
   const int euler =
@@ -153,13 +153,81 @@ TEST(Garments, Distance_grid_agrees_with_a_sphere) {
       }
 }
 
-TEST(Garments, Crossings_are_counted) {
-  const std::vector<Vec3> a{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, b{{0.2, -1, 0.2}, {0.3, 1, 0.2}, {0.2, 1, 0.3}};
-  const std::vector<Triangle> t{{0, 1, 2}};
-  EXPECT_EQ(count_crossings(a, t, b, t), 2);
-  std::vector<Vec3> above = b;
-  for (Vec3& p : above) p.y() += 2;
-  EXPECT_EQ(count_crossings(a, t, above, t), 0);
+TEST(Garments, Fit_counts_crossings_depth_and_gap) {
+  const Body body = doll();
+  const auto shape = measure_body(body, 0);
+  ASSERT_TRUE(shape.ok());
+  Mesh skirt = make_skirt(*shape, {});
+  const auto triangles = triangulate(skirt);
+  const Fit clear = fit_of(skirt.positions, triangles, body);
+  EXPECT_TRUE(clear.clear());
+  EXPECT_GT(clear.gap, 5e-3);
+  EXPECT_EQ(clear.text(), "");
+  for (Vec3& p : skirt.positions) p.x() += 0.05;  // the waist's cloth is 8 mm off at its 120 mm
+  const Fit shifted = fit_of(skirt.positions, triangles, body);
+  EXPECT_GT(shifted.crossings, 10);
+  EXPECT_GT(shifted.inside, 10);
+  EXPECT_NEAR(shifted.depth, 0.04, 8e-3);
+  EXPECT_LT(skirt.positions[static_cast<std::size_t>(shifted.worst)].x(), 0);
+}
+
+TEST(Garments, Skirt_that_is_a_little_in_the_body_is_moved_out_of_it) {
+  const Body body = doll();
+  const auto shape = measure_body(body, 0);
+  ASSERT_TRUE(shape.ok());
+  Mesh skirt = make_skirt(*shape, {});
+  const auto triangles = triangulate(skirt);
+  for (Vec3& p : skirt.positions) p.x() += 0.02;
+  ASSERT_FALSE(fit_of(skirt.positions, triangles, body).clear());
+  const std::vector<Vec3> before = skirt.positions;
+  const Fit fit = move_out(skirt.positions, triangles, body, 8e-3, 3e-3);
+  EXPECT_TRUE(fit.clear()) << fit.text();
+  EXPECT_GE(fit.gap, 3e-3);
+  double farthest = 0;
+  for (std::size_t v = 0; v < before.size(); ++v)
+    farthest = std::max(farthest, (skirt.positions[v] - before[v]).norm());
+  EXPECT_LT(farthest, 0.03);
+  EXPECT_GT(shape_quality(skirt.positions, triangles).smallest_angle_deg, 8);
+}
+
+TEST(Garments, Skirt_passes_between_hips_and_hands) {
+  Body body = doll();
+  for (const double side : {-1.0, 1.0})
+    add_tube(body, Vec3(side * 0.265, 0.7, 0), Vec3(side * 0.265, 1.25, 0), {0.04, 0.04, 0.04});
+  const auto shape = measure_body(body, 0);
+  ASSERT_TRUE(shape.ok());
+  SkirtSettings settings;
+  settings.flare = 0.2;
+  Mesh skirt = make_skirt(*shape, settings);
+  const auto triangles = triangulate(skirt);
+  EXPECT_FALSE(fit_of(skirt.positions, triangles, body).clear());
+  settings.within_arms = true;
+  skirt = make_skirt(*shape, settings);
+  const Fit fit = fit_of(skirt.positions, triangles, body);
+  EXPECT_TRUE(fit.clear()) << fit.text();
+  EXPECT_GT(fit.gap, 5e-3);
+  for (const Vec3& p : skirt.positions)  // none of it is on the hands' other side
+    if (p.y() > 0.72) {
+      EXPECT_LT(std::abs(p.x()), 0.24);
+    }
+}
+
+TEST(Garments, Torso_behind_a_card_and_under_a_dome_is_found_as_without_them) {
+  Body body = doll();
+  const auto alone = measure_body(body, 0);
+  // Hair cards beside the hips and a cape's collar: open, and no torso.
+  for (const double x : {0.35, -0.35}) {
+    const int base = static_cast<int>(body.positions.size());
+    for (const Vec2& corner : {Vec2(-0.1, 0.6), Vec2(0.1, 0.6), Vec2(0.1, 1.25), Vec2(-0.1, 1.25)})
+      body.positions.push_back({x, corner.y(), corner.x()});
+    body.triangles.push_back({base, base + 1, base + 2});
+    body.triangles.push_back({base, base + 2, base + 3});
+  }
+  const auto shape = measure_body(body, 0);
+  ASSERT_TRUE(alone.ok() && shape.ok());
+  EXPECT_EQ(shape->waist, alone->waist);
+  EXPECT_EQ(shape->crotch, alone->crotch);
+  EXPECT_EQ(shape->slice_at(0.95).area, alone->slice_at(0.95).area);
 }
 
 }  // namespace
