@@ -59,7 +59,7 @@ mkdir -p "$out"/{bakes,garments,import,rows}
 out=$(cd "$out" && pwd)
 
 # The list: all, then what was asked for.
-if ! "$bin/sweep_tool" list "$assets" "$seed" "$frames" "$out/import" "$out/all.tsv" >"$out/list.log"; then
+if ! "$bin/sweep_tool" list "$assets" "$seed" "$frames" "$out" "$out/all.tsv" >"$out/list.log"; then
   cat "$out/list.log" >&2
   fail "the bakes could not be listed (see above)"
 fi
@@ -83,45 +83,55 @@ if [ -n "$list_only" ]; then
 fi
 
 # cut KIND FOLDER OPTIONS: whether there is a garment now. It may touch the body a little (exit code 1), which the pre-roll
-# sorts out; what goes through the body everywhere was not made for such a body.
+# sorts out; what goes through the body everywhere, or has needles for triangles, was not made for such a body.
 cut() {
-  local kind=$1 folder=$2 status=0 crossings
+  local kind=$1 folder=$2 status=0
   shift 2
   rm -f "$folder/$kind.new.obj"
   "$bin/make_garments" "$@" --kind "$kind" --out "$folder/$kind.new.obj" >"$folder/$kind.log" 2>&1 || status=$?
   cat "$folder/$kind.log" >>"$folder/log"
-  crossings=$(sed -n 's/.* \([0-9]\+\) crossings with the body$/\1/p' "$folder/$kind.log")
-  rm -f "$folder/$kind.log"
-  [ $status -le 1 ] && [ "${crossings:-1000}" -le 50 ]
+  [ $status -le 1 ] && sed -n 's/.*smallest angle \([0-9]\+\) degrees.* \([0-9]\+\) crossings with the body$/\1 \2/p' "$folder/$kind.log" |
+    awk '$1 >= 3 && $2 <= 50 { good = 1 } END { exit !good }'
 }
 
-# tailor FOLDER CHARACTER_FILE MESHES HEIGHT: skirt.obj and top.obj of about 4000 vertices each, or blanket.obj where none can
-# be cut.
+# tailor FOLDER CHARACTER_FILE MESHES HEIGHT: skirt.obj and top.obj of about 4000 vertices each, or blanket.obj where no skirt
+# can be cut. The waist is looked for lower, too, where a short body has it.
 tailor() {
-  local folder=$1 arguments=("$2") cell=0.014 waist=() count mesh best=1000000 off
+  local folder=$1 arguments=("$2") share waist cell count off best=1000000 mesh try
   [ "$4" = 0 ] || arguments+=(--height "$4")
   if [ "$3" != - ]; then
     for mesh in ${3//,/ }; do arguments+=(--mesh "$mesh"); done
   fi
   mkdir -p "$folder"
   : >"$folder/log"
-  if cut skirt "$folder" "${arguments[@]}" --rings 40 --segments 100; then mv "$folder/skirt.new.obj" "$folder/skirt.obj"; fi
-  for try in 1 2 3 4 5 6 7 8; do # by its cell, until it has as many vertices; some cells give no good mesh
-    if [ "$try" = 5 ] && [ ! -f "$folder/top.obj" ]; then waist=(--waist 0.52); fi
-    if cut top "$folder" "${arguments[@]}" "${waist[@]}" --cell "$cell"; then
-      count=$(grep -c '^v ' "$folder/top.new.obj")
-      off=$((count > 4000 ? count - 4000 : 4000 - count))
-      if [ $off -lt $best ]; then best=$off; mv "$folder/top.new.obj" "$folder/top.obj"; fi
-      [ $off -gt 200 ] || break
-      cell=$(awk -v cell="$cell" -v count="$count" 'BEGIN { printf "%.5f", cell * sqrt(count / 4000) }')
-    else
-      cell=$(awk -v cell="$cell" 'BEGIN { printf "%.5f", 0.97 * cell }')
+  for share in 0 0.5 0.45; do
+    waist=()
+    [ $share = 0 ] || waist=(--waist $share)
+    if cut skirt "$folder" "${arguments[@]}" "${waist[@]}" --rings 40 --segments 100; then
+      mv "$folder/skirt.new.obj" "$folder/skirt.obj"
+      break
     fi
   done
-  rm -f "$folder"/*.new.obj
+  for share in $share 0.52; do
+    [ -f "$folder/skirt.obj" ] && [ ! -f "$folder/top.obj" ] || break
+    waist=()
+    [ $share = 0 ] || waist=(--waist $share)
+    cell=0.016
+    for try in 1 2 3 4 5 6; do # until it has as many vertices; some cells give no good mesh
+      if cut top "$folder" "${arguments[@]}" "${waist[@]}" --cell "$cell"; then
+        count=$(grep -c '^v ' "$folder/top.new.obj")
+        off=$((count > 4000 ? count - 4000 : 4000 - count))
+        if [ $off -lt $best ]; then best=$off; mv "$folder/top.new.obj" "$folder/top.obj"; fi
+        [ $off -gt 200 ] || break
+        cell=$(awk -v cell="$cell" -v count="$count" 'BEGIN { printf "%.5f", cell * sqrt(count / 4000) }')
+      else
+        cell=$(awk -v cell="$cell" -v try="$try" 'BEGIN { printf "%.5f", (try % 2 ? 1.31 : 0.72) * cell }')
+      fi
+    done
+  done
+  rm -f "$folder"/*.new.obj "$folder"/{skirt,top}.log
   if [ ! -f "$folder/skirt.obj" ]; then # not the body of somebody who stands on two legs
-    rm -f "$folder/top.obj"
-    "$bin/sweep_tool" blanket "$2" "$folder/blanket.obj" >>"$folder/log" 2>&1 ||
+    "$bin/sweep_tool" blanket "$2" "$4" "$folder/blanket.obj" >>"$folder/log" 2>&1 ||
       { cat "$folder/log" >&2; fail "nothing can be made for $2 (see above)"; }
   fi
   touch "$folder/done"
@@ -139,7 +149,7 @@ say "Garments"
 while IFS=$'\t' read -r character file meshes height; do
   folder=$out/garments/$character
   [ -f "$folder/done" ] || tailor "$folder" "$file" "$meshes" "$height"
-  echo "$character: $(cd "$folder" && grep -c '^v ' ./*.obj | sed 's,^\./,,; s/\.obj:/ /; s/^/ /; s/$/ vertices/' | paste -sd,)"
+  (cd "$folder" && grep -Hc '^v ' ./*.obj) | sed 's,^\./,,; s/\.obj:/ of /; s/$/ vertices/' | paste -sd, | sed "s/^/$character: /; s/,/, /"
 done < <(awk -F '\t' 'FNR > 1 && !seen[$2]++ { print $2 "\t" $3 "\t" $9 "\t" $10 }' "$selected")
 
 # bake NAME CHARACTER: leaves its row.
@@ -147,9 +157,9 @@ bake() {
   local name=$1 garments=$out/garments/$2 folder=$out/bakes/$1
   rm -rf "$folder"
   mkdir -p "$folder"
-  "$bin/sweep_tool" shot "$selected" "$name" "$garments" "$folder/shot.toml"
+  "$bin/sweep_tool" shot "$selected" "$name" "$garments" "$folder/$name.toml"
   "$bin/sweep_tool" run "$limit" "$folder/log" "$folder/run" \
-    "$bin/followthrough" bake "$folder/shot.toml" --out "$folder/bake" --threads 1 --progress plain
+    "$bin/followthrough" bake "$folder/$name.toml" --out "$folder/bake" --threads 1 --progress plain
   "$bin/sweep_tool" row "$name" "$folder/bake" "$folder/run" "$(worn "$garments")" >"$folder/row"
   # Nothing to look at: complete, without crossings, hardly strained.
   if [ -z "$keep" ] && awk -F '\t' '{ exit !($3 == 0 && $5 + $6 == 0 && $10 < 0.1) }' "$folder/row"; then

@@ -11,8 +11,8 @@
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
 #include "io/import/clips.h"
-#include "io/import/import.h"
 #include "io/import/import_cache.h"
+#include "tests/bench/sweep_retarget.h"
 
 namespace ft::bench {
 namespace {
@@ -21,11 +21,6 @@ namespace fs = std::filesystem;
 
 /// Frames of a clip without motion.
 constexpr int k_still_frames = 24;
-/// A clip fits another character when so many of its joints are there, and so many of the body's bones are in the clip.
-constexpr double k_matched_share = 0.6;
-/// ... and when it does not tear the body: so many of its edges keep their length to within the factor.
-constexpr double k_kept_share = 0.9, k_kept_factor = 1.5;
-
 /// What a file does not say of itself.
 struct Remark {
   const char* folder;
@@ -177,6 +172,10 @@ double shot_rate(const Clip& clip) {
   return 24;
 }
 
+std::string full_name(const Play& play) {
+  return play.body->name + "." + play.label;
+}
+
 SweepBake make_bake(const SweepSettings& settings, const Play& play, const Source& body, std::string name) {
   SweepBake out;
   out.name = std::move(name);
@@ -196,78 +195,41 @@ SweepBake make_bake(const SweepSettings& settings, const Play& play, const Sourc
   return out;
 }
 
-/// Shares of the clip's joints that the body has, and of the body's bones that are in the clip; the smaller of the two.
-double matched_share(const Play& play, const Character& body) {
-  std::vector<char> is_bone(body.nodes.size(), body.meshes.empty() ? 1 : 0), is_moved(body.nodes.size(), 0);
-  for (const CharacterMesh& mesh : body.meshes)
-    for (const SkinBone& bone : mesh.bones) is_bone[at(bone.node)] = 1;
-  const std::vector<int> to = match_names(play.motion->character, body);
-  std::size_t joints = 0, found = 0, bones = 0, moved = 0;
-  // The clip's channels may be those of its own body already: names are looked up in the file that they came from.
-  for (const Clip& clip : play.motion->character.clips) {
-    if (clip.name != play.clip.name) continue;
-    for (const Channel& channel : clip.channels) {
-      if (channel.rotation.empty()) continue;
-      ++joints;
-      if (const int node = to[at(channel.node)]; node >= 0) ++found, is_moved[at(node)] = 1;
-    }
-    break;
+/// The clip on one of the other characters with joints as its own, drawn by lot; none: it fits none.
+std::vector<std::pair<const Play*, const Source*>> on_others(const SweepSettings& settings,
+                                                             const std::vector<Play>& plays,
+                                                             const std::vector<Source>& sources) {
+  std::vector<std::pair<const Play*, const Source*>> out;
+  for (const Play& play : plays) {
+    if (!find_joints(play.motion->character).complete) continue;
+    const std::string name = full_name(play);
+    const auto ticket = [&](const Source& s) {  // folders have even chances, whatever they hold
+      return std::pair(lot(settings.seed, name, s.folder), lot(settings.seed, name, s.name));
+    };
+    const Source* chosen = nullptr;
+    for (const Source& s : sources)
+      if (s.is_body() && s.folder != play.body->folder && find_joints(s.character).complete &&
+          (chosen == nullptr || ticket(s) < ticket(*chosen)))
+        chosen = &s;
+    if (chosen != nullptr) out.emplace_back(&play, chosen);
   }
-  for (std::size_t i = 0; i < is_bone.size(); ++i)
-    if (is_bone[i]) ++bones, moved += is_moved[i] != 0;
-  if (joints == 0 || bones == 0) return 0;
-  return std::min(static_cast<double>(found) / static_cast<double>(joints),
-                  static_cast<double>(moved) / static_cast<double>(bones));
+  return out;
 }
 
-/// Whether the body keeps its size in the clip: bones of other lengths, or in another unit, would tear it.
-bool keeps_size(const SweepSettings& settings, const SweepBake& bake) {
-  ImportRequest request;
-  request.file = bake.file, request.animation = bake.animation;
-  request.clip = bake.clip, request.clip_start = bake.clip_start;
-  request.meshes = bake.meshes, request.height = bake.height;
-  request.shot_fps = bake.fps;
-  request.duration = (bake.frame_count - 1) / bake.fps;
-  request.cache_folder = settings.import_cache;
-  const auto primary = import_primary(request);
-  if (!primary) return false;
-  const Trajectory& trajectory = *primary->trajectory;
-  const std::vector<Vec3> bind = bind_pose_of(trajectory);
-  std::vector<Vec3> posed(bind.size());
-  const std::vector<Edge> edges = unique_edges(trajectory.surface().triangles);
-  for (const double share : {0.0, 0.5, 1.0}) {
-    trajectory.sample(share * request.duration, posed);
-    std::size_t kept = 0;
-    for (const Edge& e : edges) {
-      const double was = (bind[at(e[0])] - bind[at(e[1])]).norm(), is = (posed[at(e[0])] - posed[at(e[1])]).norm();
-      kept += is < k_kept_factor * was && was < k_kept_factor * is;
-    }
-    if (static_cast<double>(kept) < k_kept_share * static_cast<double>(edges.size())) return false;
-  }
-  return true;
-}
-
-/// The clip on one of the other characters that it fits, drawn by lot; none: it fits none.
-std::vector<SweepBake> on_another(const SweepSettings& settings, const Play& play, const std::vector<Source>& sources) {
-  const std::string clip_name = play.body->name + "." + play.label;
-  std::vector<std::pair<std::uint64_t, const Source*>> order;
-  for (const Source& s : sources)
-    if (s.is_body() && s.folder != play.body->folder && matched_share(play, s.character) >= k_matched_share)
-      order.emplace_back(lot(settings.seed, clip_name, s.name), &s);
-  std::sort(order.begin(), order.end());
-  for (const auto& [number, other] : order) {
-    std::vector<std::string> ignored;
-    auto clips = retarget_clips(play.motion->character, other->character, "", ignored);
-    if (!clips) continue;
-    for (Clip& clip : *clips) {
-      if (clip.name != play.clip.name) continue;
-      const Play here{other, play.motion, std::move(clip), play.label};
-      SweepBake bake = make_bake(settings, here, *other, other->name + "--" + clip_name);
-      if (keeps_size(settings, bake)) return {std::move(bake)};
+/// Writes the motion that the other character plays.
+Result<SweepBake> on_another(const SweepSettings& settings, const Play& play, const Source& other) {
+  SweepBake bake = make_bake(settings, play, other, other.name + "--" + full_name(play));
+  bake.animation = settings.motions / (bake.name + ".glb");
+  // Channels of a motion without a body were put onto its body's nodes: the file's own are asked for.
+  for (const Clip& clip : play.motion->character.clips)
+    if (clip.name == play.clip.name) {
+      const Status written = write_retargeted(
+          play.motion->character, clip, {bake.clip_start, bake.fps, bake.frame_count}, other.character, bake.animation);
+      if (!written) return written.error();
       break;
     }
-  }
-  return {};
+  bake.clip_start = 0;
+  return bake;
 }
 
 std::string or_dash(const std::string& text) {
@@ -282,24 +244,27 @@ std::string not_dash(const std::string& text) {
 Result<std::vector<SweepBake>> list_sweep(const SweepSettings& settings, std::vector<std::string>& notes) {
   const std::vector<Source> sources = read_sources(settings, notes);
   if (sources.empty()) return input_error("has no characters", settings.assets.string());
-  std::vector<SweepBake> out, others;
+  if (Status status = make_folders(settings.motions); !status) return status.error();
   const std::vector<Play> plays = all_plays(sources, notes);
-  for (const Play& play : plays) {
-    out.push_back(make_bake(settings, play, *play.body, play.body->name + "." + play.label));
-    for (SweepBake& bake : on_another(settings, play, sources)) others.push_back(std::move(bake));
-  }
-  const auto by_lot = [&](const SweepBake& a, const SweepBake& b) {
-    const auto x = lot(settings.seed, "order", a.name), y = lot(settings.seed, "order", b.name);
-    return x != y ? x < y : a.name < b.name;
-  };
+  std::vector<SweepBake> out;
+  for (const Play& play : plays) out.push_back(make_bake(settings, play, *play.body, full_name(play)));
+  auto others = on_others(settings, plays, sources);
   notes.push_back(fmt::format("{} clips, {} of them fit a character of another folder", plays.size(), others.size()));
-  std::sort(others.begin(), others.end(), by_lot);
+  std::sort(others.begin(), others.end(), [&](const auto& a, const auto& b) {
+    return lot(settings.seed, "other", full_name(*a.first)) < lot(settings.seed, "other", full_name(*b.first));
+  });
   others.resize(std::min(others.size(), (plays.size() + 1) / 2));
-  std::move(others.begin(), others.end(), std::back_inserter(out));
+  for (const auto& [play, other] : others) {
+    auto bake = on_another(settings, *play, *other);
+    if (!bake) return bake.error();
+    out.push_back(std::move(*bake));
+  }
   std::map<std::string, int> uses;
   for (SweepBake& bake : out)
     if (const int n = ++uses[bake.name]; n > 1) bake.name += fmt::format("_{}", n);
-  std::sort(out.begin(), out.end(), by_lot);
+  std::sort(out.begin(), out.end(), [&](const SweepBake& a, const SweepBake& b) {
+    return lot(settings.seed, "order", a.name) < lot(settings.seed, "order", b.name);
+  });
   return out;
 }
 

@@ -15,6 +15,7 @@ namespace ft::bench {
 
 struct SweepSettings {
   std::filesystem::path assets, import_cache;
+  std::filesystem::path motions;  ///< where clips go that were put onto another character, see sweep_retarget.h
   std::uint64_t seed = 1;
   int most_frames = 48;  ///< of a clip that is longer, a part is played that is drawn by lot
 };

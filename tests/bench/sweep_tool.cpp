@@ -1,7 +1,7 @@
 // Lists, sets up and sums up the bakes of a sweep. For tests/bench/sweep.sh:
-//   sweep_tool list ASSETS SEED FRAMES IMPORT_CACHE LIST  what there is to bake, see sweep_list.h
+//   sweep_tool list ASSETS SEED FRAMES FOLDER LIST  what there is to bake, see sweep_list.h
 //   sweep_tool shot LIST NAME GARMENTS SHOT.toml          shot file of one; GARMENTS has skirt.obj, top.obj,
-//   blanket.obj sweep_tool blanket CHARACTER OUT.obj                  a sheet over the back of what has four legs
+//   blanket.obj sweep_tool blanket CHARACTER HEIGHT OUT.obj           a sheet over the back of what has four legs
 //   sweep_tool run LIMIT LOG RUN PROGRAM ARGUMENT ...     runs a bake for LIMIT seconds of CPU at most, see sweep_run.h
 //   sweep_tool row NAME BAKE RUN GARMENTS                 the row of one, see sweep_rows.h
 //   sweep_tool sum LIST ROWS OUT.tsv                      table of the rows that are in the folder ROWS, one a file
@@ -29,7 +29,7 @@ Status list(const std::vector<std::string>& a) {
   settings.assets = a[0];
   settings.seed = std::strtoull(a[1].c_str(), nullptr, 10);
   settings.most_frames = std::atoi(a[2].c_str());
-  settings.import_cache = a[3];
+  settings.import_cache = fs::path(a[3]) / "import", settings.motions = fs::path(a[3]) / "motions";
   if (settings.most_frames < 2) return usage_error("a bake has 2 frames at least", a[2]);
   std::vector<std::string> notes;
   const auto bakes = list_sweep(settings, notes);
@@ -78,11 +78,11 @@ Status shot(const std::vector<std::string>& a) {
 }
 
 /// 63 x 63 vertices just above the back, between the hooves; the group "spine" is the middle from front to back.
-Status blanket(const fs::path& character, const fs::path& out) {
+Status blanket(const fs::path& character, double height, const fs::path& out) {
   constexpr int k_side = 63;
   constexpr double k_above = 0.015;  // m
   ImportRequest request;
-  request.file = character;
+  request.file = character, request.height = height;
   const auto primary = import_primary(request);
   if (!primary) return primary.error();
   const std::vector<Vec3> body = bind_pose_of(*primary->trajectory);
@@ -180,11 +180,11 @@ int run(const std::vector<std::string>& a) {
   const std::string what = a.empty() ? "" : a[0];
   const std::vector<std::string> rest(a.begin() + (a.empty() ? 0 : 1), a.end());
   Status status = usage_error(
-      "sweep_tool list ASSETS SEED FRAMES IMPORT_CACHE LIST | shot LIST NAME GARMENTS SHOT | blanket CHARACTER OUT | "
+      "sweep_tool list ASSETS SEED FRAMES FOLDER LIST | shot LIST NAME GARMENTS SHOT | blanket CHARACTER HEIGHT OUT | "
       "run LIMIT LOG RUN PROGRAM ... | row NAME BAKE RUN GARMENTS | sum LIST ROWS OUT | worst ROWS COUNT");
   if (what == "list" && rest.size() == 5) status = list(rest);
   if (what == "shot" && rest.size() == 4) status = shot(rest);
-  if (what == "blanket" && rest.size() == 2) status = blanket(rest[0], rest[1]);
+  if (what == "blanket" && rest.size() == 3) status = blanket(rest[0], std::atof(rest[1].c_str()), rest[2]);
   if (what == "run" && rest.size() >= 4) status = run_bake(rest);
   if (what == "row" && rest.size() == 4) status = row(rest);
   if (what == "sum" && rest.size() == 3) status = sum(rest[0], rest[1], rest[2]);
