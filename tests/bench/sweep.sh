@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Bakes every clip of every character in ../shared/assets/characters and ../shared/assets/mocap, and a half of all clips on
-# characters that they were not made for, each with a skirt pinned at the waist and a top of about 4000 vertices each.
+# characters that they were not made for, each with a skirt pinned at the waist and a top of about 4000 vertices each. What is
+# no body for a skirt wears a sheet, held along the middle of its back or above its head.
 #   tests/bench/sweep.sh [OPTIONS] [CHARACTER ...]
 # CHARACTER      only what these wear (names as --list has them, or their beginnings)
 # --tenth        a tenth of all bakes, drawn by lot
@@ -18,9 +19,10 @@
 # Needs the assets in ../shared/assets (or FOLLOWTHROUGH_ASSETS). The last line is "RESULT scene=sweep bakes=.. clean=.. ...".
 # Exit code 0: all bakes came to their end with exit code 0; 1: not all did.
 set -euo pipefail
+{ # read to its end before it runs: it takes hours, in which this file may change
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,21s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,23s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 tenth="" pattern="" list_only="" frames=48 seed=1 jobs=2 limit=900 out=$root/out/sweep keep="" force="" pictures="" bin=""
 characters=()
 while [ $# -gt 0 ]; do
@@ -220,3 +222,5 @@ fi
 
 cat "$out/table.txt"
 awk -F '\t' 'FNR > 1 && $3 != 0 { bad = 1 } END { exit bad }' "$out/rows.tsv"
+exit
+}
