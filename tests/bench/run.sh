@@ -12,11 +12,12 @@
 # jumps     where the feasible collider of a shot moves by more than 4 mm against the drawn body within 2 ms
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
+# Every clip of every character: tests/bench/sweep.sh.
 # Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
