@@ -14,7 +14,8 @@ constexpr double k_facing = 0.3;
 }  // namespace
 
 AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind,
-                               std::span<const int> part_of_vertex, std::span<const int> rank, double deepest, double room)
+                               std::span<const int> part_of_vertex, std::span<const int> rank, double deepest,
+                               double room)
     : surface_(&surface), tree_(bind, surface.triangles()), deepest_(deepest), room_(room) {
   rank_of_vertex_.reserve(part_of_vertex.size());
   for (const int part : part_of_vertex) rank_of_vertex_.push_back(rank[at(part)]);

@@ -43,8 +43,8 @@ class FeasibleCollider {
   bool kept_apart(int part_a, int part_b) const;
   /// Refined positions of the drawn pose, before anything gives way.
   void refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const;
-  /// Refined and carved positions. Deterministic; thread-safe. absent (per vertex, or empty: not asked for): 1 where the
-  /// body is so deep in itself that no cloth should meet it, else 0; see absent_vertices.h.
+  /// Refined and carved positions. Deterministic; thread-safe. absent (per vertex, or empty: not asked for): 1 where
+  /// the body is so deep in itself that no cloth should meet it, else 0; see absent_vertices.h.
   CarveReport evaluate(std::span<const Vec3> drawn, std::span<Vec3> positions, std::span<char> absent = {}) const;
 
  private:

@@ -59,8 +59,8 @@ CarveReport FeasiblePoses::keep(double time, std::span<const Vec3> drawn, std::s
   carved.vertices.shrink_to_fit();
   carved.positions.shrink_to_fit();
   carved.absent.shrink_to_fit();
-  const std::size_t bytes = sizeof(Carved) + carved.vertices.size() * (sizeof(int) + sizeof(Vec3)) +
-                            carved.absent.size() * sizeof(int);
+  const std::size_t bytes =
+      sizeof(Carved) + carved.vertices.size() * (sizeof(int) + sizeof(Vec3)) + carved.absent.size() * sizeof(int);
   const std::lock_guard lock(mutex_);
   if (bytes_ + bytes <= most_bytes_ && poses_.emplace(time, std::move(carved)).second) bytes_ += bytes;
   return report;

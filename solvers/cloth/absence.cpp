@@ -17,8 +17,8 @@ constexpr double k_limb_reach = 0.08;
 constexpr double k_margin = 0.025;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
-/// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away
-/// it is on the wrong side.
+/// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away,
+/// or inside and nearer to skin that faces the other way, it is on the wrong side.
 constexpr double k_same_side = 0.08;
 
 /// Cloth that was put on lies no farther from the skin [m].
@@ -26,9 +26,9 @@ constexpr double k_on_skin = 0.05;
 
 struct Nearest {
   int triangle = -1;
-  double distance = 0;   ///< m
-  Vec3 way_out;          ///< unit, from the point to the surface; zero on it
-  bool behind = false;   ///< of the triangle
+  double distance = 0;  ///< m
+  Vec3 way_out;         ///< unit, from the point to the surface; zero on it
+  bool behind = false;  ///< of the triangle
 };
 
 Nearest nearest(const Vec3& p, std::span<const Vec3> body, std::span<const Triangle> triangles,
@@ -46,6 +46,10 @@ Nearest nearest(const Vec3& p, std::span<const Vec3> body, std::span<const Trian
   if (out.distance > 0) out.way_out = way / out.distance;
   out.behind = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).dot(way) > 0;
   return out;
+}
+
+Vec3 normal_of(const Triangle& t, std::span<const Vec3> x) {
+  return (x[at(t[1])] - x[at(t[0])]).cross(x[at(t[2])] - x[at(t[0])]).normalized();
 }
 
 }  // namespace
@@ -220,9 +224,10 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
         for (std::size_t k = begin; k < end; ++k) {
           const Vec3& p = motion.x[at(near[k])];
           const Nearest n = nearest(p, body, triangles, collider.tree(), 0.2);
-          if (n.triangle < 0 || !is_returning(triangles[at(n.triangle)])) continue;
+          if (n.triangle < 0) continue;
           const bool inside = n.behind && rays_say_inside(p, collider.tree(), body, triangles);
-          if (inside || n.distance < k_touching) held[k] = {n.triangle, inside};
+          if (inside || (n.distance < k_touching && is_returning(triangles[at(n.triangle)])))
+            held[k] = {n.triangle, inside};
         }
       });
       for (std::size_t k = 0; k < held.size(); ++k) {
@@ -266,7 +271,7 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
       return std::any_of(t.begin(), t.end(), [&](int b) { return planned(g, b, deep); });
     };
     const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
-    std::vector<WayOut> ways(at(count), WayOut{-1, false, Vec3::Zero(), Vec3::Zero()});
+    std::vector<WayOut> ways(at(count), WayOut{-1, false, Vec3::Zero(), Vec3::Zero(), -1});
     parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = at(first) + k;
@@ -278,14 +283,16 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
         const Nearest n = nearest(p, body, triangles, tree, 0.2);
         if (n.triangle < 0) continue;
         const Triangle& t = triangles[at(n.triangle)];
-        const Vec3 place = p + n.distance * n.way_out;
-        if (may_return && (place_on_skin(static_cast<int>(i), body) - place).norm() > k_same_side) {
-          ways[k] = {static_cast<int>(i), true, Vec3::Zero(), Vec3::Zero()};
+        const Vec3 place = p + n.distance * n.way_out, normal = normal_of(t, body);
+        const bool inside = n.behind && rays_say_inside(p, tree, body, triangles);
+        if (may_return && ((place_on_skin(static_cast<int>(i), body) - place).norm() > k_same_side ||
+                           (inside && normal.dot(normal_of(skin, body)) < 0))) {
+          ways[k] = {static_cast<int>(i), true, Vec3::Zero(), Vec3::Zero(), inside ? skin[0] : -1};
           continue;
         }
-        if (!is_gone(t) || is_planned(t) || (n.behind && !rays_say_inside(p, tree, body, triangles))) continue;
-        const Vec3 normal = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).normalized();
-        ways[k] = {static_cast<int>(i), false, place, normal};
+        if (!is_gone(t) || is_planned(t) || inside != n.behind) continue;
+        const bool worn = worn_[at(g)][at(model.collider->part_of_vertex()[at(t[0])])] != 0;
+        ways[k] = {static_cast<int>(i), false, place, normal, inside && worn ? t[0] : -1};
       }
     });
     for (const WayOut& way : ways)

@@ -7,8 +7,8 @@
 //              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook.
 //
 // What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it. Until
-// then cloth that it lay on is drawn back there (draw_back.h), and other cloth inside is pushed out. What is absent for a
-// garment drags nothing of it along.
+// then cloth that it lay on is drawn back there (draw_back.h), and other cloth inside is pushed out. What is absent for
+// a garment drags nothing of it along.
 #pragma once
 
 #include <span>
@@ -28,6 +28,9 @@ struct WayOut {
   bool to_skin = false;        ///< it is drawn back to Absence::place_on_skin()
   Vec3 place = Vec3::Zero();   ///< else: it stays above the plane through this [m]
   Vec3 normal = Vec3::Zero();  ///< of the plane
+  /// Of the collider, of a part that the garment wears: inside of it the cloth goes along with this and moves against it
+  /// slowly; -1: it does not.
+  int along = -1;
 };
 
 /// What never changes of a body's absence: of each garment and each of the collider's vertices or parts.

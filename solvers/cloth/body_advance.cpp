@@ -51,6 +51,7 @@ struct BodyAdvance::Scratch {
   PieceMotion piece;
   std::vector<Vec3> end, pins, pin_motion;  ///< end: of cloth and body
   std::vector<RoomRequest> requests;
+  std::vector<WayOut> ways_out;
 };
 
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
@@ -126,7 +127,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     report.seconds_candidates += seconds_since(clock);
     return all;
   };
-  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, in.ways_out, h);
+  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, s.ways_out, h);
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
@@ -165,6 +166,10 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
   int short_pieces = 0;
+  const auto find_ways_out = [&] {
+    if (model_.collider) s.ways_out = model_.absence.ways_out(model_, in.body_t1, in.deep_t1, cloth);
+  };
+  find_ways_out();
   while (done < 1) {
     const auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
@@ -198,6 +203,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       // No room: what blocks is let go until it is clear of the cloth again. Should cloth still block cloth then,
       // these pairs pass this once, and the certificate says so.
       if (free < 1 && s.candidates.release_blocked(cloth, piece) > 0) {
+        find_ways_out();  // at once: what is pressed springs through
         share = 1;
         continue;  // search again without them
       }

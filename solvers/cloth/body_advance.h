@@ -15,9 +15,9 @@ namespace ft {
 /// What one substep knows of the outside.
 struct SubstepInput {
   std::span<const Vec3> body_t0, body_t1;  ///< feasible collider at both ends
+  std::span<const char> deep_t1;           ///< per vertex of it at the end: too deep in the body to be met
   std::span<const Vec3> pins_t0, pins_t1;  ///< pin targets at both ends
   std::span<const Vec3> push;              ///< as StepInput's [m/s2]
-  std::span<const WayOut> ways_out;        ///< see draw_back.h
   double friction_share = 1;               ///< as StepInput's [1]
   double h = 0;                            ///< s
   double time_t0 = 0;                      ///< s

@@ -172,7 +172,6 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
   double lost = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
-  std::vector<WayOut> ways_out;
   std::vector<char> deep = body_.start().absent;
   for (int k = 0; k < substeps; ++k) {
     const double t0 = frame.t0 + k * h;
@@ -183,6 +182,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     SubstepInput in;
     in.body_t0 = body;
     in.body_t1 = next.feasible;
+    in.deep_t1 = next.absent;
     in.pins_t0 = pins;
     in.pins_t1 = pins_next;
     in.h = h;
@@ -190,8 +190,6 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     in.shortest = (frame.t1 - frame.t0) / 512;
     if (!m.absent.empty()) model_->absence.take_out(deep, next.absent, m.absent);
     if (push_cloth(t0 + h, m, push)) in.push = push;
-    if (model_->collider) ways_out = model_->absence.ways_out(*model_, next.feasible, next.absent, m);
-    in.ways_out = ways_out;
     if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
     const AdvanceReport step = advance_.substep(in, m);
@@ -254,9 +252,8 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   ClothMotion motion = take_motion(state, at(model_->vertex_count())), best;
   if (teleport) carry(*teleport, motion);
   const KeptMotion start(motion);
-  const int substeps =
-      substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible,
-                    body_.start().absent, body_.end().absent);
+  const int substeps = substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible,
+                                     body_.start().absent, body_.end().absent);
   bool moved = false;
   int fewest = -1;
   FrameProfile spent;

@@ -46,7 +46,7 @@ struct ClothGarment {
   double self_friction = 0.3;  ///< among cloths [1]
   bool self_collision = true;
   std::vector<int> ignores;  ///< parts of the primary that it does not meet
-  VertexMaps maps;  ///< one value per vertex of `mesh`, or empty
+  VertexMaps maps;           ///< one value per vertex of `mesh`, or empty
 };
 
 struct ClothSetup {

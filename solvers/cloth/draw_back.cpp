@@ -12,6 +12,8 @@ namespace {
 constexpr double k_stiffness = 1e5, k_most_pull = 300;
 /// Of what stays above the skin [N/m3].
 constexpr double k_above_stiffness = 2e6;
+/// In which what is inside loses its speed against the body [s].
+constexpr double k_slowed = 2e-3;
 
 }  // namespace
 
@@ -19,11 +21,14 @@ void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const P
                       std::span<const WayOut> ways, double h) {
   held_.clear();
   above_.clear();
+  slowed_.clear();
   const std::size_t n = cloth.x.size();
   std::vector<Vec3> end;
   for (const WayOut& way : ways) {
     const int v = way.vertex;
     const double area = model.contact.area[at(v)];
+    if (way.along >= 0)
+      slowed_.push_back({v, cloth.x[at(v)] + piece.body_motion[at(way.along)], model.mass[at(v)] / (k_slowed * h)});
     if (!way.to_skin) {
       above_.push_back(
           {v, way.normal, way.normal.dot(way.place) + model.contact.radius[at(v)], k_above_stiffness * area});
@@ -46,6 +51,7 @@ void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const P
 double DrawBack::value(std::span<const Vec3> x) const {
   double energy = 0;
   for (const Held& held : held_) energy += held.pull.energy(x[at(held.vertex)]);
+  for (const Slowed& s : slowed_) energy += 0.5 * s.stiffness * (x[at(s.vertex)] - s.place).squaredNorm();
   for (const Above& a : above_) {
     const double missing = std::max(0.0, a.height - a.normal.dot(x[at(a.vertex)]));
     energy += 0.5 * a.stiffness * missing * missing;
@@ -55,6 +61,7 @@ double DrawBack::value(std::span<const Vec3> x) const {
 
 void DrawBack::add_gradient(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   for (const Held& held : held_) gradient[at(held.vertex)] += held.pull.gradient(x[at(held.vertex)]);
+  for (const Slowed& s : slowed_) gradient[at(s.vertex)] += s.stiffness * (x[at(s.vertex)] - s.place);
   for (const Above& a : above_)
     gradient[at(a.vertex)] -= a.stiffness * std::max(0.0, a.height - a.normal.dot(x[at(a.vertex)])) * a.normal;
 }
@@ -63,6 +70,8 @@ void DrawBack::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const 
   for (const Held& held : held_)
     hessian.blocks[at(hessian.pattern->diagonal[at(held.vertex)])].diagonal().array() +=
         static_cast<float>(held.pull.stiffness(x[at(held.vertex)]));
+  for (const Slowed& s : slowed_)
+    hessian.blocks[at(hessian.pattern->diagonal[at(s.vertex)])].diagonal().array() += static_cast<float>(s.stiffness);
   for (const Above& a : above_)
     if (a.normal.dot(x[at(a.vertex)]) < a.height)
       hessian.blocks[at(hessian.pattern->diagonal[at(a.vertex)])] +=

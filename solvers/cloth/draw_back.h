@@ -1,6 +1,7 @@
 // Holds cloth where what it lies on has been let go (absence.h): a hole in the body would swallow the sleeve on it, and
 // what has got into the body has to come out on the side where it belongs. Cloth that is on its side stays above the
-// skin and slides on it; what is not is drawn back to where it lay when the garment was put on (in the bind pose), as
+// skin and slides on it, and goes along with it while it is inside, so that what was pressed does not spring through;
+// what is not is drawn back to where it lay when the garment was put on (in the bind pose), as
 // pins do (pin_pull.h): no harder than a limit, and no faster than they.
 #pragma once
 
@@ -40,7 +41,13 @@ class DrawBack final : public Energy {
     double height;     ///< of the plane along its normal, with the contact radius [m]
     double stiffness;  ///< N/m
   };
+  struct Slowed {
+    int vertex;
+    Vec3 place;        ///< at the end of the piece, if it does not move against the body [m]
+    double stiffness;  ///< N/m
+  };
   std::vector<Held> held_;
+  std::vector<Slowed> slowed_;
   std::vector<Above> above_;
 };
 

@@ -97,7 +97,7 @@ double substeps_of_body(const ClothModel& model, const ClothMotion& m, double du
   // The fastest first: the first that is near decides, and slow ones change nothing.
   std::vector<std::pair<double, std::size_t>> by_speed;
   for (std::size_t i = 0; i < body_t0.size(); ++i) {
-    if (deep_t0[i] != 0 || deep_t1[i] != 0) continue;
+    if (!deep_t0.empty() && (deep_t0[i] != 0 || deep_t1[i] != 0)) continue;
     const double speed = (body_t1[i] - body_t0[i] - mean).norm();
     if (speed > setup.min_substeps * travel) by_speed.emplace_back(-speed, i);
   }
@@ -118,7 +118,8 @@ int substep_count(const ClothModel& model, const ClothMotion& motion, double dur
   const ClothSetup& setup = model.setup;
   const double own = std::max(duration * turning(model.rest_edges, motion) / k_most_turn,
                               duration * scatter(model, motion) / k_most_scatter);
-  const double wanted = std::ceil(std::max(own, substeps_of_body(model, motion, duration, body_t0, body_t1, deep_t0, deep_t1)));
+  const double wanted =
+      std::ceil(std::max(own, substeps_of_body(model, motion, duration, body_t0, body_t1, deep_t0, deep_t1)));
   return static_cast<int>(std::clamp<double>(wanted, setup.min_substeps, setup.max_substeps));
 }
 

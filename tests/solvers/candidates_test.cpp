@@ -41,7 +41,6 @@ struct TwoSheets {
     for (std::size_t i = n / 2; i < n; ++i) cloth.v[i].y() = speed;
     cloth.v_previous = cloth.v_older = cloth.v;
     cloth.h_previous = k_step;
-    cloth.released.assign(n, -1);
     cloth.tangled.assign(n, 0);
   }
   double collect(Candidates& candidates) {
