@@ -17,9 +17,9 @@ constexpr double k_limb_reach = 0.08;
 constexpr double k_margin = 0.025;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
-/// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away,
-/// or inside and nearer to skin that faces the other way, it is on the wrong side.
-constexpr double k_same_side = 0.08;
+/// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away
+/// it is on the wrong side. Less for skin of another part.
+constexpr double k_same_side = 0.08, k_same_side_elsewhere = 0.03;
 
 /// Cloth that was put on lies no farther from the skin [m].
 constexpr double k_on_skin = 0.05;
@@ -255,6 +255,7 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
                                       const ClothMotion& motion) const {
   std::vector<WayOut> out;
   TriangleTree tree;
+  const auto parts = model.collider->part_of_vertex();
   const auto triangles = model.collider->triangles();
   for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
     Box box;
@@ -285,8 +286,12 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
         const Triangle& t = triangles[at(n.triangle)];
         const Vec3 place = p + n.distance * n.way_out, normal = normal_of(t, body);
         const bool inside = n.behind && rays_say_inside(p, tree, body, triangles);
-        if (may_return && ((place_on_skin(static_cast<int>(i), body) - place).norm() > k_same_side ||
-                           (inside && normal.dot(normal_of(skin, body)) < 0))) {
+        const auto has_slid_there = [&] {
+          const double way = (place_on_skin(static_cast<int>(i), body) - place).norm();
+          const bool same_part = parts[at(skin[0])] == parts[at(t[0])];
+          return way < (same_part ? k_same_side : k_same_side_elsewhere) && normal.dot(normal_of(skin, body)) > 0;
+        };
+        if (may_return && (inside || !has_slid_there())) {
           ways[k] = {static_cast<int>(i), true, Vec3::Zero(), Vec3::Zero(), inside ? skin[0] : -1};
           continue;
         }
