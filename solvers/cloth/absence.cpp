@@ -15,6 +15,8 @@ constexpr double k_worn_share = 0.02;
 constexpr double k_limb_reach = 0.08;
 /// What stays away around a place where cloth crosses, or is inside of, what would come back [m].
 constexpr double k_margin = 0.025;
+/// How deep inside cloth is looked for [m].
+constexpr double k_deepest = 0.2;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
 /// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away
@@ -46,6 +48,15 @@ Nearest nearest(const Vec3& p, std::span<const Vec3> body, std::span<const Trian
   if (out.distance > 0) out.way_out = way / out.distance;
   out.behind = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).dot(way) > 0;
   return out;
+}
+
+/// Of the triangles that are wanted.
+template <class Wanted>
+TriangleTree tree_of(std::span<const Vec3> x, std::span<const Triangle> triangles, Wanted&& wanted) {
+  std::vector<int> subset;
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
+    if (wanted(triangles[at(t)])) subset.push_back(t);
+  return TriangleTree(x, triangles, std::move(subset));
 }
 
 Vec3 normal_of(const Triangle& t, std::span<const Vec3> x) {
@@ -219,15 +230,18 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
         int triangle = -1;
         bool inside = false;
       };
+      const TriangleTree returning_tree = tree_of(body, triangles, is_returning);
       std::vector<Held> held(near.size());
       parallel_for(near.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           const Vec3& p = motion.x[at(near[k])];
-          const Nearest n = nearest(p, body, triangles, collider.tree(), 0.2);
+          // Where parts overlap, what is nearest may be the front of one, and the cloth yet inside of what returns.
+          Nearest n = nearest(p, body, triangles, returning_tree, k_deepest);
           if (n.triangle < 0) continue;
+          const bool touches = n.distance < k_touching;
+          if (!n.behind && !touches) n = nearest(p, body, triangles, collider.tree(), k_deepest);
           const bool inside = n.behind && rays_say_inside(p, collider.tree(), body, triangles);
-          if (inside || (n.distance < k_touching && is_returning(triangles[at(n.triangle)])))
-            held[k] = {n.triangle, inside};
+          if (inside || touches) held[k] = {n.triangle, inside};
         }
       });
       for (std::size_t k = 0; k < held.size(); ++k) {
@@ -281,7 +295,7 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
         const bool may_return = skin[0] >= 0 && is_gone(skin) && !is_planned(skin);
         const bool is_near = (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
         if (!may_return && !is_near) continue;
-        const Nearest n = nearest(p, body, triangles, tree, 0.2);
+        const Nearest n = nearest(p, body, triangles, tree, k_deepest);
         if (n.triangle < 0) continue;
         const Triangle& t = triangles[at(n.triangle)];
         const Vec3 place = p + n.distance * n.way_out, normal = normal_of(t, body);

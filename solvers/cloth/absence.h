@@ -28,8 +28,8 @@ struct WayOut {
   bool to_skin = false;        ///< it is drawn back to Absence::place_on_skin()
   Vec3 place = Vec3::Zero();   ///< else: it stays above the plane through this [m]
   Vec3 normal = Vec3::Zero();  ///< of the plane
-  /// Of the collider, of a part that the garment wears: inside of it the cloth goes along with this and moves against it
-  /// slowly; -1: it does not.
+  /// Of the collider, of a part that the garment wears: inside of it the cloth goes along with this and moves against
+  /// it slowly; -1: it does not.
   int along = -1;
 };
 
