@@ -63,6 +63,12 @@ struct InteractionForce {
   double contact_share = 0;  ///< of the frame, during which there was any force [1]
 };
 
+/// Vertices of the feasible collider that a system does not meet at a frame's end, as Solver::collider_absent.
+struct AbsentRuns {
+  std::string system;
+  std::vector<std::array<int, 2>> runs;  ///< first vertex, and how many from there; ascending
+};
+
 /// The certificate of one frame, and what it took.
 struct FrameReport {
   int frame = 0;
@@ -84,6 +90,7 @@ struct FrameReport {
   int released_vertices = 0;
   bool finite = true;
   std::vector<InteractionForce> forces;  ///< one of each garment
+  std::vector<AbsentRuns> absent;        ///< of the systems that do not meet all of the collider
   std::vector<Incident> incidents;       ///< worst first, at most 16 a frame
   FrameProfile profile;
 };
