@@ -83,8 +83,8 @@ struct FrameReport {
   double widest_seam = 0;    ///< m, of those
   double strain_p99 = 0, strain_max = 0, strain_mean = 0;  ///< edge strain, 1
   double kinetic_energy = 0;                               ///< J
-  int absent_vertices = 0;    ///< of the collider that a garment does not meet, the most of any garment
-  int crossings_absent = 0;   ///< edge-triangle crossings with what is absent for the cloth that crosses it
+  int absent_vertices = 0;   ///< of the collider that a garment does not meet, the most of any garment
+  int crossings_absent = 0;  ///< edge-triangle crossings with what is absent for the cloth that crosses it
   /// Cords that were let through a part because there was no room; of the collider of cloth, vertices that were let go
   /// although no overlap of the body was known to be there.
   int released_vertices = 0;
