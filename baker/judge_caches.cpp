@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "baker/absent_runs.h"
 #include "baker/cache_track.h"
 #include "baker/core/edge_strain.h"
 #include "baker/judge_cords.h"
@@ -60,6 +61,11 @@ struct Group {
   std::vector<int> first_vertex;
   std::vector<CacheTrack> cords;
   std::vector<MiddleLines> lines;  ///< of each of them
+
+  std::size_t cloth_of(int vertex) const {
+    const auto next = std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex);
+    return static_cast<std::size_t>(next - first_vertex.begin()) - 1;
+  }
 };
 
 void prepare(Group& group) {
@@ -83,13 +89,22 @@ void prepare(Group& group) {
 }
 
 void place_incident(const Group& group, int vertex, Incident& incident) {
-  const auto next = std::upper_bound(group.first_vertex.begin(), group.first_vertex.end(), vertex);
-  const auto garment = static_cast<std::size_t>(next - group.first_vertex.begin()) - 1;
+  const std::size_t garment = group.cloth_of(vertex);
   incident.system = group.cloths[garment].track.name;
   incident.vertex = group.cloths[garment].in_file.vertex(vertex - group.first_vertex[garment]);
 }
 
-Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
+/// Of each cloth, a mark for every vertex of the collider that it does not meet; empty: it meets all.
+std::vector<std::vector<char>> absent_for(const Group& group, const std::vector<AbsentRuns>& known, int count) {
+  std::vector<std::vector<char>> out(group.cloths.size());
+  for (std::size_t c = 0; c < out.size(); ++c)
+    for (const AbsentRuns& runs : known)
+      if (runs.system == group.cloths[c].track.name) out[c] = marks_of(runs, count);
+  return out;
+}
+
+/// absent: what the bake says that its systems do not meet in this frame.
+Result<FrameReport> judge_frame(const Group& group, const std::vector<AbsentRuns>& absent, int index, int frame) {
   FrameReport report;
   report.frame = frame;
   report.smallest_gap = std::numeric_limits<double>::infinity();
@@ -114,7 +129,14 @@ Result<FrameReport> judge_frame(const Group& group, int index, int frame) {
   for (const CacheTrack& collider : group.collider) {
     std::vector<Vec3> y;
     if (const Status read = collider.read(index, y); !read) return read.error();
-    const auto crossings = crossings_between(x, group.cloth_triangles, y, collider.triangles);
+    auto crossings = crossings_between(x, group.cloth_triangles, y, collider.triangles);
+    const auto marks = absent_for(group, absent, static_cast<int>(y.size()));
+    for (const std::vector<char>& own : marks)
+      report.absent_vertices =
+          std::max(report.absent_vertices, static_cast<int>(std::count(own.begin(), own.end(), char{1})));
+    report.crossings_absent = static_cast<int>(std::erase_if(crossings, [&](const Crossing& c) {
+      return second_is_marked(c, marks[group.cloth_of(c.edge_of_first ? c.edge[0] : c.triangle[0])]);
+    }));
     report.crossings_body = static_cast<int>(crossings.size());
     if (!crossings.empty())
       incident(Incident::Kind::k_crossing, crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0],
@@ -228,7 +250,11 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
   }
   out.frame_count = manifest->written_count();
   out.missing_frames = out.frame_count - frames;
+  std::map<int, const std::vector<AbsentRuns>*> absent;
+  for (const FrameReport& frame : manifest->frames) absent[frame.frame] = &frame.absent;
+  const std::vector<AbsentRuns> none;
   for (int i = 0; i < frames; ++i) {
+    const auto known = absent.find(manifest->first_written + i);
     bool first = true;
     FrameReport all;
     const auto add = [&](const Result<FrameReport>& report) -> Status {
@@ -239,7 +265,9 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     };
     for (const auto& [primary, group] : groups) {
       if (!group.cloths.empty())
-        if (const Status judged = add(judge_frame(group, i, manifest->first_written + i)); !judged)
+        if (const Status judged =
+                add(judge_frame(group, known == absent.end() ? none : *known->second, i, manifest->first_written + i));
+            !judged)
           return judged.error();
       for (std::size_t c = 0; c < group.cords.size(); ++c)
         if (const Status judged = add(judge_cords_in_frame(group, c, i, manifest->first_written + i)); !judged)

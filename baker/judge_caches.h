@@ -1,5 +1,5 @@
-// Judges a bake from its caches alone, as any other program would see them: nothing that the solver said of itself is
-// believed.
+// Judges a bake from its caches, as any other program would see them: nothing that the solver said of itself is
+// believed, but what of the feasible collider was absent for which cloth, which the manifest has for every frame.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,8 @@ namespace ft {
 
 struct CacheJudgement {
   std::string shot;
-  /// Crossings, penetration, strain; of cords the gap, which is infinite where there are none. Energy is not judged.
+  /// Crossings, penetration, strain, what was absent (as numbers); of cords the gap, which is infinite where there are
+  /// none. Energy is not judged.
   std::vector<FrameReport> frames;
   bool complete = false;   ///< the bake came to its end
   int frame_count = 0;     ///< that the caches should have

@@ -11,7 +11,9 @@
 #include "baker/vertex_maps.h"
 #include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/shot_values.h"
 #include "io/shot/weld.h"
+#include "io/shot/words.h"
 #include "solvers/cloth/coarse_garment.h"
 
 namespace ft {
@@ -28,6 +30,64 @@ void place_garment(Mesh& mesh, const ClothSpec& spec) {
     if (spec.up == "z") p = Vec3(p.x(), p.z(), -p.y());
     p += spec.offset;
   }
+}
+
+Error at_place(Error error, std::string where) {
+  error.where = std::move(where);
+  return error;
+}
+
+/// Parts of a primary whose names are what one of the patterns says, ascending. key: "ignore".
+Result<std::vector<int>> parts_like(const std::vector<std::string>& patterns, const std::string& key,
+                                    const PrimaryPlan& primary) {
+  const auto& parts = primary.trajectory->surface().parts;
+  std::vector<std::string> names;
+  for (const SurfacePart& part : parts) names.push_back(part.name);
+  std::vector<int> out;
+  for (const std::string& pattern : patterns) {
+    const std::size_t before = out.size();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (matches(pattern, names[i])) out.push_back(static_cast<int>(i));
+    if (out.size() > before) continue;
+    std::string word = pattern;
+    std::erase_if(word, [](char c) { return c == '*' || c == '?'; });
+    return usage_error(key + " = " + in_quotes(printable(pattern)) + " names no part of " + in_quotes(primary.name), {},
+                       suggestion(word, names));
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// ""hand_l", "hand_r" and 3 more".
+std::string some_parts(std::span<const int> some, const PrimaryPlan& primary) {
+  constexpr std::size_t k_named = 8;
+  std::vector<std::string> names;
+  for (const int part : some.first(std::min(k_named, some.size())))
+    names.push_back(in_quotes(primary.trajectory->surface().parts[at(part)].name));
+  return joined(names) + (some.size() > k_named ? fmt::format(" and {} more", some.size() - k_named) : "");
+}
+
+/// What the keys take out of the body, for all cloths of the primary and for each.
+Status add_ignored(const Shot& shot, const PrimarySpec& spec, const PrimaryPlan& primary,
+                   std::span<const ClothSpec* const> worn, GroupPlan& group, std::vector<std::string>& notes) {
+  const std::size_t part_count = primary.trajectory->surface().parts.size();
+  const auto note = [&](const std::string& who, const std::vector<int>& parts) {
+    if (parts.empty()) return;
+    notes.push_back(fmt::format("{} not meet {} of the {} parts of \"{}\": {}", who, parts.size(), part_count,
+                                primary.name, some_parts(parts, primary)));
+  };
+  auto of_all = parts_like(spec.ignore, "ignore", primary);
+  if (!of_all) return at_place(of_all.error(), shot.file.filename().string() + ": primary " + in_quotes(spec.name));
+  if (!worn.empty()) note("cloth does", *of_all);
+  for (std::size_t g = 0; g < worn.size(); ++g) {
+    auto own = parts_like(worn[g]->ignores, "ignores", primary);
+    if (!own) return at_place(own.error(), cloth_place(shot, *worn[g]));
+    note("cloth " + in_quotes(worn[g]->name) + " does", *own);
+    std::set_union(of_all->begin(), of_all->end(), own->begin(), own->end(),
+                   std::back_inserter(group.setup.garments[g].ignores));
+  }
+  return {};
 }
 
 /// Frames of the shot -> seconds from its first frame.
@@ -202,6 +262,8 @@ Status plan_cloths(const Shot& shot, std::size_t p, BakePlan& plan) {
   }
   for (std::size_t g = 0; g < worn.size(); ++g)
     if (const Status added = add_pins(shot, *worn[g], plan.primaries[p], group, g, plan.notes); !added) return added;
+  if (const Status added = add_ignored(shot, shot.primaries[p], plan.primaries[p], worn, group, plan.notes); !added)
+    return added;
   if (group.setup.garments.empty()) return {};
   for (const ClothGarment& garment : group.setup.garments) note_riding(garment, plan.notes);
   apply_quality(shot, group.setup);

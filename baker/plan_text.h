@@ -15,7 +15,7 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
 std::string size_text(std::uint64_t bytes);
 /// "sewn: 851 stitches in 94 seams".
 std::string sewing_text(const Mesh& mesh);
-/// A character in words: sizes, units, clips.
+/// A character in words: sizes, units, clips; of an inspected one its parts, too.
 std::vector<std::string> character_lines(const CharacterInfo& info);
 
 }  // namespace ft

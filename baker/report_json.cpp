@@ -128,6 +128,24 @@ InteractionForce force_from(const Json& json) {
   return out;
 }
 
+/// [first, count, first, count, ...].
+AbsentRuns absent_from(const Json& json) {
+  AbsentRuns out;
+  if (!json.is_object()) throw Faulty{"absent"};
+  take_field(json, "system", out.system);
+  const auto runs = json.find("runs");
+  if (runs == json.end() || !runs->is_array() || runs->size() % 2 != 0) throw Faulty{"absent"};
+  for (std::size_t i = 0; i < runs->size(); i += 2) {
+    std::array<int, 2> run{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      take((*runs)[i + k], "absent", run[k]);
+      if (run[k] < 0) throw Faulty{"absent"};
+    }
+    out.runs.push_back(run);
+  }
+  return out;
+}
+
 void write_value(std::string& out, const Json& json, int depth) {
   const bool flat = depth >= 2 || !json.is_structured() || json.empty();
   if (flat) {
@@ -163,6 +181,12 @@ Json to_json(const InteractionForce& f) {
               {"contact", value_of(f.contact_share)}};
 }
 
+Json to_json(const AbsentRuns& absent) {
+  Json runs = Json::array();
+  for (const auto& [first, count] : absent.runs) runs.push_back(first), runs.push_back(count);
+  return Json{{"system", absent.system}, {"runs", std::move(runs)}};
+}
+
 Json to_json(const FrameReport& report) {
   Json out = Json::object();
   for_each_field(report, [&](const char* name, const auto& value) { out[name] = value_of(value); });
@@ -170,6 +194,11 @@ Json to_json(const FrameReport& report) {
     Json list = Json::array();
     for (const InteractionForce& f : report.forces) list.push_back(to_json(f));
     out["forces"] = std::move(list);
+  }
+  if (!report.absent.empty()) {
+    Json list = Json::array();
+    for (const AbsentRuns& a : report.absent) list.push_back(to_json(a));
+    out["absent"] = std::move(list);
   }
   if (!report.incidents.empty()) {
     Json list = Json::array();
@@ -193,6 +222,10 @@ Result<FrameReport> frame_report_from_json(const Json& json) {
     if (const auto list = json.find("forces"); list != json.end()) {
       if (!list->is_array()) throw Faulty{"forces"};
       for (const Json& f : *list) out.forces.push_back(force_from(f));
+    }
+    if (const auto list = json.find("absent"); list != json.end()) {
+      if (!list->is_array()) throw Faulty{"absent"};
+      for (const Json& a : *list) out.absent.push_back(absent_from(a));
     }
     if (const auto list = json.find("incidents"); list != json.end()) {
       if (!list->is_array()) throw Faulty{"incidents"};
@@ -251,6 +284,7 @@ FrameReport merge(const FrameReport& a, const FrameReport& b) {
   out.released_vertices += b.released_vertices;
   out.finite = a.finite && b.finite;
   out.forces.insert(out.forces.end(), b.forces.begin(), b.forces.end());
+  out.absent.insert(out.absent.end(), b.absent.begin(), b.absent.end());
   out.incidents.insert(out.incidents.end(), b.incidents.begin(), b.incidents.end());
   out.profile += b.profile;
   return out;

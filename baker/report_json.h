@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 Json to_json(const FrameReport& report);
 Json to_json(const Incident& incident);
 Json to_json(const InteractionForce& force);
+Json to_json(const AbsentRuns& absent);
 /// Wall times [s].
 Json to_json(const FrameProfile& profile);
 

@@ -55,7 +55,15 @@ void add_body(const ClothSetup& setup, const std::string& primary, const Start& 
   std::vector<Vec3> drawn(at(setup.primary->surface().vertex_count())),
       body(at(setup.poses->collider().vertex_count()));
   setup.primary->sample(time, drawn);
-  setup.poses->evaluate(time, drawn, body);
+  std::vector<char> deep(body.size());
+  setup.poses->evaluate(time, drawn, body, deep);
+  std::vector<std::vector<char>> absent;  // of each garment
+  const auto part_of = setup.poses->collider().part_of_vertex();
+  for (const ClothGarment& garment : setup.garments) {
+    std::vector<char>& own = absent.emplace_back(deep);
+    for (std::size_t v = 0; v < own.size(); ++v)
+      if (std::find(garment.ignores.begin(), garment.ignores.end(), part_of[v]) != garment.ignores.end()) own[v] = 1;
+  }
   const auto triangles = setup.poses->collider().triangles();
   const auto touch = [&](int vertex) -> BadStart& {
     BadStart& entry = bad[start.garment_of(vertex)];
@@ -63,8 +71,10 @@ void add_body(const ClothSetup& setup, const std::string& primary, const Start& 
     return entry;
   };
   for (const ClothGarment& garment : setup.garments) bad.push_back({garment.name, primary, true});
-  for (const Crossing& c : crossings_between(start.x, start.triangles, body, triangles))
-    ++touch(c.edge_of_first ? c.edge[0] : c.triangle[0]).crossings;
+  for (const Crossing& c : crossings_between(start.x, start.triangles, body, triangles)) {
+    const int vertex = c.edge_of_first ? c.edge[0] : c.triangle[0];
+    if (!second_is_marked(c, absent[start.garment_of(vertex)])) ++touch(vertex).crossings;
+  }
   for (const Penetration& p : penetrations(start.x, body, triangles)) {
     BadStart& entry = touch(p.vertex);
     ++entry.inside;

@@ -30,7 +30,8 @@ struct StartReport {
   double fps = 24;
 };
 
-/// Against the feasible collider of the first moment, pairs that a seam holds together left out.
+/// Against the feasible collider of the first moment; pairs that a seam holds together, and what is absent for a
+/// garment, left out.
 StartReport find_start(const BakePlan& plan);
 
 /// One line for each bad start, and one with what becomes of them. Empty where all is well.

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <deque>
 
+#include "baker/absent_runs.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/interaction.h"
@@ -148,6 +149,7 @@ FrameReport Walk::advance() {
     FrameReport one = solvers_[g]->advance_frame(states_[g]);
     CHECK(states_[g].frame == expected && one.frame == expected);
     number_as_in_file(g, one.incidents);
+    one.absent = absent_of(*solvers_[g], states_[g]);
     report = g == 0 ? std::move(one) : merge(report, one);
   }
   return report;
@@ -263,14 +265,25 @@ FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::spa
     solvers[g]->collider_positions(states[g], collider);
     std::vector<Vec3> cloth;
     std::vector<Triangle> triangles;
+    std::vector<std::vector<char>> absent;  // of each system
+    std::vector<int> system_of;             // of each vertex
     for (int s = 0; s < solvers[g]->system_count(); ++s) {
       const Mesh& mesh = solvers[g]->system_mesh(s);
       const int first = static_cast<int>(cloth.size());
       cloth.resize(cloth.size() + mesh.positions.size());
       solvers[g]->system_positions(states[g], s, std::span(cloth).subspan(static_cast<std::size_t>(first)));
       for (const Triangle& t : triangulate(mesh)) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+      absent.push_back(solvers[g]->collider_absent(states[g], s));
+      system_of.resize(cloth.size(), s);
     }
-    const auto body = crossings_between(cloth, triangles, collider, solvers[g]->collider_triangles());
+    auto body = crossings_between(cloth, triangles, collider, solvers[g]->collider_triangles());
+    report.crossings_absent += static_cast<int>(std::erase_if(body, [&](const Crossing& c) {
+      return second_is_marked(c, absent[at(system_of[at(c.edge_of_first ? c.edge[0] : c.triangle[0])])]);
+    }));
+    for (AbsentRuns& runs : absent_of(*solvers[g], states[g])) {
+      report.absent_vertices = std::max(report.absent_vertices, vertex_count(runs));
+      report.absent.push_back(std::move(runs));
+    }
     report.crossings_body += static_cast<int>(body.size());
     report.crossings_self += static_cast<int>(crossings_within(cloth, triangles).size());
     if (!body.empty()) {

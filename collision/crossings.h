@@ -25,6 +25,13 @@ struct Crossing {
   auto operator<=>(const Crossing&) const = default;
 };
 
+/// Whether the second surface's feature has a vertex that is marked; nothing marked: no.
+inline bool second_is_marked(const Crossing& c, std::span<const char> marked) {
+  if (marked.empty()) return false;
+  const auto is = [&](int v) { return marked[static_cast<std::size_t>(v)] != 0; };
+  return c.edge_of_first ? is(c.triangle[0]) || is(c.triangle[1]) || is(c.triangle[2]) : is(c.edge[0]) || is(c.edge[1]);
+}
+
 /// Edges of either surface through triangles of the other; sorted. Vertex numbering as positions are given.
 std::vector<Crossing> crossings_between(const CheckedSurface& a, const CheckedSurface& b);
 std::vector<Crossing> crossings_between(std::span<const Vec3> positions_a, std::span<const Triangle> triangles_a,

@@ -44,17 +44,24 @@ struct RoomScanner::Impl {
 RoomScanner::RoomScanner(std::shared_ptr<FeasiblePoses> poses) : impl_(std::make_unique<Impl>(std::move(poses))) {}
 RoomScanner::~RoomScanner() = default;
 
-std::vector<TightPlace> RoomScanner::look(double time) const {
+std::vector<TightPlace> RoomScanner::look(double time, std::span<double> absent_share) const {
   const Impl& m = *impl_;
   std::vector<TightPlace> out;
+  std::fill(absent_share.begin(), absent_share.end(), 0.0);
   if (!m.settings.carve || m.parts.size() < 2) return out;
   std::vector<Vec3> drawn(at(m.poses->body().surface().vertex_count()));
   m.poses->body().sample(time, drawn);
   std::vector<Vec3> before(at(m.collider.vertex_count())), after(before.size());
   m.collider.refine(drawn, before);
-  if (m.poses->keep(time, drawn, after).moved_vertices == 0) return out;
-
+  std::vector<char> absent(before.size());
+  const bool moves = m.poses->keep(time, drawn, after, absent).moved_vertices > 0;
   const auto part_of = m.collider.part_of_vertex();
+  if (!absent_share.empty()) {
+    std::vector<int> count(m.parts.size(), 0);
+    for (std::size_t v = 0; v < absent.size(); ++v) ++count[at(part_of[v])], absent_share[at(part_of[v])] += absent[v];
+    for (std::size_t p = 0; p < count.size(); ++p) absent_share[p] /= std::max(1, count[p]);
+  }
+  if (!moves) return out;
   const std::size_t part_count = m.parts.size();
   std::vector<std::vector<std::pair<double, int>>> moved(part_count);  // (-distance moved, vertex)
   std::vector<Box> boxes(part_count);

@@ -24,8 +24,9 @@ class RoomScanner {
   /// The poses that it has looked at are kept there.
   explicit RoomScanner(std::shared_ptr<FeasiblePoses> poses);
   ~RoomScanner();
-  /// Pairs nearer than the gap at this time [s], by parts.
-  std::vector<TightPlace> look(double time) const;
+  /// Pairs nearer than the gap at this time [s], by parts. absent_share, per part, or empty: not asked for: of its
+  /// vertices in the collider those that are absent then (absent_vertices.h), 0..1.
+  std::vector<TightPlace> look(double time, std::span<double> absent_share = {}) const;
 
  private:
   struct Impl;

@@ -63,6 +63,12 @@ struct InteractionForce {
   double contact_share = 0;  ///< of the frame, during which there was any force [1]
 };
 
+/// Vertices of the feasible collider that a system does not meet at a frame's end, as Solver::collider_absent.
+struct AbsentRuns {
+  std::string system;
+  std::vector<std::array<int, 2>> runs;  ///< first vertex, and how many from there; ascending
+};
+
 /// The certificate of one frame, and what it took.
 struct FrameReport {
   int frame = 0;
@@ -77,13 +83,14 @@ struct FrameReport {
   double widest_seam = 0;    ///< m, of those
   double strain_p99 = 0, strain_max = 0, strain_mean = 0;  ///< edge strain, 1
   double kinetic_energy = 0;                               ///< J
-  int absent_vertices = 0;    ///< of the collider that a garment does not meet, the most of any garment
-  int crossings_absent = 0;   ///< edge-triangle crossings with what is absent for the cloth that crosses it
+  int absent_vertices = 0;   ///< of the collider that a garment does not meet, the most of any garment
+  int crossings_absent = 0;  ///< edge-triangle crossings with what is absent for the cloth that crosses it
   /// Cords that were let through a part because there was no room; of the collider of cloth, vertices that were let go
   /// although no overlap of the body was known to be there.
   int released_vertices = 0;
   bool finite = true;
   std::vector<InteractionForce> forces;  ///< one of each garment
+  std::vector<AbsentRuns> absent;        ///< of the systems that do not meet all of the collider
   std::vector<Incident> incidents;       ///< worst first, at most 16 a frame
   FrameProfile profile;
 };

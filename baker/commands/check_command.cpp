@@ -28,6 +28,7 @@ struct Totals {
   double deepest = 0, strain_p99 = 0;
   double cord_gap = std::numeric_limits<double>::infinity();
   int deepest_frame = 0, strain_frame = 0;
+  int absent_frames = 0, absent_vertices = 0, crossings_absent = 0;
 };
 
 Totals add_up(const std::vector<FrameReport>& frames) {
@@ -36,6 +37,9 @@ Totals add_up(const std::vector<FrameReport>& frames) {
     out.crossing_frames += f.crossings_body + f.crossings_self > 0;
     out.crossings_body += f.crossings_body;
     out.crossings_self += f.crossings_self;
+    out.absent_frames += f.absent_vertices > 0;
+    out.absent_vertices = std::max(out.absent_vertices, f.absent_vertices);
+    out.crossings_absent += f.crossings_absent;
     out.cord_gap = std::min(out.cord_gap, f.smallest_gap);
     if (f.deepest_drawn > out.deepest) out.deepest = f.deepest_drawn, out.deepest_frame = f.frame;
     if (f.strain_p99 > out.strain_p99) out.strain_p99 = f.strain_p99, out.strain_frame = f.frame;
@@ -72,6 +76,9 @@ Json json_of(const CacheJudgement& judgement, const Totals& t, const std::vector
               {"missing_frames", judgement.missing_frames},
               {"crossings_body", t.crossings_body},
               {"crossings_self", t.crossings_self},
+              {"absent_frames", t.absent_frames},
+              {"absent_vertices", t.absent_vertices},
+              {"crossings_absent", t.crossings_absent},
               {"deepest_drawn", t.deepest},
               {"strain_p99", t.strain_p99},
               {"frames", std::move(frames)}};
@@ -100,6 +107,11 @@ int run(const CheckArguments& a) {
   for (const std::string& note : judgement->notes) std::printf("note: %s\n", note.c_str());
   const Totals totals = add_up(judgement->frames);
   const auto failed = failed_gates(a, *judgement, totals);
+  if (totals.absent_frames > 0)
+    std::printf(
+        "absent: in %d frames a cloth does not meet all of the feasible collider, at most %d of its vertices are "
+        "left out\n",
+        totals.absent_frames, totals.absent_vertices);
   std::printf(
       "%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, "
       "worst p99 strain %.2f %%%s\n",

@@ -162,6 +162,7 @@ Json frame_rows(const Manifest& manifest, const BakeFolder& folder, int frames) 
     if (frame.frame < manifest.first_written || frame.frame >= manifest.first_written + frames) continue;
     Json row = to_json(frame);
     row.erase("incidents");
+    row.erase("absent");
     const auto time = times.find(frame.frame);
     row["milliseconds"] = time == times.end() ? Json(nullptr) : Json(time->second);
     rows.push_back(std::move(row));

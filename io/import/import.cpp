@@ -311,6 +311,10 @@ Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const
   deform(skin, placement->matrix(), bind.globals, rest.rest_morphs(), positions);
   if (const FacingReport facing = turn_outwards(positions, skin.surface.triangles); facing.turned_count > 0)
     info.notes.push_back(facing.text());
+  if (!skin.surface.triangles.empty() && all_finite(positions)) {
+    assign_parts(character, positions, skin);
+    info.parts = skin.surface.parts;
+  }
   if (positions.empty())
     for (const Mat4& m : bind.globals) positions.push_back((placement->matrix() * m).topRightCorner<3, 1>());
   info.bind_bounds = bounds(positions);

@@ -33,6 +33,7 @@ struct CharacterInfo {
   Box bind_bounds;  ///< m
   std::vector<ClipInfo> clips;
   std::vector<std::string> mesh_names;
+  std::vector<SurfacePart> parts;  ///< of an inspected file; of an imported one its trajectory has them
   bool still = false;              ///< there is nothing to play, and a note says so
   std::vector<std::string> notes;  ///< what was repaired or is odd: "weights normalised (sums 0.185..1.0)"
 };

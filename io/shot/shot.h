@@ -41,6 +41,7 @@ struct PrimarySpec {
   std::optional<double> height;      ///< BVH and others: scale so that the bind pose is this tall [m]
   std::optional<double> mass;        ///< kg; without it from the body's volume
   std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all
+  std::vector<std::string> ignore;   ///< patterns (* and ?) of parts that no cloth meets
   Teleports teleports = Teleports::k_detect;
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
   std::string shape;                 ///< "sphere", "box", "capsule" instead of `file`; empty: from the file
@@ -115,6 +116,7 @@ struct ClothSpec {
   double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
   double self_friction = 0.3;  ///< among cloths
   bool self_collision = true;
+  std::vector<std::string> ignores;  ///< patterns (* and ?) of parts of its primary that it does not meet
   std::string coupling = "one-way";  ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
 };
 

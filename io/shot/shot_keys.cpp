@@ -49,6 +49,9 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "coupling needs it"},
       {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects",
        "Names of the meshes that make the collider; without it all"},
+      {"ignore", &PrimarySpec::ignore, 0, 0, "", "", false, "exclude ignore_parts ignored without",
+       "Parts that no cloth meets, where they are in its way: names with `*` and `?`, `[\"hand_*\"]`. `info` of the "
+       "character lists its parts"},
       {"teleports", TeleportsKey{}, 0, 9'999'999, "", "", false, "teleport cuts jumps",
        "What is done about a character that jumps to another place between two frames: `\"detect\"` carries the cloth "
        "along, `\"ignore\"` simulates it as motion, `[1041]` names the first frame at each new place"},
@@ -92,6 +95,9 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"self_friction", &ClothSpec::self_friction, 0, 2, "1", "", false, "", "Coulomb coefficient among cloths"},
       {"self_collision", &ClothSpec::self_collision, 0, 0, "", "", false, "self_contact",
        "Cloth meets itself and other cloths"},
+      {"ignores", &ClothSpec::ignores, 0, 0, "", "", false, "exclude ignore_parts ignored without",
+       "Parts of its primary that this cloth does not meet, beside those that the primary has under `ignore`: names "
+       "with `*` and `?`, `[\"hand_*\"]`"},
       {"coupling", &ClothSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",
        "Who feels whom: `one-way`, it feels the primary; `hybrid`, the primary yields to its stand-ins first; "
        "`two-way` "

@@ -64,6 +64,24 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
   return "known: " + joined(candidates.first(shown)) + (candidates.size() > shown ? ", ..." : "");
 }
 
+bool matches(std::string_view pattern, std::string_view word) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  // Where the last star was, and the end of what it has swallowed.
+  std::size_t p = 0, w = 0, star = std::string_view::npos, swallowed = 0;
+  while (w < word.size()) {
+    if (p < pattern.size() && pattern[p] == '*')
+      star = p++, swallowed = w;
+    else if (p < pattern.size() && (pattern[p] == '?' || lower(pattern[p]) == lower(word[w])))
+      ++p, ++w;
+    else if (star != std::string_view::npos)
+      p = star + 1, w = ++swallowed;
+    else
+      return false;
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
 std::string joined(std::span<const std::string> words, std::string_view separator) {
   std::string out;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -20,6 +20,9 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
 /// `did you mean "denim"?`, or `known: cotton, denim, ...` when nothing is near; empty without candidates.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
+/// Whether a word is what a pattern says: `*` stands for any text, `?` for one character; case does not count.
+bool matches(std::string_view pattern, std::string_view word);
+
 std::string joined(std::span<const std::string> words, std::string_view separator = ", ");
 
 /// Printable form of text from outside: control characters become '?', long text is cut.

@@ -79,17 +79,30 @@ void RidingSolver::certify(State& state, FrameReport& report) const {
       system_positions(state, s, std::span(x).subspan(riders_.first_vertex(s), riders_.garment(s).places.size()));
   };
   place();
+  std::vector<std::vector<char>> absent;
+  for (int s = 0; s < system_count(); ++s) absent.push_back(inner_->collider_absent(state, s));
+  // Returns how many were with what is absent for the garment.
+  const auto without_absent = [&](RidingCrossings& all) {
+    return static_cast<int>(std::erase_if(all.with_body, [&](const Crossing& c) {
+      const int v = c.edge_of_first ? c.edge[0] : c.triangle[0];
+      return second_is_marked(c, absent[at(riders_.garment_of(v))]);
+    }));
+  };
   RidingCrossings found = riders_.crossings(x, collider_);
+  int left_out = without_absent(found);
   if (!found.empty()) {
     riders_.draw_in(found, state.block(k_block));
     place();
     found = riders_.crossings(x, collider_);
+    left_out = without_absent(found);
   }
   if (report.crossings_body + report.crossings_self > 0) {  // some are of triangles that only what moves has
-    const RidingCrossings all = riders_.all_crossings(x, collider_);
+    RidingCrossings all = riders_.all_crossings(x, collider_);
+    report.crossings_absent = without_absent(all);
     report.crossings_body = static_cast<int>(all.with_body.size());
     report.crossings_self = static_cast<int>(all.own.size());
   } else {
+    report.crossings_absent += left_out;
     report.crossings_body = static_cast<int>(found.with_body.size());
     report.crossings_self = static_cast<int>(found.own.size());
   }

@@ -40,6 +40,9 @@ class FakeSolver final : public Solver {
     out.resize(at(setup_.primary->surface().vertex_count()));
     setup_.primary->sample(state.time, out);
   }
+  std::vector<char> collider_absent(const State&, int) const override {
+    return std::vector<char>(behaviour_.absent ? at(setup_.primary->surface().vertex_count()) : 0, 1);
+  }
   State initial_state() const override {
     State state;
     state.frame = setup_.first_frame - setup_.preroll_frames;

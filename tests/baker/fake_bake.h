@@ -19,6 +19,7 @@ struct FakeBehaviour {
   std::function<void(int frame, FrameReport&, State&)> after_frame{};  ///< may spoil the answer
   /// Called with the bobbing box and the request; its motion is the primary's then.
   std::function<std::unique_ptr<Trajectory>(const Trajectory& box, const ImportRequest& request)> move{};
+  bool absent = false;  ///< no garment meets the box
 };
 
 /// 3 x 3 x 3 sheet beside a box of 1 m; groups "top" (3 vertices) and "none" (weights 0).

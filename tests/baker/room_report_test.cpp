@@ -39,6 +39,9 @@ TEST(Room, is_looked_for_before_the_bake_and_told) {
   for (const std::string& line : bake(options, services, progress).lines) dry += line + "\n";
   EXPECT_NE(dry.find("no room: \"ball\" of \"box\" is 50.0 mm inside \"box\", frames 4-6"), std::string::npos) << dry;
   EXPECT_EQ(dry.find("more places"), std::string::npos) << dry;
+  EXPECT_NE(dry.find("absent for the cloth: "), std::string::npos) << dry;
+  EXPECT_NE(dry.find(" % of \"ball\" of \"box\" at worst, frames 4-6"), std::string::npos) << dry;
+  EXPECT_NE(dry.find(" (inside \"box\")"), std::string::npos) << dry;
   options.dry_run = false;
   EXPECT_EQ(bake(options, services, progress).exit_code, 0);
   EXPECT_NE(progress.notes.find("no room"), std::string::npos) << progress.notes;
@@ -51,6 +54,29 @@ TEST(Room, is_looked_for_before_the_bake_and_told) {
   EXPECT_EQ(places[0].at("first_frame"), 4);
   EXPECT_EQ(places[0].at("last_frame"), 6);
   EXPECT_NEAR(places[0].at("clearance").get<double>(), -0.05, 1e-3);
+  const Json& absent = report->at("room").at("absent");
+  ASSERT_EQ(absent.size(), 1u);
+  EXPECT_EQ(absent[0].at("part"), "ball");
+  EXPECT_EQ(absent[0].at("inside"), "box");
+  EXPECT_EQ(absent[0].at("first_frame"), 4);
+  EXPECT_EQ(absent[0].at("last_frame"), 6);
+  EXPECT_GT(absent[0].at("share").get<double>(), 0.1);
+  EXPECT_LT(absent[0].at("share").get<double>(), 0.9);
+}
+
+TEST(Room, What_the_shot_has_ignored_leaves_room_and_is_not_told_to_be_absent) {
+  test::FakeScene scene;
+  scene.write_shot(10);
+  Progress silent;
+  BakeOptions options = scene.options();
+  options.overrides = {"primary.box.teleports=ignore", "primary.box.ignore=[\"ball\"]"};
+  options.dry_run = true;
+  std::string dry;
+  for (const std::string& line : bake(options, scene.services({.move = box_and_ball}), silent).lines)
+    dry += line + "\n";
+  EXPECT_EQ(dry.find("no room"), std::string::npos) << dry;
+  EXPECT_EQ(dry.find("absent for the cloth"), std::string::npos) << dry;
+  EXPECT_NE(dry.find("cloth does not meet 1 of the 2 parts of \"box\": \"ball\""), std::string::npos) << dry;
 }
 
 }  // namespace

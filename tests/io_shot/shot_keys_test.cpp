@@ -50,7 +50,7 @@ TEST_F(ShotFile, Every_key_of_the_table_can_be_set_and_changes_the_canonical_tex
   const auto base = parse(k_good);
   ASSERT_TRUE(base.ok());
   const std::string before = canonical(*base);
-  const std::set<std::string_view> texts = {"clip", "meshes"};
+  const std::set<std::string_view> texts = {"clip", "meshes", "ignore", "ignores"};
   std::set<std::string> seen = {before};
   int count = 0;
   const auto check = [&](const std::string& section, auto keys) {

@@ -11,6 +11,19 @@
 namespace ft {
 namespace {
 
+TEST(Words, Stars_and_question_marks_stand_for_text_and_for_a_character) {
+  EXPECT_TRUE(matches("hand_*", "Hand_R"));
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("**", "spine_03"));
+  EXPECT_TRUE(matches("spine_0?", "spine_03"));
+  EXPECT_TRUE(matches("*hand*", "mixamorig:LeftHandThumb1"));
+  EXPECT_TRUE(matches("*a*ab", "aaaab"));
+  EXPECT_FALSE(matches("", "a"));
+  EXPECT_FALSE(matches("hand", "hand_r"));
+  EXPECT_FALSE(matches("spine_0?", "spine_0"));
+  EXPECT_FALSE(matches("*a*ab", "aaaba"));
+}
+
 TEST(Words, Distance_counts_slips_of_the_pen) {
   EXPECT_EQ(edit_distance("denim", "denim"), 0);
   EXPECT_EQ(edit_distance("denm", "denim"), 1);
