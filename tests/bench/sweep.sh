@@ -65,7 +65,8 @@ if ! "$bin/sweep_tool" list "$assets" "$seed" "$frames" "$out" "$out/all.tsv" >"
   cat "$out/list.log" >&2
   fail "the bakes could not be listed (see above)"
 fi
-selected=$out/selected.tsv
+selected=$(mktemp) # and not in $out: several sweeps may fill one folder
+trap 'rm -f "$selected"' EXIT
 awk -F '\t' -v tenth="$tenth" -v pattern="$pattern" -v characters="${characters[*]}" '
   FNR == NR { count = FNR - 1; next }
   FNR == 1 { print; next }
@@ -159,7 +160,7 @@ bake() {
   local name=$1 garments=$out/garments/$2 folder=$out/bakes/$1
   rm -rf "$folder"
   mkdir -p "$folder"
-  "$bin/sweep_tool" shot "$selected" "$name" "$garments" "$folder/$name.toml"
+  "$bin/sweep_tool" shot "$out/all.tsv" "$name" "$garments" "$folder/$name.toml"
   "$bin/sweep_tool" run "$limit" "$folder/log" "$folder/run" \
     "$bin/followthrough" bake "$folder/$name.toml" --out "$folder/bake" --threads 1 --progress plain
   "$bin/sweep_tool" row "$name" "$folder/bake" "$folder/run" "$(worn "$garments")" >"$folder/row"
