@@ -6,6 +6,7 @@
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
 #include "solvers/cloth/candidates.h"
+#include "solvers/cloth/tangles.h"
 
 namespace ft {
 namespace {
@@ -44,9 +45,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 struct BodyAdvance::Scratch {
-  explicit Scratch(const ClothModel& model) : candidates(model), step(model) {}
+  explicit Scratch(const ClothModel& model) : candidates(model), step(model), tangles(model) {
+    candidates.leave_open(tangles.way_out());
+  }
   Candidates candidates;
   ImplicitStep step;
+  Tangles tangles;
   PieceMotion piece;
   std::vector<Vec3> end, pins, pin_motion;  ///< end: of cloth and body
   std::vector<RoomRequest> requests;
@@ -101,7 +105,8 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.all_start = s.piece.start;
   step.pin_target = s.pins;
   step.pin_motion = s.pin_motion;
-  step.push = in.push;
+  step.push = s.tangles.push(in.push);
+  step.pulls = s.tangles.way_out().pulls;
   step.balls = {step.x_t0, s.piece.centre, s.piece.slack};
   step.friction_share = in.friction_share;
   step.pairs = &s.candidates.pairs();
@@ -121,10 +126,15 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   };
   step.pairs_suffice = [&](std::span<const Vec3> x) {
     const auto clock = std::chrono::steady_clock::now();
-    const bool all = s.candidates.keep_flat(cloth, x, s.piece);
+    bool all = s.candidates.keep_flat(cloth, x, s.piece);
+    if (const ContactPairs closed = s.tangles.close_growing(x); !closed.empty()) {
+      s.candidates.hold(closed);
+      all = false;
+    }
     report.seconds_candidates += seconds_since(clock);
     return all;
   };
+  if (!s.tangles.way_out().empty()) step.may_stop = [&](std::span<const Vec3> x) { return s.tangles.no_worse(x); };
   if (model_.let_through != nullptr) model_.let_through->follow(model_, cloth, s.piece);
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
@@ -180,7 +190,14 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
         piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
       }
     });
+    s.tangles.look(h, cloth);
     double free = plan(cloth, h);
+    const auto carried = [&] {
+      std::vector<Vec3> x(nc);
+      for (std::size_t i = 0; i < nc; ++i) x[i] = cloth.x[i] + piece.all[i].cast<double>();
+      return x;
+    };
+    while (!s.tangles.way_out().empty() && !s.tangles.close_growing(carried()).empty()) free = plan(cloth, h);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       if (s.candidates.release_beside(cloth, piece) > 0) {

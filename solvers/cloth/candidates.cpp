@@ -78,19 +78,17 @@ int Candidates::part_of(const Stencil& stencil) const {
 }
 
 /// A pair counts unless it is a cloth vertex against a part that it may pass, cloth that does not collide with itself,
-/// tangled cloth with tangled cloth, or what a seam holds together.
+/// what the way out of a tangle leaves open, or what a seam holds together.
 bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const {
   const int part = part_of(stencil);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
-  bool tangled_a = false, tangled_b = false;
   for (std::size_t k = 0; k < 4; ++k) {
     const int v = stencil.v[k];
     if (v >= model_.vertex_count()) continue;
     if (part >= 0 && model_.may_pass(cloth.released[at(v)], part)) return false;
     if (part < 0 && !model_.self_collides[at(v)]) return false;
-    if (cloth.tangled[at(v)] != 0) (k < split ? tangled_a : tangled_b) = true;
   }
-  if (tangled_a && tangled_b) return false;
+  if (part < 0 && way_out_ != nullptr && way_out_->is_open(kind, stencil)) return false;
   const std::span<const int> v(stencil.v);
   return part >= 0 || !model_.sewn.together(v.first(split), v.subspan(split));
 }

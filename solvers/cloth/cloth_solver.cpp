@@ -24,7 +24,6 @@
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/substep_count.h"
 #include "solvers/cloth/tangles.h"
-#include "solvers/cloth/untangle.h"
 
 namespace ft {
 namespace {
@@ -87,7 +86,6 @@ class ClothSolver final : public Solver {
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
-  bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
 
   std::unique_ptr<ClothModel> model_;
   std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
@@ -173,7 +171,10 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     in.h = h;
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
-    if (push_cloth(t0 + h, m, push)) in.push = push;
+    if (!model_->sewn_until.empty()) {
+      push.assign(m.x.size(), Vec3::Zero());
+      if (ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
+    }
     if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
     const AdvanceReport step = advance_.substep(in, m);
@@ -202,21 +203,6 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
   const auto& attachments = model_->attachments;
   return std::any_of(model_->pins.begin(), model_->pins.end(), jumps) ||
          std::any_of(attachments.begin(), attachments.end(), jumps);
-}
-
-/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of
-/// sewing. False when nothing does.
-bool ClothSolver::push_cloth(double time, ClothMotion& m, std::vector<Vec3>& push) const {
-  const bool tangled = any_tangled(m.tangled), sewn = !model_->sewn_until.empty();
-  if (!tangled && !sewn) return false;
-  push.assign(m.x.size(), Vec3::Zero());
-  if (tangled) {
-    const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
-    mark_tangled(*model_, crossings, m.tangled);
-    untangling(m.x, model_->triangles, crossings, push);
-  }
-  const bool eased = sewn && ease_sewing(*model_, time, m.v, push);
-  return tangled || eased;
 }
 
 FrameReport ClothSolver::advance_frame(State& state) const {
