@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 
 #include "baker/core/give_back.h"
 #include "baker/core/volume.h"
@@ -34,6 +35,12 @@ constexpr int k_rewinds = 3;
 /// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
 constexpr double k_most_lost = 0.1;
 constexpr int k_times_lost = 4;
+/// Cloth that starts through cloth has so long to get out of it before the pre-roll, and no longer than this after the
+/// last crossing that was less [s].
+constexpr double k_longest_settling = 2, k_patience = 1;
+/// The block of a state that has settled: frames, crossings that are left, the fewest, and after how many frames those
+/// were reached first.
+constexpr std::string_view k_settling = "settling";
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -80,9 +87,12 @@ class ClothSolver final : public Solver {
 
   State initial_state() const override;
   FrameReport advance_frame(State& state) const override;
+  Settling settling(const State& state) const override;
+  FrameReport settle_frame(State& state) const override;
 
  private:
   struct Frame;
+  FrameReport advance(const Frame& frame, State& state) const;
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
@@ -207,15 +217,51 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
 
 FrameReport ClothSolver::advance_frame(State& state) const {
   const std::lock_guard lock(one_at_a_time_);
-  const auto clock = std::chrono::steady_clock::now();
   const ClothSetup& setup = model_->setup;
   Frame frame;
   frame.number = state.frame + 1;
   frame.t0 = (state.frame - setup.first_frame) / setup.fps;
   frame.t1 = (frame.number - setup.first_frame) / setup.fps;
+  return advance(frame, state);
+}
+
+Settling ClothSolver::settling(const State& state) const {
+  const ClothSetup& setup = model_->setup;
+  const std::vector<double>* known = state.find(k_settling);
+  Settling out;
+  if (known) out.frames = static_cast<int>((*known)[0]), out.crossings = static_cast<int>((*known)[1]);
+  if (setup.preroll_frames == 0 || state.frame != setup.first_frame - setup.preroll_frames) return out;
+  const std::vector<double>* tangled = state.find("tangled");
+  CHECK(tangled);
+  out.goes_on = std::any_of(tangled->begin(), tangled->end(), [](double is) { return is != 0; }) &&
+                out.frames < k_longest_settling * setup.fps &&
+                (!known || out.frames - (*known)[3] < k_patience * setup.fps);
+  return out;
+}
+
+/// Before the pre-roll every pose is its first.
+FrameReport ClothSolver::settle_frame(State& state) const {
+  const std::lock_guard lock(one_at_a_time_);
+  const ClothSetup& setup = model_->setup;
+  Frame frame;
+  frame.number = state.frame;
+  frame.t1 = (state.frame - setup.first_frame) / setup.fps;
+  frame.t0 = frame.t1 - 1 / setup.fps;
+  const FrameReport report = advance(frame, state);
+  const std::vector<double>* known = state.find(k_settling);
+  const double frames = known ? (*known)[0] + 1 : 1, left = report.crossings_self;
+  const bool fewer = !known || left < (*known)[2];
+  state.set(k_settling, {frames, left, fewer ? left : (*known)[2], fewer ? frames : (*known)[3]});
+  return report;
+}
+
+FrameReport ClothSolver::advance(const Frame& frame, State& state) const {
+  const auto clock = std::chrono::steady_clock::now();
+  const ClothSetup& setup = model_->setup;
   const auto body_clock = std::chrono::steady_clock::now();
   body_.begin(frame.t0, frame.t1);
-  const Teleport* teleport = teleport_into(setup.teleports, frame.number);
+  const bool goes_on = frame.number != state.frame;
+  const Teleport* teleport = goes_on ? teleport_into(setup.teleports, frame.number) : nullptr;
   if (teleport) body_.cut(*teleport);
   FrameReport report, best_report;
   ClothMotion motion = take_motion(state, at(model_->vertex_count())), best;

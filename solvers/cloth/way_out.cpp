@@ -11,6 +11,8 @@ namespace {
 constexpr double k_beyond = 2e-4;
 /// And how fast at most [m/s].
 constexpr double k_speed = 0.5;
+/// Crossings that may come in a place where what is cut off gets smaller: of a row of vertices one has to be the first.
+constexpr int k_detour = 4;
 
 bool has(const Triangle& t, int v) {
   return t[0] == v || t[1] == v || t[2] == v;
@@ -227,6 +229,14 @@ std::vector<Crossing> WayOutFinder::find_growth(std::span<const Crossing> after)
   growth_.assign(place_.size(), 0);
   for (const Crossing& c : created) ++growth_[at(root(place_, c.edge[0]))];
   for (const Crossing& c : removed) --growth_[at(root(place_, c.edge[0]))];
+  if (after.size() <= before_.size() + k_detour) {
+    std::vector<int> heals;
+    for (const Crossing& c : removed)
+      if (wrong_end(c.edge) >= 0) heals.push_back(root(place_, c.edge[0]));
+    std::sort(heals.begin(), heals.end());
+    heals.erase(std::unique(heals.begin(), heals.end()), heals.end());
+    for (const int place : heals) growth_[at(place)] -= k_detour;
+  }
   std::erase_if(created, [&](const Crossing& c) { return growth_[at(root(place_, c.edge[0]))] <= 0; });
   return created;
 }

@@ -34,7 +34,7 @@ TEST(StartReport, A_garment_through_the_body_is_named_with_place_and_depth) {
   expect_words(plan, "start: cloth \"sheet\" starts with ");
   expect_words(plan, " crossings with \"box\", 4 vertices up to 150.0 mm inside (vertex ");
   expect_words(plan, " at (0.850, ");
-  expect_words(plan, "start: the 3 frames of pre-roll are there to take out what starts through something");
+  expect_words(plan, "start: the 3 frames of pre-roll are there to take out what starts through the body");
 }
 
 TEST(StartReport, Without_a_pre_roll_log_and_manifest_say_that_nothing_sorts_it_out) {
