@@ -175,6 +175,19 @@ void WayOutFinder::look_at_edges(int e, int f, int face) {
   if (through > others) pulled_.edge_edge.push_back(of_edges(a, b));
 }
 
+/// What is cut off may lie over another face than its edge goes through, and would rest on it: it may pass the faces
+/// around, too, and its edge their edges.
+void WayOutFinder::open_around(int wrong, int e, int face) {
+  const Edge& edge = model_.rest_edges.edges[at(e)];
+  for (const int v : model_.triangles[at(face)])
+    for (const int f : triangles_of_.row(v)) {
+      const Triangle& t = model_.triangles[at(f)];
+      if (has(t, edge[0]) || has(t, edge[1])) continue;
+      out_->open.vertex_face.push_back(of_vertex(wrong, t));
+      for (std::size_t k = 0; k < 3; ++k) out_->open.edge_edge.push_back(of_edges(edge, {t[k], t[(k + 1) % 3]}));
+    }
+}
+
 void WayOutFinder::make_pulls() {
   const auto make = [&](PairKind kind, const std::vector<Stencil>& pairs) {
     for (const Stencil& s : pairs) {
@@ -288,7 +301,10 @@ void WayOutFinder::find(std::span<const Vec3> x, std::span<const Crossing> cross
     const int e = edge_of(c.edge[0], c.edge[1]), f = face_of(c.triangle);
     if (e < 0 || f < 0) continue;
     const int wrong = wrong_end(c.edge);
-    if (wrong < 0) out.unexplained.push_back(c);
+    if (wrong < 0)
+      out.unexplained.push_back(c);
+    else
+      open_around(wrong, e, f);
     for (const int v : c.edge) look_at_vertex(v, f, v == wrong);
     for (std::size_t k = 0; k < 3; ++k) {
       const int edge = edge_of(c.triangle[k], c.triangle[(k + 1) % 3]);

@@ -84,6 +84,7 @@ class WayOutFinder {
   std::vector<Crossing> find_growth(std::span<const Crossing> after);
   void look_at_vertex(int v, int face, bool is_wrong);
   void look_at_edges(int e, int f, int face);
+  void open_around(int wrong, int e, int face);
   void make_pulls();
   void mark_beside();
 
