@@ -137,7 +137,9 @@ std::vector<std::string> start_lines(const StartReport& report) {
   if (out.empty()) return out;
   if (report.preroll > 0)
     out.push_back(
-        fmt::format("the {} frames of pre-roll are there to take out what starts through something", report.preroll));
+        fmt::format("the {} frames of pre-roll are there to take out what starts through the body; what starts through "
+                    "cloth is taken apart before them, in up to two seconds in which the body stands still",
+                    report.preroll));
   else
     out.push_back(
         fmt::format("there is no pre-roll in which that could be sorted out: give the shot one (preroll = {} under "

@@ -89,6 +89,7 @@ class Walk {
 
  private:
   Status start(std::optional<Checkpoint> from);
+  Status settle();
   Status frames();
   Status complete();
   Status write_report() const;
@@ -100,6 +101,7 @@ class Walk {
   /// before: null at the start.
   Status emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, bool checkpoint);
   Status save_checkpoint();  ///< of the states as they are
+  static Status interrupted(std::string what);
 
   const BakePlan& plan_;
   const Solvers& solvers_;
@@ -118,7 +120,7 @@ Status Walk::start(std::optional<Checkpoint> from) {
     states_ = std::move(from->states);
     manifest_.frames = std::move(from->reports);
     CHECK(states_.size() == solvers_.size());
-    const int kept = std::max(0, states_[0].frame - plan_.first_written() + 1);
+    const int kept = manifest_.frames.empty() ? 0 : std::max(0, states_[0].frame - plan_.first_written() + 1);
     return caches_.open(kept);
   }
   // The old checkpoint goes first: it must never stand beside caches that are not its own.
@@ -174,6 +176,47 @@ Status Walk::save_checkpoint() {
       [this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), parts_of(now).parts()); });
 }
 
+/// Garments that start through cloth are taken apart while the primary stands still at the start of the pre-roll.
+Status Walk::settle() {
+  const auto goes_on = [&](std::size_t g) { return solvers_[g]->settling(states_[g]).goes_on; };
+  const Shot& shot = plan_.shot();
+  const int total = shot.last_frame - states_[0].frame;
+  Pace pace;
+  while (manifest_.frames.empty()) {
+    FrameReport report;
+    bool any = false;
+    const auto clock = Clock::now();
+    if (signal_received() != 0) return interrupted("interrupted before the pre-roll");
+    for (std::size_t g = 0; g < solvers_.size(); ++g) {
+      if (!goes_on(g)) continue;
+      FrameReport one = solvers_[g]->settle_frame(states_[g]);
+      report = any ? merge(report, one) : std::move(one);
+      any = true;
+    }
+    if (!any) break;
+    pace.add(since(clock));
+    progress_.frame({report, 0, total, true, since(clock), pace.mean() * total});
+    if (const Status saved = save_checkpoint(); !saved) return saved;
+  }
+  for (std::size_t g = 0; g < solvers_.size(); ++g) {
+    const Settling settled = solvers_[g]->settling(states_[g]);
+    if (settled.frames == 0) continue;
+    std::string note = fmt::format(
+        "cloth on \"{}\" started through cloth: before the pre-roll it had {} frames to get out of it, the body "
+        "standing still; ",
+        plan_.primaries[plan_.groups[g].primary].name, settled.frames);
+    note += settled.crossings == 0 ? std::string("no crossings are left")
+                                   : fmt::format("{} crossings are left, which the frames name", settled.crossings);
+    progress_.note(note);
+    manifest_.notes.push_back(std::move(note));
+  }
+  return {};
+}
+
+Status Walk::interrupted(std::string what) {
+  return Error{ErrorKind::k_interrupted, std::move(what), {}, "run again with --resume to go on"};
+}
+
 Status Walk::frames() {
   const Shot& shot = plan_.shot();
   const int begin = shot.first_frame - shot.preroll, total = shot.last_frame - begin;
@@ -182,6 +225,7 @@ Status Walk::frames() {
     for (int s = 0; s < solver->system_count(); ++s) vertices += solver->system_mesh(s).vertex_count();
   progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame,
                    shot.preroll, states_[0].frame + 1, vertices, thread_count()});
+  if (const Status settled = settle(); !settled) return settled;
   Pace pace;
   SharedSnapshot before = take();  // in the caches already, where a bake goes on
   if (manifest_.frames.empty()) {
@@ -195,10 +239,7 @@ Status Walk::frames() {
       if (newest_checkpoint != states_[0].frame) {
         if (const Status saved = save_checkpoint(); !saved) return saved;
       }
-      return Error{ErrorKind::k_interrupted,
-                   fmt::format("interrupted after frame {}", states_[0].frame),
-                   {},
-                   "run again with --resume to go on"};
+      return interrupted(fmt::format("interrupted after frame {}", states_[0].frame));
     }
     const auto clock = Clock::now();
     FrameReport report = advance();

@@ -32,6 +32,8 @@ inline std::array<Vec3, 4> gather(std::span<const Vec3f> from, const Stencil& s)
 struct ContactPairs {
   std::vector<Stencil> vertex_face;
   std::vector<Stencil> edge_edge;
+
+  bool empty() const { return vertex_face.empty() && edge_edge.empty(); }
 };
 
 }  // namespace ft

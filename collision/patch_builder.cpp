@@ -107,7 +107,10 @@ PatchBuilder::PatchBuilder(std::span<const Vec3> rest, std::span<const Triangle>
   for (std::size_t k = 0; k < sides.size();) {
     std::size_t end = k;
     while (end < sides.size() && sides[end].edge == sides[k].edge) ++end;
-    if (end - k == 2) {
+    // Triangles that pass their side in the same direction are wound against each other: where they face the same way
+    // they lie on the same side of it, folded together.
+    const auto first_of = [&](const Side& s) { return triangles[at(s.triangle)][at(s.corner)]; };
+    if (end - k == 2 && first_of(sides[k]) != first_of(sides[k + 1])) {
       across_[at(sides[k].triangle)][at(sides[k].corner)] = sides[k + 1].triangle;
       across_[at(sides[k + 1].triangle)][at(sides[k + 1].corner)] = sides[k].triangle;
     }

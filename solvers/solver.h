@@ -95,6 +95,13 @@ struct FrameReport {
   FrameProfile profile;
 };
 
+/// What happens before the pre-roll, where a garment starts wrong: the primary stands still while that is put right.
+struct Settling {
+  bool goes_on = false;  ///< more frames are wanted
+  int frames = 0;        ///< so far
+  int crossings = 0;     ///< among cloths, that were left after the last of them
+};
+
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -117,6 +124,11 @@ class Solver {
 
   /// State at the start of the pre-roll.
   virtual State initial_state() const = 0;
+  /// Of a state, which knows it all through the shot.
+  virtual Settling settling(const State&) const { return {}; }
+  /// One frame with the primary as it is at the state's time; the state's frame and time stay. Only while settling()
+  /// goes on.
+  virtual FrameReport settle_frame(State&) const { return {}; }
   /// From state.frame to state.frame + 1. Always returns with a finite state; what could not be kept is in the report.
   virtual FrameReport advance_frame(State& state) const = 0;
 };

@@ -265,9 +265,9 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
   }
 }
 
-std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
                                       const ClothMotion& motion) const {
-  std::vector<WayOut> out;
+  std::vector<SkinHold> out;
   TriangleTree tree;
   const auto parts = model.collider->part_of_vertex();
   const auto triangles = model.collider->triangles();
@@ -286,7 +286,7 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
       return std::any_of(t.begin(), t.end(), [&](int b) { return planned(g, b, deep); });
     };
     const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
-    std::vector<WayOut> ways(at(count), WayOut{-1, false, Vec3::Zero(), Vec3::Zero(), -1});
+    std::vector<SkinHold> ways(at(count), SkinHold{-1, false, Vec3::Zero(), Vec3::Zero(), -1});
     parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = at(first) + k;
@@ -314,7 +314,7 @@ std::vector<WayOut> Absence::ways_out(const ClothModel& model, std::span<const V
         ways[k] = {static_cast<int>(i), false, place, normal, inside && worn ? t[0] : -1};
       }
     });
-    for (const WayOut& way : ways)
+    for (const SkinHold& way : ways)
       if (way.vertex >= 0) out.push_back(way);
   }
   return out;

@@ -23,7 +23,7 @@ namespace ft {
 struct ClothModel;
 
 /// What becomes of a vertex of the cloth in a substep, see draw_back.h.
-struct WayOut {
+struct SkinHold {
   int vertex = 0;
   bool to_skin = false;        ///< it is drawn back to Absence::place_on_skin()
   Vec3 place = Vec3::Zero();   ///< else: it stays above the plane through this [m]
@@ -64,7 +64,7 @@ class Absence {
   };
   LetGo let_go_now(int garment, std::span<const char> deep, std::span<const char> absent) const;
   /// What becomes of cloth in and around what is let go. body: of the collider [m].
-  std::vector<WayOut> ways_out(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
+  std::vector<SkinHold> skin_holds(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
                                const ClothMotion& motion) const;
   /// Where a vertex of the cloth lay on the collider in the bind pose, as that is now [m].
   Vec3 place_on_skin(int vertex, std::span<const Vec3> body) const;

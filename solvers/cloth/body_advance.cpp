@@ -7,6 +7,7 @@
 #include "baker/core/parallel.h"
 #include "solvers/cloth/candidates.h"
 #include "solvers/cloth/draw_back.h"
+#include "solvers/cloth/tangles.h"
 
 namespace ft {
 namespace {
@@ -45,13 +46,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 struct BodyAdvance::Scratch {
-  explicit Scratch(const ClothModel& model) : candidates(model), step(model) {}
+  explicit Scratch(const ClothModel& model) : candidates(model), step(model), tangles(model) {
+    candidates.leave_open(tangles.way_out());
+  }
   Candidates candidates;
   ImplicitStep step;
+  Tangles tangles;
   PieceMotion piece;
   std::vector<Vec3> end, pins, pin_motion;  ///< end: of cloth and body
   std::vector<RoomRequest> requests;
-  std::vector<WayOut> ways_out;
+  std::vector<SkinHold> skin_holds;
 };
 
 BodyAdvance::BodyAdvance(const ClothModel& model) : scratch_(std::make_unique<Scratch>(model)), model_(model) {}
@@ -103,7 +107,8 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.all_start = s.piece.start;
   step.pin_target = s.pins;
   step.pin_motion = s.pin_motion;
-  step.push = in.push;
+  step.push = s.tangles.push(in.push);
+  step.pulls = s.tangles.way_out().pulls;
   step.balls = {step.x_t0, s.piece.centre, s.piece.slack};
   step.friction_share = in.friction_share;
   step.pairs = &s.candidates.pairs();
@@ -123,11 +128,16 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   };
   step.pairs_suffice = [&](std::span<const Vec3> x) {
     const auto clock = std::chrono::steady_clock::now();
-    const bool all = s.candidates.keep_flat(cloth, x, s.piece);
+    bool all = s.candidates.keep_flat(cloth, x, s.piece);
+    if (const ContactPairs closed = s.tangles.close_growing(x); !closed.empty()) {
+      s.candidates.hold(closed);
+      all = false;
+    }
     report.seconds_candidates += seconds_since(clock);
     return all;
   };
-  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, s.ways_out, h);
+  if (model_.draw_back != nullptr) model_.draw_back->follow(model_, cloth, s.piece, s.skin_holds, h);
+  if (!s.tangles.way_out().empty()) step.may_stop = [&](std::span<const Vec3> x) { return s.tangles.no_worse(x); };
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
@@ -166,10 +176,10 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
   int short_pieces = 0;
-  const auto find_ways_out = [&] {
-    if (model_.collider) s.ways_out = model_.absence.ways_out(model_, in.body_t1, in.deep_t1, cloth);
+  const auto find_skin_holds = [&] {
+    if (model_.collider) s.skin_holds = model_.absence.skin_holds(model_, in.body_t1, in.deep_t1, cloth);
   };
-  find_ways_out();
+  find_skin_holds();
   while (done < 1) {
     const auto clock = std::chrono::steady_clock::now();
     const double h = share * (1 - done) * in.h;
@@ -186,7 +196,14 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
         piece.body_motion[i] = s.end[nc + i] - piece.start[nc + i];
       }
     });
+    s.tangles.look(h, cloth);
     double free = plan(cloth, h);
+    const auto carried = [&] {
+      std::vector<Vec3> x(nc);
+      for (std::size_t i = 0; i < nc; ++i) x[i] = cloth.x[i] + piece.all[i].cast<double>();
+      return x;
+    };
+    while (!s.tangles.way_out().empty() && !s.tangles.close_growing(carried()).empty()) free = plan(cloth, h);
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
@@ -203,7 +220,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       // No room: what blocks is let go until it is clear of the cloth again. Should cloth still block cloth then,
       // these pairs pass this once, and the certificate says so.
       if (free < 1 && s.candidates.release_blocked(cloth, piece) > 0) {
-        find_ways_out();  // at once: what is pressed springs through
+        find_skin_holds();  // at once: what is pressed springs through
         share = 1;
         continue;  // search again without them
       }

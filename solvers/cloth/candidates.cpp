@@ -84,11 +84,10 @@ bool Candidates::is_gone(const ClothMotion& cloth, std::size_t body_vertex) cons
 }
 
 /// A pair counts unless it is cloth against what of the collider is absent for it, cloth that does not collide with
-/// itself, tangled cloth with tangled cloth, or what a seam holds together.
+/// itself, what the way out of a tangle leaves open, or what a seam holds together.
 bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& stencil) const {
   const int part = part_of(stencil);
   const std::size_t split = kind == PairKind::k_vertex_face ? 1 : 2;
-  bool tangled_a = false, tangled_b = false;
   for (std::size_t k = 0; k < 4; ++k) {
     const int v = stencil.v[k];
     if (v >= model_.vertex_count()) continue;
@@ -100,9 +99,8 @@ bool Candidates::counts(const ClothMotion& cloth, PairKind kind, const Stencil& 
       break;
     }
     if (part < 0 && !model_.self_collides[at(v)]) return false;
-    if (cloth.tangled[at(v)] != 0) (k < split ? tangled_a : tangled_b) = true;
   }
-  if (tangled_a && tangled_b) return false;
+  if (part < 0 && way_out_ != nullptr && way_out_->is_open(kind, stencil)) return false;
   const std::span<const int> v(stencil.v);
   return part >= 0 || !model_.sewn.together(v.first(split), v.subspan(split));
 }

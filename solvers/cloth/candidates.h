@@ -13,6 +13,7 @@
 #include "collision/pair_runs.h"
 #include "solvers/cloth/approach_limits.h"
 #include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/way_out.h"
 
 namespace ft {
 
@@ -41,6 +42,9 @@ class Candidates {
 
   explicit Candidates(const ClothModel& model);
 
+  /// Pairs that are left alone until the next call; it has to stay.
+  void leave_open(const WayOut& way_out) { way_out_ = &way_out; }
+
   /// Finds the surfaces near the cloth for carry(), and how fast they come.
   void find_near(const ClothMotion& cloth, double h, const PieceMotion& piece);
   /// Fills piece.carry: near the body its motion, else the cloth's own. After find_near(); forgets zones.
@@ -66,6 +70,8 @@ class Candidates {
   /// the cloth at x (per cloth vertex [m], straight from where it was last kept): returns true where all are still flat
   /// there; else it adds what is needed now behind pairs(), and returns false.
   bool keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, const PieceMotion& piece);
+  /// Adds pairs of cloth with cloth behind pairs(), near or not: what was left open is so no longer.
+  void hold(const ContactPairs& closed);
   /// Takes out the pairs that collect() or join_blocked() last saw touch. Where cloth is joined between several of the
   /// collider's parts, the smaller ones are let go there; else what the pairs have of the collider is (noted in
   /// cloth.absent; returns how many vertices). Pairs of cloth with cloth are only dropped.
@@ -95,6 +101,7 @@ class Candidates {
   PairSieve sieve(const ClothMotion& cloth, const PieceMotion& piece, Touching* touching) const;
 
   const ClothModel& model_;
+  const WayOut* way_out_ = nullptr;
   PairFinder finder_;
   FlatPatches patches_;
   double radius_ = 1e-3, self_radius_ = 0;

@@ -1,6 +1,8 @@
 // What a solve that is under way adds to the pairs: those of vertices that want to leave their room and get another,
 // and pairs inside patches of cloth that are flat no longer. Nothing that is in the list is looked at again or taken
 // out: the new pairs come behind those that are there.
+#include <algorithm>
+
 #include "solvers/cloth/candidates.h"
 
 namespace ft {
@@ -31,6 +33,25 @@ bool Candidates::keep_flat(const ClothMotion& cloth, std::span<const Vec3> x, co
   mark_lost();
   add_missing(cloth, piece);
   return false;
+}
+
+void Candidates::hold(const ContactPairs& closed) {
+  const FeatureNumbers& of = pairs_.features;
+  const auto edge = [&](int a, int b) {
+    return static_cast<int>(std::lower_bound(of.cloth_edges.begin(), of.cloth_edges.end(), Edge{a, b}) -
+                            of.cloth_edges.begin());
+  };
+  std::vector<PairKey> vertex_face, edge_edge;
+  for (const Stencil& s : closed.vertex_face) {
+    const Triangle face{s.v[1], s.v[2], s.v[3]};
+    const auto found = std::find(of.cloth_faces.begin(), of.cloth_faces.end(), face);
+    vertex_face.push_back(pair_key(s.v[0], static_cast<int>(found - of.cloth_faces.begin())));
+  }
+  for (const Stencil& s : closed.edge_edge) edge_edge.push_back(pair_key(edge(s.v[0], s.v[1]), edge(s.v[2], s.v[3])));
+  std::sort(vertex_face.begin(), vertex_face.end());
+  std::sort(edge_edge.begin(), edge_edge.end());
+  runs_vertex_face_.add(vertex_face, pairs_.vertex_face);
+  runs_edge_edge_.add(edge_edge, pairs_.edge_edge);
 }
 
 /// The pairs of changed_ vertices that pairs_ lacks. What was let pass stays out.

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 
 #include "baker/core/give_back.h"
 #include "baker/core/volume.h"
@@ -24,7 +25,6 @@
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/substep_count.h"
 #include "solvers/cloth/tangles.h"
-#include "solvers/cloth/untangle.h"
 
 namespace ft {
 namespace {
@@ -35,6 +35,12 @@ constexpr int k_rewinds = 3;
 /// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
 constexpr double k_most_lost = 0.1;
 constexpr int k_times_lost = 4;
+/// Cloth that starts through cloth has so long to get out of it before the pre-roll, and no longer than this after the
+/// last crossing that was less [s].
+constexpr double k_longest_settling = 2, k_patience = 1;
+/// The block of a state that has settled: frames, crossings that are left, the fewest, and after how many frames those
+/// were reached first.
+constexpr std::string_view k_settling = "settling";
 
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -88,13 +94,15 @@ class ClothSolver final : public Solver {
 
   State initial_state() const override;
   FrameReport advance_frame(State& state) const override;
+  Settling settling(const State& state) const override;
+  FrameReport settle_frame(State& state) const override;
 
  private:
   struct Frame;
+  FrameReport advance(const Frame& frame, State& state) const;
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
-  bool push_cloth(double time, ClothMotion& motion, std::vector<Vec3>& push) const;
 
   std::unique_ptr<ClothModel> model_;
   std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
@@ -189,7 +197,10 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
     if (!m.absent.empty()) model_->absence.take_out(deep, next.absent, m.absent);
-    if (push_cloth(t0 + h, m, push)) in.push = push;
+    if (!model_->sewn_until.empty()) {
+      push.assign(m.x.size(), Vec3::Zero());
+      if (ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
+    }
     if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
     const AdvanceReport step = advance_.substep(in, m);
@@ -221,32 +232,53 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
          std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
-/// What accelerates the cloth besides its forces: the way out of tangles, which are marked anew, and the ease of
-/// sewing. False when nothing does.
-bool ClothSolver::push_cloth(double time, ClothMotion& m, std::vector<Vec3>& push) const {
-  const bool tangled = any_tangled(m.tangled), sewn = !model_->sewn_until.empty();
-  if (!tangled && !sewn) return false;
-  push.assign(m.x.size(), Vec3::Zero());
-  if (tangled) {
-    const std::vector<Crossing> crossings = own_crossings(*model_, crossings_within(m.x, model_->triangles));
-    mark_tangled(*model_, crossings, m.tangled);
-    untangling(m.x, model_->triangles, crossings, push);
-  }
-  const bool eased = sewn && ease_sewing(*model_, time, m.v, push);
-  return tangled || eased;
-}
-
 FrameReport ClothSolver::advance_frame(State& state) const {
   const std::lock_guard lock(one_at_a_time_);
-  const auto clock = std::chrono::steady_clock::now();
   const ClothSetup& setup = model_->setup;
   Frame frame;
   frame.number = state.frame + 1;
   frame.t0 = (state.frame - setup.first_frame) / setup.fps;
   frame.t1 = (frame.number - setup.first_frame) / setup.fps;
+  return advance(frame, state);
+}
+
+Settling ClothSolver::settling(const State& state) const {
+  const ClothSetup& setup = model_->setup;
+  const std::vector<double>* known = state.find(k_settling);
+  Settling out;
+  if (known) out.frames = static_cast<int>((*known)[0]), out.crossings = static_cast<int>((*known)[1]);
+  if (setup.preroll_frames == 0 || state.frame != setup.first_frame - setup.preroll_frames) return out;
+  const std::vector<double>* tangled = state.find("tangled");
+  CHECK(tangled);
+  out.goes_on = std::any_of(tangled->begin(), tangled->end(), [](double is) { return is != 0; }) &&
+                out.frames < k_longest_settling * setup.fps &&
+                (!known || out.frames - (*known)[3] < k_patience * setup.fps);
+  return out;
+}
+
+/// Before the pre-roll every pose is its first.
+FrameReport ClothSolver::settle_frame(State& state) const {
+  const std::lock_guard lock(one_at_a_time_);
+  const ClothSetup& setup = model_->setup;
+  Frame frame;
+  frame.number = state.frame;
+  frame.t1 = (state.frame - setup.first_frame) / setup.fps;
+  frame.t0 = frame.t1 - 1 / setup.fps;
+  const FrameReport report = advance(frame, state);
+  const std::vector<double>* known = state.find(k_settling);
+  const double frames = known ? (*known)[0] + 1 : 1, left = report.crossings_self;
+  const bool fewer = !known || left < (*known)[2];
+  state.set(k_settling, {frames, left, fewer ? left : (*known)[2], fewer ? frames : (*known)[3]});
+  return report;
+}
+
+FrameReport ClothSolver::advance(const Frame& frame, State& state) const {
+  const auto clock = std::chrono::steady_clock::now();
+  const ClothSetup& setup = model_->setup;
   const auto body_clock = std::chrono::steady_clock::now();
   body_.begin(frame.t0, frame.t1);
-  const Teleport* teleport = teleport_into(setup.teleports, frame.number);
+  const bool goes_on = frame.number != state.frame;
+  const Teleport* teleport = goes_on ? teleport_into(setup.teleports, frame.number) : nullptr;
   if (teleport) body_.cut(*teleport);
   FrameReport report, best_report;
   ClothMotion motion = take_motion(state, at(model_->vertex_count())), best;

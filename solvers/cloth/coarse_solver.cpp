@@ -42,8 +42,12 @@ class CoarseSolver final : public Solver {
     return inner_->collider_absent(state, system);
   }
   State initial_state() const override { return inner_->initial_state(); }
-  FrameReport advance_frame(State& state) const override {
-    FrameReport report = inner_->advance_frame(state);
+  FrameReport advance_frame(State& state) const override { return to_given(inner_->advance_frame(state)); }
+  Settling settling(const State& state) const override { return inner_->settling(state); }
+  FrameReport settle_frame(State& state) const override { return to_given(inner_->settle_frame(state)); }
+
+ private:
+  FrameReport to_given(FrameReport report) const {
     for (Incident& incident : report.incidents) {
       const auto garment =
           std::find_if(garments_.begin(), garments_.end(), [&](const Garment& g) { return g.name == incident.system; });
@@ -52,7 +56,6 @@ class CoarseSolver final : public Solver {
     return report;
   }
 
- private:
   std::unique_ptr<Solver> inner_;
   std::vector<Garment> garments_;
 };

@@ -18,20 +18,20 @@ constexpr double k_slowed = 2e-3;
 }  // namespace
 
 void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece,
-                      std::span<const WayOut> ways, double h) {
+                      std::span<const SkinHold> holds, double h) {
   held_.clear();
   above_.clear();
   slowed_.clear();
   const std::size_t n = cloth.x.size();
   std::vector<Vec3> end;
-  for (const WayOut& way : ways) {
-    const int v = way.vertex;
+  for (const SkinHold& hold : holds) {
+    const int v = hold.vertex;
     const double area = model.contact.area[at(v)];
-    if (way.along >= 0)
-      slowed_.push_back({v, cloth.x[at(v)] + piece.body_motion[at(way.along)], model.mass[at(v)] / (k_slowed * h)});
-    if (!way.to_skin) {
+    if (hold.along >= 0)
+      slowed_.push_back({v, cloth.x[at(v)] + piece.body_motion[at(hold.along)], model.mass[at(v)] / (k_slowed * h)});
+    if (!hold.to_skin) {
       above_.push_back(
-          {v, way.normal, way.normal.dot(way.place) + model.contact.radius[at(v)], k_above_stiffness * area});
+          {v, hold.normal, hold.normal.dot(hold.place) + model.contact.radius[at(v)], k_above_stiffness * area});
       continue;
     }
     if (end.empty()) {

@@ -150,6 +150,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     for (const auto& energy : model_.energies) e += energy->value(x);
     for (std::size_t p = 0; p < model_.pins.size(); ++p)
       if (s.pins[p].holds()) e += s.pins[p].energy(x[at(model_.pins[p].vertex)]);
+    for (const Pull& pull : in.pulls) e += pull.energy(x);
     return e;
   };
 
@@ -180,6 +181,8 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       term.stiffness = Mat3f::Identity() * static_cast<float>(s.pins[p].stiffness(all[at(model_.pins[p].vertex)]));
       terms.push_back(term);
     }
+    for (const Pull& pull : in.pulls)
+      if (pull.missing(all) > 0) terms.push_back(pull.term());
     contact.add_terms(all, terms);
     s.newton.system().add_pair_terms(terms);
   };
@@ -207,6 +210,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     });
     for (const auto& energy : model_.energies) energy->add_derivatives(x, s.gradient, hessian);
     add_pin_gradient(all, false);
+    for (const Pull& pull : in.pulls) pull.add_gradient(x, s.gradient);
     contact.add_gradient(all, s.gradient);
     add_pins_and_contact();
     for (Vec3& g : s.gradient) g = -g;
@@ -267,7 +271,15 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       after = of_trial + contact.value(s.trial);
       finite = std::isfinite(after);
       accepted = finite && after <= before + k_energy_noise + k_tolerated_rise * std::abs(before);
+      if (accepted && factor < 1 && in.may_stop && !in.may_stop(cloth(s.trial))) accepted = false;
       if (!accepted) whole = false;
+    }
+    if (!accepted && finite && in.may_stop && !in.may_stop(cloth(s.trial))) {
+      std::copy_n(all.begin(), n, s.trial.begin());
+      contact.update(s.trial, direction, 2 * factor);
+      of_trial = of_cloth;
+      after = before;
+      result.last_move = 0;
     }
     const bool stuck = before - after < k_stuck * wanted;
     // A halved step is small because it was halved, and settles nothing.

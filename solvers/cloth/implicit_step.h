@@ -12,6 +12,7 @@
 #include "baker/core/wrench.h"
 #include "collision/common_motion.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/way_out.h"
 #include "solvers/integrator.h"
 #include "solvers/linear/linear_system.h"
 
@@ -26,6 +27,7 @@ struct StepInput {
   std::span<const Vec3> pin_motion;  ///< per pin: how far its target moves in the step [m]
   MotionBounds balls;                ///< what each cloth vertex has to stay in; it starts inside
   std::span<const Vec3> push;        ///< acceleration of each cloth vertex besides gravity [m/s2]; empty: none
+  std::span<const Pull> pulls;       ///< ways out of tangles
   double friction_share = 1;         ///< of all friction [1]
   const PairList* pairs = nullptr;   ///< complete within the slack, but for what pairs_suffice adds
   int newton_iterations = 3;         ///< at least, unless nothing moves; more where the cloth is still strained
@@ -40,6 +42,8 @@ struct StepInput {
   /// Called with where an iteration is about to put the cloth, straight from where it is [m]: true where `pairs` holds
   /// all that can meet on the way. It may add behind them and return false: the way is looked at again. May be empty.
   std::function<bool(std::span<const Vec3> x)> pairs_suffice;
+  /// Whether a part of such a way may end at x [m], which pairs_suffice has not seen. May be empty: all may.
+  std::function<bool(std::span<const Vec3> x)> may_stop;
 };
 
 struct StepResult {

@@ -47,9 +47,17 @@ class RidingSolver final : public Solver {
     state.set(k_block, std::vector<double>(riders_.group_count(), 0.0));
     return state;
   }
-  FrameReport advance_frame(State& state) const override;
+  FrameReport advance_frame(State& state) const override {
+    return carry_along(state, [&] { return inner_->advance_frame(state); });
+  }
+  Settling settling(const State& state) const override { return inner_->settling(state); }
+  FrameReport settle_frame(State& state) const override {
+    return carry_along(state, [&] { return inner_->settle_frame(state); });
+  }
 
  private:
+  template <class Advance>
+  FrameReport carry_along(State& state, Advance&& advance) const;
   void certify(State& state, FrameReport& report) const;
   void tell(std::span<const Crossing> crossings, std::span<const Vec3> x, const char* text, FrameReport& report) const;
 
@@ -60,9 +68,11 @@ class RidingSolver final : public Solver {
   bool certified_;
 };
 
-FrameReport RidingSolver::advance_frame(State& state) const {
+/// What rides, after what moves has gone on by a frame.
+template <class Advance>
+FrameReport RidingSolver::carry_along(State& state, Advance&& advance) const {
   const std::lock_guard lock(one_at_a_time_);
-  FrameReport report = inner_->advance_frame(state);
+  FrameReport report = advance();
   for (Incident& incident : report.incidents) riders_.to_given(incident);
   state.set(k_block, std::vector<double>(riders_.group_count(), 0.0));
   if (certified_) certify(state, report);

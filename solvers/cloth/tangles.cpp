@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "solvers/cloth/untangle.h"
+
 namespace ft {
 namespace {
 
-/// Edges around a crossing within which pairs are left out: a contour moves about this far while one substep lasts.
+/// Edges around a crossing that a contour moves by, about, while one substep lasts.
 constexpr int k_rings = 2;
 
 }  // namespace
@@ -28,6 +30,43 @@ void mark_tangled(const ClothModel& model, std::span<const Crossing> crossings, 
     for (const Edge& e : model.rest_edges.edges)
       if (before[at(e[0])] != 0 || before[at(e[1])] != 0) tangled[at(e[0])] = tangled[at(e[1])] = 1;
   }
+}
+
+std::vector<Crossing> Tangles::crossings_of(std::span<const Vec3> x) {
+  if (!cloth_) cloth_.emplace(model_.triangles);
+  cloth_->move(x);
+  std::vector<Crossing> out = own_crossings(model_, crossings_within(*cloth_));
+  cloth_->forget_boxes();
+  return out;
+}
+
+bool Tangles::no_worse(std::span<const Vec3> x) {
+  return !finder_.grows(crossings_of(x));
+}
+
+ContactPairs Tangles::close_growing(std::span<const Vec3> x) {
+  if (way_out_.empty()) return {};
+  return finder_.close_growing(crossings_of(x), way_out_);
+}
+
+void Tangles::look(double h, ClothMotion& cloth) {
+  if (!any_tangled(cloth.tangled)) {
+    way_out_ = {};
+    return;
+  }
+  const std::vector<Crossing> crossings = crossings_of(cloth.x);
+  mark_tangled(model_, crossings, cloth.tangled);
+  finder_.find(cloth.x, crossings, h, way_out_);
+  push_.clear();
+  if (way_out_.unexplained.empty()) return;
+  push_.resize(cloth.x.size());
+  untangling(cloth.x, model_.triangles, way_out_.unexplained, push_);
+}
+
+std::span<const Vec3> Tangles::push(std::span<const Vec3> given) {
+  if (way_out_.unexplained.empty()) return given;
+  for (std::size_t i = 0; i < given.size(); ++i) push_[i] += given[i];
+  return push_;
 }
 
 bool any_tangled(std::span<const char> tangled) {

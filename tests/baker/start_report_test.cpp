@@ -35,7 +35,7 @@ TEST(StartReport, A_garment_through_the_body_is_named_with_place_and_depth) {
   expect_words(plan, "start: cloth \"sheet\" starts with ");
   expect_words(plan, " crossings with \"box\", 4 vertices up to 150.0 mm inside (vertex ");
   expect_words(plan, " at (0.850, ");
-  expect_words(plan, "start: the 3 frames of pre-roll are there to take out what starts through something");
+  expect_words(plan, "start: the 3 frames of pre-roll are there to take out what starts through the body");
 }
 
 TEST(StartReport, Vertices_have_the_numbers_of_the_file_where_some_are_joined) {

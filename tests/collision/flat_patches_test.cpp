@@ -192,6 +192,29 @@ TEST(FlatPatches, A_fold_is_in_none) {
   }
 }
 
+/// Sheets that are joined along an edge and wound against each other face the same way where they lie on each other.
+TEST(FlatPatches, A_fold_at_rest_whose_sides_are_wound_against_each_other_is_in_none) {
+  for (const double turn : {0.1, 1.7, 3.3, 4.9}) {  // which way the fold runs on the plane must not matter
+    Dice dice(3);
+    Sheet s = make_sheet(12, 0, dice);
+    std::vector<char> above(s.triangles.size(), 0);
+    for (std::size_t t = 0; t < s.triangles.size(); ++t)
+      if (middle_of(s, static_cast<int>(t)).x() > 5) above[t] = 1, std::swap(s.triangles[t][1], s.triangles[t][2]);
+    for (Vec3& p : s.rest) {
+      if (p.x() > 5) p.x() = 10 - p.x(), p.y() += 0.01 * (5 - p.x());
+      p = Vec3(std::cos(turn) * p.x() - std::sin(turn) * p.z(), p.y(), std::sin(turn) * p.x() + std::cos(turn) * p.z());
+    }
+    FlatPatches patches(s.rest, s.triangles, 0.5);
+    patches.begin(s.rest);
+    ASSERT_GT(flat_count(patches), 0);
+    for (int p = 0; p < patches.members().row_count(); ++p) {
+      int of_above = 0, all = 0;
+      for (const int t : patches.members(p)) of_above += above[at(t)], ++all;
+      EXPECT_TRUE(of_above == 0 || of_above == all) << p << " turned by " << turn;
+    }
+  }
+}
+
 /// A cut that is as narrow as nothing: its lips can slide over each other while every triangle stays flat.
 TEST(FlatPatches, None_has_both_lips_of_a_slit) {
   Dice dice(5);
