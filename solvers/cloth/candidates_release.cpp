@@ -42,23 +42,37 @@ int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece) {
   const std::span<const Vec3> body = std::span(piece.start).subspan(at(n));
   const auto parts = model_.collider ? model_.collider->part_of_vertex() : std::span<const int>{};
   std::vector<std::vector<int>> goes(model_.setup.garments.size());  // per garment
-  for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge})
-    for (const Stencil& stencil : *blocked) {
-      if (part_of(stencil) < 0) continue;
+  const auto holds = [&](int v, int part) {
+    return through[at(v)] >= 0 && model_.part_rank[at(part)] < model_.part_rank[at(through[at(v)])];
+  };
+  const auto take_blocking = [&](bool holding, std::span<const Stencil> blocked) {
+    for (const Stencil& stencil : blocked) {
+      const int part = part_of(stencil);
+      if (part < 0) continue;
       for (const int v : stencil.v) {
-        if (v >= n || through[at(v)] >= 0) continue;
+        if (v >= n || holds(v, part) != holding) continue;
         for (const int b : stencil.v)
           if (b >= n) goes[at(model_.garment_of(v))].push_back(b - n);
       }
     }
+  };
+  const auto let_go = [&] {
+    int freed = 0;
+    for (int g = 0; g < static_cast<int>(goes.size()); ++g)
+      if (!goes[at(g)].empty()) freed += model_.absence.let_go(model_, g, goes[at(g)], body, cloth.absent);
+    return freed;
+  };
+  for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge}) take_blocking(false, *blocked);
   for (const MotionZones::BodyMotion& m : zones_.body_met()) {
-    const int part = through[at(m.vertex)], b = m.body_vertex - n;
-    if (part >= 0 && model_.part_rank[at(parts[at(b)])] >= model_.part_rank[at(part)])
+    const int b = m.body_vertex - n;
+    if (through[at(m.vertex)] >= 0 && !holds(m.vertex, parts[at(b)]))
       goes[at(model_.garment_of(m.vertex))].push_back(b);
   }
-  int freed = 0;
-  for (int g = 0; g < static_cast<int>(goes.size()); ++g)
-    if (!goes[at(g)].empty()) freed += model_.absence.let_go(model_, g, goes[at(g)], body, cloth.absent);
+  int freed = let_go();
+  if (freed == 0) {  // the part that holds the cloth is all that blocks it
+    for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge}) take_blocking(true, *blocked);
+    freed = let_go();
+  }
   drop_blocked();
   return freed;
 }
