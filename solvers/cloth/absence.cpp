@@ -265,8 +265,8 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
   }
 }
 
-std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
-                                      const ClothMotion& motion) const {
+std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<const Vec3> body,
+                                          std::span<const char> deep, const ClothMotion& motion) const {
   std::vector<SkinHold> out;
   TriangleTree tree;
   const auto parts = model.collider->part_of_vertex();

@@ -65,7 +65,7 @@ class Absence {
   LetGo let_go_now(int garment, std::span<const char> deep, std::span<const char> absent) const;
   /// What becomes of cloth in and around what is let go. body: of the collider [m].
   std::vector<SkinHold> skin_holds(const ClothModel& model, std::span<const Vec3> body, std::span<const char> deep,
-                               const ClothMotion& motion) const;
+                                   const ClothMotion& motion) const;
   /// Where a vertex of the cloth lay on the collider in the bind pose, as that is now [m].
   Vec3 place_on_skin(int vertex, std::span<const Vec3> body) const;
 

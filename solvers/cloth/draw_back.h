@@ -20,8 +20,8 @@ struct PieceMotion;
 class DrawBack final : public Energy {
  public:
   /// Takes up what holds a piece of h [s].
-  void follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece, std::span<const SkinHold> holds,
-              double h);
+  void follow(const ClothModel& model, const ClothMotion& cloth, const PieceMotion& piece,
+              std::span<const SkinHold> holds, double h);
 
   std::string_view name() const override { return "draw_back"; }
   std::vector<std::array<int, 4>> stencils() const override { return {}; }
