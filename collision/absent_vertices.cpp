@@ -1,5 +1,7 @@
 #include "collision/absent_vertices.h"
 
+#include <algorithm>
+
 #include "baker/core/parallel.h"
 #include "collision/penetration.h"
 
@@ -10,15 +12,21 @@ namespace {
 constexpr double k_above = 1e-4;
 /// Surfaces look at each other where the cosine of their normals is below the negative of this.
 constexpr double k_facing = 0.3;
+/// A part that has to give way by this share of its half thickness is not pressed flat yet [1].
+constexpr double k_pressed_flat = 0.6;
 
 }  // namespace
 
 AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind,
                                std::span<const int> part_of_vertex, std::span<const int> rank, double deepest,
                                double room)
-    : surface_(&surface), tree_(bind, surface.triangles()), deepest_(deepest), room_(room) {
+    : surface_(&surface), tree_(bind, surface.triangles()), room_(room) {
   rank_of_vertex_.reserve(part_of_vertex.size());
-  for (const int part : part_of_vertex) rank_of_vertex_.push_back(rank[at(part)]);
+  deepest_of_vertex_.reserve(part_of_vertex.size());
+  for (const int part : part_of_vertex) {
+    rank_of_vertex_.push_back(rank[at(part)]);
+    deepest_of_vertex_.push_back(static_cast<float>(std::max(deepest, k_pressed_flat * surface.half_thickness(part))));
+  }
   neighbours_ = vertex_neighbours(bind.size(), unique_edges(surface.triangles()));
 }
 
@@ -34,7 +42,7 @@ void AbsentVertices::find_deep(std::span<const Vec3> before, std::span<const Vec
   const auto triangles = surface_->triangles();
   std::vector<int> queue;
   for (std::size_t v = 0; v < before.size(); ++v) {
-    absent[v] = (after[v] - before[v]).squaredNorm() > deepest_ * deepest_ ? 1 : 0;
+    absent[v] = (after[v] - before[v]).norm() > deepest_of_vertex_[v] ? 1 : 0;
     if (absent[v] != 0) queue.push_back(static_cast<int>(v));
   }
   if (queue.empty()) return;

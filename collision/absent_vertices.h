@@ -21,7 +21,8 @@ class AbsentVertices {
  public:
   AbsentVertices() = default;
   /// The surface has to outlive this. rank: per part, 0 is the largest. deepest: farthest that a vertex may have been
-  /// moved by carving [m]; room: what cloth needs between two surfaces [m].
+  /// moved by carving [m]; of a thick part more, so far that it is not pressed flat; room: what cloth needs between two
+  /// surfaces [m].
   AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind, std::span<const int> part_of_vertex,
                  std::span<const int> rank, double deepest, double room);
   /// before and after carving, per vertex [m]. Fills absent with 0 and 1. Thread-safe.
@@ -35,7 +36,8 @@ class AbsentVertices {
   std::vector<int> rank_of_vertex_;
   Adjacency neighbours_;
   TriangleTree tree_;
-  double deepest_ = 0, room_ = 0;
+  std::vector<float> deepest_of_vertex_;  ///< m
+  double room_ = 0;
 };
 
 }  // namespace ft
