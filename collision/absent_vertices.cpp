@@ -18,11 +18,13 @@ constexpr double k_pressed_flat = 0.6;
 }  // namespace
 
 AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind,
-                               std::span<const int> part_of_vertex, std::span<const int> rank, double deepest,
-                               double room)
+                               std::span<const int> part_of_vertex, std::span<const SurfacePart> parts,
+                               std::span<const int> rank, double deepest, double room)
     : surface_(&surface), tree_(bind, surface.triangles()), room_(room) {
   rank_of_vertex_.reserve(part_of_vertex.size());
   deepest_of_vertex_.reserve(part_of_vertex.size());
+  part_of_vertex_.assign(part_of_vertex.begin(), part_of_vertex.end());
+  for (const SurfacePart& part : parts) parents_.push_back(part.parent);
   for (const int part : part_of_vertex) {
     rank_of_vertex_.push_back(rank[at(part)]);
     deepest_of_vertex_.push_back(static_cast<float>(std::max(deepest, k_pressed_flat * surface.half_thickness(part))));
@@ -79,6 +81,8 @@ void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> abs
       tree.for_each_along(p, along, room_, [&](int index) {
         const Triangle& t = triangles[at(index)];
         if (rank_of_vertex_[at(t[0])] >= rank_of_vertex_[v]) return;
+        const int part = part_of_vertex_[v], other = part_of_vertex_[at(t[0])];
+        if (parents_[at(part)] == other || parents_[at(other)] == part) return;  // creases.h
         for (const int corner : t)
           if (at(corner) == v || absent[at(corner)] != 0) return;
         const Vec3& a = after[at(t[0])];

@@ -5,14 +5,15 @@
 // frame. A vertex is absent where
 //   - it had to move too far, or is inside and connected to such a one without having been moved (carving does not know
 //     a way out of the middle of a trunk);
-//   - it looks at a larger part that is nearer than the cloth between needs: in an armpit or the pit of an elbow, where
-//     skin folds on skin and carving leaves what touches in the bind pose as it is.
+//   - it looks at a larger part that is nearer than the cloth between needs: in an armpit, where skin folds on
+//     skin and carving leaves what touches in the bind pose as it is. Not where the two are jointed (creases.h).
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "baker/core/mesh.h"
+#include "baker/core/trajectory.h"
 #include "collision/part_distance.h"
 
 namespace ft {
@@ -24,7 +25,7 @@ class AbsentVertices {
   /// moved by carving [m]; of a thick part more, so far that it is not pressed flat; room: what cloth needs between two
   /// surfaces [m].
   AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind, std::span<const int> part_of_vertex,
-                 std::span<const int> rank, double deepest, double room);
+                 std::span<const SurfacePart> parts, std::span<const int> rank, double deepest, double room);
   /// before and after carving, per vertex [m]. Fills absent with 0 and 1. Thread-safe.
   void find(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const;
 
@@ -33,6 +34,7 @@ class AbsentVertices {
   void find_folds(std::span<const Vec3> after, std::span<char> absent) const;
 
   const PartSurface* surface_ = nullptr;
+  std::vector<int> part_of_vertex_, parents_;  ///< parents of parts
   std::vector<int> rank_of_vertex_;
   Adjacency neighbours_;
   TriangleTree tree_;

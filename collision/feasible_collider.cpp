@@ -49,8 +49,8 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
       std::make_unique<PartSurface>(bind, m.mesh.triangles, m.part_of_vertex, static_cast<int>(drawn.parts.size()));
   m.carver.plan = make_carve_plan(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
   m.creases = Creases(*m.carver.surface, drawn.parts, m.part_of_vertex, bind, settings.gap);
-  m.absent =
-      AbsentVertices(*m.carver.surface, bind, m.part_of_vertex, rank, settings.deepest, k_room_share * settings.gap);
+  m.absent = AbsentVertices(*m.carver.surface, bind, m.part_of_vertex, drawn.parts, rank, settings.deepest,
+                            k_room_share * settings.gap);
 }
 
 FeasibleCollider::~FeasibleCollider() = default;
