@@ -286,6 +286,10 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
       return std::any_of(t.begin(), t.end(), [&](int b) { return planned(g, b, deep); });
     };
     const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
+    const TriangleTree gone_tree = tree_of(body, triangles, is_gone);
+    std::vector<int> holders;  // what the garment wears and meets
+    for (int b = 0; b < static_cast<int>(body_count_); ++b)
+      if (motion.absent[place(g, b)] == 0 && worn_[at(g)][at(parts[at(b)])] != 0) holders.push_back(b);
     std::vector<SkinHold> ways(at(count), SkinHold{-1, false, Vec3::Zero(), Vec3::Zero(), -1});
     parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
@@ -295,6 +299,19 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
         const bool may_return = skin[0] >= 0 && is_gone(skin) && !is_planned(skin);
         const bool is_near = (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
         if (!may_return && !is_near) continue;
+        if (skin[0] <
+            0) {  // it does not lie on skin: it stays with what still holds it, until what has passed it is gone
+          const Nearest in = nearest(p, body, triangles, gone_tree, k_deepest);
+          if (in.triangle < 0 || !in.behind || !rays_say_inside(p, tree, body, triangles)) continue;
+          double least = k_on_skin * k_on_skin;
+          int holder = -1;
+          for (const int b : holders)
+            if (const double d = (body[at(b)] - p).squaredNorm(); d < least) least = d, holder = b;
+          if (holder >= 0) {
+            ways[k] = {static_cast<int>(i), false, Vec3::Zero(), Vec3::Zero(), holder};
+            continue;
+          }
+        }
         const Nearest n = nearest(p, body, triangles, tree, k_deepest);
         if (n.triangle < 0) continue;
         const Triangle& t = triangles[at(n.triangle)];

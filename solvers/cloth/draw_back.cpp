@@ -30,6 +30,7 @@ void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const P
     if (hold.along >= 0)
       slowed_.push_back({v, cloth.x[at(v)] + piece.body_motion[at(hold.along)], model.mass[at(v)] / (k_slowed * h)});
     if (!hold.to_skin) {
+      if (hold.normal == Vec3::Zero()) continue;
       above_.push_back(
           {v, hold.normal, hold.normal.dot(hold.place) + model.contact.radius[at(v)], k_above_stiffness * area});
       continue;
