@@ -77,7 +77,8 @@ Status shot(const std::vector<std::string>& a) {
   return usage_error("there is no such bake in the list", a[1]);
 }
 
-/// 63 x 63 vertices just above the back, between the hooves; the group "spine" is the middle from front to back.
+/// 63 x 63 vertices just above the back, between the hooves, or above the head; the group "spine" is the middle from
+/// front to back.
 Status blanket(const fs::path& character, double height, const fs::path& out) {
   constexpr int k_side = 63;
   constexpr double k_above = 0.015;  // m
@@ -92,7 +93,7 @@ Status blanket(const fs::path& character, double height, const fs::path& out) {
     if (p.y() < all.lo.y() + 0.05 * all.size().y()) hooves.include(p);
   const int along = hooves.size().x() > hooves.size().z() ? 0 : 2, across = 2 - along;
   const Vec3 centre = 0.5 * (hooves.lo + hooves.hi);
-  const double length = 0.55 * hooves.size()[along], width = 0.7 * all.size().y();
+  const double length = std::max(0.55 * hooves.size()[along], 0.4 * all.size().y()), width = 0.7 * all.size().y();
   double back = all.lo.y();
   for (const Vec3& p : body)
     if (std::abs(p[along] - centre[along]) < 0.5 * length) back = std::max(back, p.y());
