@@ -18,8 +18,8 @@ struct FeasibleSettings {
       6e-3;  ///< room kept between parts [m]; about twice the floor plus layers x thickness plus the cloth's sag
   double max_edge = 30e-3;  ///< longest edge of the refined collider [m]
   /// A vertex that would have to move farther than this to leave the larger parts, and than 0.6 of its own part's half
-  /// thickness, is absent [m], 5e-3..0.1: what is carved so far is pressed flat, jumps as the larger part's nearest side
-  /// changes, and drags cloth along.
+  /// thickness, is absent [m], 5e-3..0.1: what is carved so far is pressed flat, jumps as the larger part's nearest
+  /// side changes, and drags cloth along.
   double deepest = 25e-3;
   bool carve = true;  ///< off: the drawn body, refined
 };
