@@ -299,8 +299,8 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
         const bool may_return = skin[0] >= 0 && is_gone(skin) && !is_planned(skin);
         const bool is_near = (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
         if (!may_return && !is_near) continue;
-        if (skin[0] <
-            0) {  // it does not lie on skin: it stays with what still holds it, until what has passed it is gone
+        // What does not lie on skin stays with what still holds it, until what has passed it is gone.
+        if (skin[0] < 0) {
           const Nearest in = nearest(p, body, triangles, gone_tree, k_deepest);
           if (in.triangle < 0 || !in.behind || !rays_say_inside(p, tree, body, triangles)) continue;
           double least = k_on_skin * k_on_skin;
@@ -327,7 +327,7 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
           continue;
         }
         if (!is_gone(t) || is_planned(t) || inside != n.behind) continue;
-        const bool worn = worn_[at(g)][at(model.collider->part_of_vertex()[at(t[0])])] != 0;
+        const bool worn = worn_[at(g)][at(parts[at(t[0])])] != 0;
         ways[k] = {static_cast<int>(i), false, place, normal, inside && worn ? t[0] : -1};
       }
     });
