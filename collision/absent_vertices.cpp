@@ -67,22 +67,50 @@ void AbsentVertices::find_deep(std::span<const Vec3> before, std::span<const Vec
   }
 }
 
-void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> absent) const {
-  const auto triangles = surface_->triangles();
+std::vector<int> AbsentVertices::near_larger_parts(std::span<const Vec3> x, std::span<const char> absent) const {
   const auto representative = surface_->representative();
+  std::vector<Box> boxes(parents_.size());
+  std::vector<int> rank(parents_.size(), 0);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    boxes[at(part_of_vertex_[v])].include(x[v]);
+    rank[at(part_of_vertex_[v])] = rank_of_vertex_[v];
+  }
+  for (Box& box : boxes) box.inflate(room_);
+  std::vector<std::vector<Box>> larger(parents_.size());  // per part
+  for (std::size_t part = 0; part < boxes.size(); ++part)
+    for (std::size_t other = 0; other < boxes.size(); ++other)
+      if (rank[other] < rank[part] && !jointed(static_cast<int>(part), static_cast<int>(other)) &&
+          boxes[part].overlaps(boxes[other]))
+        larger[part].push_back(boxes[other]);
+  std::vector<int> out;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (absent[v] != 0 || at(representative[v]) != v) continue;
+    const auto holds = [&p = x[v]](const Box& box) {
+      return (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
+    };
+    const std::vector<Box>& of_part = larger[at(part_of_vertex_[v])];
+    if (std::any_of(of_part.begin(), of_part.end(), holds)) out.push_back(static_cast<int>(v));
+  }
+  return out;
+}
+
+void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> absent) const {
+  const std::vector<int> asked = near_larger_parts(after, absent);
+  if (asked.empty()) return;
+  const auto triangles = surface_->triangles();
   TriangleTree tree = tree_;
   tree.refit(after, triangles);
   const std::vector<Vec3> normals = vertex_normals(after, triangles);
   std::vector<char> folded(after.size(), 0);
-  parallel_for(after.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      if (absent[v] != 0 || at(representative[v]) != v || normals[v] == Vec3::Zero()) continue;
+  parallel_for(asked.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t v = at(asked[k]);
+      if (normals[v] == Vec3::Zero()) continue;
       const Vec3 &p = after[v], &along = normals[v];
       tree.for_each_along(p, along, room_, [&](int index) {
         const Triangle& t = triangles[at(index)];
         if (rank_of_vertex_[at(t[0])] >= rank_of_vertex_[v]) return;
-        const int part = part_of_vertex_[v], other = part_of_vertex_[at(t[0])];
-        if (parents_[at(part)] == other || parents_[at(other)] == part) return;  // creases.h
+        if (jointed(part_of_vertex_[v], part_of_vertex_[at(t[0])])) return;
         for (const int corner : t)
           if (at(corner) == v || absent[at(corner)] != 0) return;
         const Vec3& a = after[at(t[0])];

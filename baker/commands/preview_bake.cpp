@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
+#include "baker/absent_runs.h"
 #include "baker/bake_folder.h"
 #include "baker/cache_track.h"
 #include "baker/commands/preview.h"
@@ -140,6 +142,30 @@ Json describe(const Clip& clip) {
   return out;
 }
 
+/// Of each frame the vertices of a primary that some secondary on it does not meet, as first and count of each run; null
+/// where they all are met in all frames. The drawn body's vertices are the feasible collider's first.
+Json absent_rows(const Manifest& manifest, const ManifestSystem& primary, int frames) {
+  Json out(at(frames), Json::array());
+  bool any = false;
+  for (const FrameReport& frame : manifest.frames) {
+    const int index = frame.frame - manifest.first_written;
+    if (index < 0 || index >= frames) continue;
+    std::vector<char> marks(at(primary.vertex_count), 0);
+    for (const AbsentRuns& runs : frame.absent) {
+      const auto is_its = [&](const ManifestSystem& s) { return s.name == runs.system && s.primary == primary.primary; };
+      if (std::none_of(manifest.systems.begin(), manifest.systems.end(), is_its)) continue;
+      const std::vector<char> own = marks_of(runs, primary.vertex_count);
+      std::transform(own.begin(), own.end(), marks.begin(), marks.begin(), std::bit_or<char>());
+    }
+    for (const auto& [first, count] : runs_of(primary.name, marks).runs) {
+      out[at(index)].push_back(first);
+      out[at(index)].push_back(count);
+      any = true;
+    }
+  }
+  return any ? out : Json(nullptr);
+}
+
 /// Milliseconds of each frame from report.json, where there is one.
 std::map<int, double> milliseconds(const BakeFolder& folder) {
   std::map<int, double> out;
@@ -227,7 +253,9 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   for (Clip& clip : clips) {
     if (clip.system.role == "collider" && has_body) continue;  // looks like the body and costs as much
     if (const Status done = quantise(clip, frames); !done) return done.error();
-    bake["systems"].push_back(describe(clip));
+    Json system = describe(clip);
+    if (!is_secondary(clip.system.role)) system["absent"] = absent_rows(*manifest, clip.system, frames);
+    bake["systems"].push_back(std::move(system));
   }
   return bake;
 }

@@ -35,7 +35,7 @@
 
   // ---- scene ----
   const palette = [0x3f74c4, 0xc8694f, 0x4f9a6d, 0xb08a3e, 0x8560b5, 0x3d9aa8];
-  let scene, camera, renderer, controls, sun, centre = null;
+  let scene, camera, renderer, controls, sun, centre = null, marker = null;
   const box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
   for (const s of bakes.flatMap((b) => b.systems))
     for (let axis = 0; axis < 3; ++axis) {
@@ -156,11 +156,16 @@
     const x = Math.min(Math.max(t, 0), 1) * (stops.length - 1), k = Math.min(Math.floor(x), stops.length - 2), u = x - k;
     for (let c = 0; c < 3; ++c) out[at + c] = Math.pow(stops[k][c] + u * (stops[k + 1][c] - stops[k][c]), 2.2);
   }
+  const absent_tint = [0.45, 0.18, 0.75];  // of a primary's plain colour
   function paint(s) {
     const mode = $('colour').value, values = ramps[mode] ? s[mode] : null, colours = s.mesh.geometry.attributes.color;
     s.mesh.material.color.set(values ? 0xffffff : s.plain);
-    if (!values) colours.array.fill(1);
-    else
+    if (!values) {
+      colours.array.fill(1);
+      const runs = s.absent ? s.absent[frame] : [];
+      for (let k = 0; k < runs.length; k += 2)
+        for (let i = runs[k]; i < runs[k] + runs[k + 1]; ++i) colours.array.set(absent_tint, 3 * i);
+    } else
       for (let i = 0; i < s.vertices; ++i) {
         const value = values[frame * s.vertices + i];
         ramp(ramps[mode].stops, mode === 'strain' ? 0.5 + value / 80 : value / 255, colours.array, 3 * i);
@@ -178,7 +183,21 @@
   }
 
   // ---- frames ----
+  /// A ball where something happened, until the next frame is shown.
+  function mark(place) {
+    if (!renderer || !place) return;
+    if (!marker) {
+      marker = new THREE.Mesh(new THREE.SphereGeometry(0.008 * size, 16, 12),
+        new THREE.MeshBasicMaterial({ color: 0xff2020, transparent: true, opacity: 0.7, depthTest: false }));
+      marker.renderOrder = 1;
+      scene.add(marker);
+    }
+    marker.position.set(...place);
+    marker.visible = true;
+    draw();
+  }
   function show(index) {
+    if (marker) marker.visible = false;
     index = Math.min(Math.max(Math.round(index), 0), count - 1);
     frame = index;
     if (renderer && shown !== index) {
@@ -271,9 +290,14 @@
       colour.style.background = '#' + (s.plain || 0x888888).toString(16).padStart(6, '0');
       return element('label', tick, colour, s.name + (s.role === 'cloth' ? '' : ' (' + s.role + ')'), element('span', s.vertices + ' vertices'));
     }));
+    if (bake.systems.some((s) => s.absent)) {
+      const colour = element('i');
+      colour.style.background = '#8b539e';
+      $('systems').append(element('label', colour, 'absent for the cloth: no room'));
+    }
     $('incidents').replaceChildren(...bake.incidents.slice(0, 200).map((i) => {
       const link = element('a', 'frame ' + i.frame);
-      link.addEventListener('click', () => { play(false); show(i.frame - first); });
+      link.addEventListener('click', () => { play(false); show(i.frame - first); mark(i.place); });
       return element('li', link, ' ' + (i.system ? i.system + ': ' : '') + i.text);
     }));
     $('incidents-title').hidden = bake.incidents.length === 0;
@@ -328,7 +352,7 @@
     });
   }
 
-  // #frame=12&colour=strain&bake=two-way&paths=0&test=skirt:0,40 : where to start; test writes those vertices into the page.
+  // #frame=12&colour=strain&bake=two-way&paths=0&incident=0&test=skirt:0,40 : where to start; test writes those vertices into the page.
   const wish = new URLSearchParams(location.hash.slice(1));
   try {
     build();
@@ -344,6 +368,7 @@
   legend();
   show(wish.has('frame') ? +wish.get('frame') - first : 0);
   fit();
+  if (wish.has('incident')) $('incidents').querySelectorAll('a')[+wish.get('incident')]?.click();
   window.followthrough = { firstFrame: first, frameCount: count, setFrame: (n) => show(n - first), frame: () => first + frame,
     vertex, play, playing: () => playing, drawn: () => renderer !== null, plots: plots.map((p) => p.title) };
 

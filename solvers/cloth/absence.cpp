@@ -73,14 +73,14 @@ Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->verte
   neighbours_ = vertex_neighbours(body_count_, unique_edges(triangles));
   std::vector<Vec3> bind(body_count_);
   model.collider->refined_bind(bind);
-  const TriangleTree tree(bind, triangles);
+  tree_ = TriangleTree(bind, triangles);
   std::vector<int> nearest_part(model.contact.rest.size(), -1);
   anchors_.resize(nearest_part.size());
   parallel_for(nearest_part.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       TriangleTree::Hit hit;
       const Vec3& p = model.contact.rest[i];
-      tree.closest(p, bind, triangles, hit);
+      tree_.closest(p, bind, triangles, hit);
       if (hit.triangle < 0) continue;
       const Triangle& t = triangles[at(hit.triangle)];
       nearest_part[i] = parts[at(t[0])];
@@ -277,7 +277,10 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
     for (int b = 0; b < static_cast<int>(body_count_); ++b)
       if (motion.absent[place(g, b)] != 0 && !planned(g, b, deep)) gone[at(b)] = 1, box.include(body[at(b)]);
     if (!(box.lo.x() <= box.hi.x())) continue;
-    if (tree.empty()) tree = TriangleTree(body, triangles);
+    if (tree.empty()) {
+      tree = tree_;
+      tree.refit(body, triangles);
+    }
     box.inflate(k_margin);
     const auto is_gone = [&](const Triangle& t) {
       return gone[at(t[0])] != 0 || gone[at(t[1])] != 0 || gone[at(t[2])] != 0;

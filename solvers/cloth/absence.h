@@ -96,6 +96,7 @@ class Absence {
   std::vector<std::vector<char>> worn_;  ///< per garment and part
   std::vector<int> parents_;             ///< per part
   Adjacency neighbours_;                 ///< of the collider's vertices
+  TriangleTree tree_;                    ///< of the collider in its bind pose
   std::vector<Anchor> anchors_;          ///< per vertex of the cloth
 };
 

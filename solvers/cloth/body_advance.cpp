@@ -16,10 +16,13 @@ constexpr std::size_t k_block = 2048;  ///< of a loop over vertices
 /// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
-/// Before cloth is let through for lack of room, some pieces of a substep may be shorter than SubstepInput::shortest,
+/// Before parts of the body are let go for lack of room, some pieces of a substep may be shorter than SubstepInput::shortest,
 /// down to this share of it: one is mostly enough for the cloth to find its way.
 constexpr double k_last_shortest = 1.0 / 16;
 constexpr int k_most_short = 12;
+/// Shorter pieces are no way either where so many in a row take less than this share of the substep.
+constexpr std::size_t k_patience = 6;
+constexpr double k_least_gain = 1.0 / 64;
 /// What follows a shortened piece is at most so many times as long: what blocked it is mostly still there, looking for
 /// pairs over the whole rest is dear, and the integrator keeps its history (blended_weights()).
 constexpr double k_regrowth = 1.5;
@@ -176,6 +179,10 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
   int short_pieces = 0;
+  std::vector<double> starts;  // of the pieces, as done
+  const auto gains = [&] {
+    return starts.size() < k_patience || done - starts[starts.size() - k_patience] >= k_least_gain;
+  };
   const auto find_skin_holds = [&] {
     if (model_.collider) s.skin_holds = model_.absence.skin_holds(model_, in.body_t1, in.deep_t1, cloth);
   };
@@ -208,8 +215,9 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
       const double length = shorter * (1 - done) * in.h;
-      if (length >= in.shortest || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short)) {
-        if (length < in.shortest) ++short_pieces;
+      const bool is_short = length < in.shortest;
+      if (gains() && (!is_short || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short))) {
+        if (is_short) ++short_pieces;
         share = shorter;
         continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
       }
@@ -227,6 +235,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
     }
     for (std::size_t i = 0; i < nc; ++i) s.end[i] = cloth.x[i] + piece.all[i].cast<double>();
     solve(in, h, end, share < 1, cloth, report);
+    starts.push_back(done);
     done = end;
     share = share < 1 ? std::min(1.0, k_regrowth * h / ((1 - done) * in.h)) : 1;
   }

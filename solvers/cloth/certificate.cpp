@@ -105,7 +105,8 @@ void describe_absent(const ClothModel& model, const BodyPose& body, const ClothM
       if ((m.x[at(v)] - place).squaredNorm() < (m.x[at(nearest)] - place).squaredNorm()) nearest = v;
     add_incident(model, m, Incident::Kind::k_released, nearest, 0,
                  "no room: the cloth does not meet " + std::to_string(gone.count) + " vertices of the collider, at " +
-                     names[at(model.collider->part_of_vertex()[at(gone.vertex)])].name,
+                     names[at(model.collider->part_of_vertex()[at(gone.vertex)])].name +
+                     " (leave parts out with `ignore` or `ignores`)",
                  report);
   }
 }

@@ -1,4 +1,4 @@
-// What is certified of a frame of cloth, from positions alone: exact crossings, cloth that was let through, strain,
+// What is certified of a frame of cloth, from positions alone: exact crossings, what of the collider is absent, strain,
 // energy, depth in the drawn body. For cloth_solver.cpp, which walks a frame anew when a crossing could have been
 // avoided. Nothing here moves the cloth; certify() only decides what of the collider is absent and which vertices are
 // tangled from here on.

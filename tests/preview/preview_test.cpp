@@ -198,6 +198,27 @@ TEST(Preview, holds_every_frame_and_nothing_from_elsewhere) {
   EXPECT_NE(page->find("\"frame_count\":12"), std::string::npos);
 }
 
+TEST(Preview, shows_what_of_a_primary_its_secondaries_do_not_meet) {
+  const ScratchFolder folder;
+  make_bake(folder.path());
+  const auto without = preview_bake(folder.path());
+  ASSERT_TRUE(without) << without.error().text();
+  EXPECT_FALSE((*without)["systems"][0].contains("absent"));
+  EXPECT_TRUE((*without)["systems"][1]["absent"].is_null());
+  auto manifest = read_manifest(folder.path());
+  ASSERT_TRUE(manifest);
+  const int count = (*without)["systems"][1]["vertices"].get<int>();
+  // Of the collider's vertices, of which there are more than the drawn body has; and of what is on another primary.
+  manifest->frames[3].absent = {{"sheet", {{2, 3}, {count - 1, 10}}}, {"stranger", {{7, 2}}}};
+  std::ofstream(folder.path() / "manifest.json") << to_text(*manifest);
+  const auto bake = preview_bake(folder.path());
+  ASSERT_TRUE(bake) << bake.error().text();
+  const Json& absent = (*bake)["systems"][1]["absent"];
+  ASSERT_EQ(absent.size(), at(k_frames));
+  EXPECT_TRUE(absent[2].empty());
+  EXPECT_EQ(absent[3], Json({2, 3, count - 1, 1}));
+}
+
 TEST(Preview, refuses_a_folder_that_is_no_bake_and_caches_that_do_not_belong_to_it) {
   const ScratchFolder folder;
   EXPECT_EQ(page_of({folder.path()}).error().kind, ErrorKind::k_input);
