@@ -261,7 +261,8 @@ std::string health(const FrameReport& r) {
   if (r.crossings_self > 0) add(fmt::format("{} among cloths", r.crossings_self));
   if (r.inside_body > 0) add(fmt::format("{} vertices inside the body", r.inside_body));
   if (r.open_stitches > 0) add(fmt::format("seams open by up to {:.1f} mm", 1e3 * r.widest_seam));
-  if (r.released_vertices > 0) add(fmt::format("{} vertices of the collider or points of cords let go for lack of room", r.released_vertices));
+  if (r.released_vertices > 0)
+    add(fmt::format("{} vertices of the collider or points of cords let go for lack of room", r.released_vertices));
   return out.empty() ? "ok" : out;
 }
 

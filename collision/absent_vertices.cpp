@@ -20,7 +20,7 @@ constexpr double k_pressed_flat = 0.6;
 AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind,
                                std::span<const int> part_of_vertex, std::span<const SurfacePart> parts,
                                std::span<const int> rank, double deepest, double room)
-    : surface_(&surface), tree_(bind, surface.triangles()), room_(room) {
+    : surface_(&surface), rank_(rank.begin(), rank.end()), tree_(bind, surface.triangles()), room_(room) {
   rank_of_vertex_.reserve(part_of_vertex.size());
   deepest_of_vertex_.reserve(part_of_vertex.size());
   part_of_vertex_.assign(part_of_vertex.begin(), part_of_vertex.end());
@@ -67,50 +67,63 @@ void AbsentVertices::find_deep(std::span<const Vec3> before, std::span<const Vec
   }
 }
 
-std::vector<int> AbsentVertices::near_larger_parts(std::span<const Vec3> x, std::span<const char> absent) const {
-  const auto representative = surface_->representative();
-  std::vector<Box> boxes(parents_.size());
-  std::vector<int> rank(parents_.size(), 0);
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    boxes[at(part_of_vertex_[v])].include(x[v]);
-    rank[at(part_of_vertex_[v])] = rank_of_vertex_[v];
+/// Trees of the larger parts that a part is not jointed to and that may be near it, refitted to positions [m].
+class AbsentVertices::LargerParts {
+ public:
+  LargerParts(const AbsentVertices& of, std::span<const Vec3> x) : near_(of.parents_.size()), trees_(near_.size()) {
+    std::vector<Box> boxes(near_.size());
+    for (std::size_t v = 0; v < x.size(); ++v) boxes[at(of.part_of_vertex_[v])].include(x[v]);
+    for (std::size_t part = 0; part < near_.size(); ++part) {
+      Box around = boxes[part];
+      around.inflate(of.room_);
+      for (std::size_t other = 0; other < near_.size(); ++other) {
+        if (of.rank_[other] >= of.rank_[part] || of.jointed(static_cast<int>(part), static_cast<int>(other)) ||
+            !around.overlaps(boxes[other]))
+          continue;
+        near_[part].push_back({TreeBox::around(boxes[other].lo, boxes[other].hi), &trees_[other]});
+        if (trees_[other].empty()) trees_[other] = of.surface_->tree(static_cast<int>(other));
+      }
+    }
+    parallel_for(trees_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t part = begin; part < end; ++part)
+        if (!trees_[part].empty()) trees_[part].refit(x, of.surface_->triangles());
+    });
   }
-  for (Box& box : boxes) box.inflate(room_);
-  std::vector<std::vector<Box>> larger(parents_.size());  // per part
-  for (std::size_t part = 0; part < boxes.size(); ++part)
-    for (std::size_t other = 0; other < boxes.size(); ++other)
-      if (rank[other] < rank[part] && !jointed(static_cast<int>(part), static_cast<int>(other)) &&
-          boxes[part].overlaps(boxes[other]))
-        larger[part].push_back(boxes[other]);
-  std::vector<int> out;
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    if (absent[v] != 0 || at(representative[v]) != v) continue;
-    const auto holds = [&p = x[v]](const Box& box) {
-      return (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
-    };
-    const std::vector<Box>& of_part = larger[at(part_of_vertex_[v])];
-    if (std::any_of(of_part.begin(), of_part.end(), holds)) out.push_back(static_cast<int>(v));
+  /// Calls visit(triangle) for what such parts have near the segment between a and b, which is short.
+  template <class Visit>
+  void for_each_near(int part, const Vec3& a, const Vec3& b, Visit&& visit) const {
+    const std::vector<Larger>& larger = near_[at(part)];
+    if (larger.empty()) return;
+    const TreeBox box = TreeBox::around(a.cwiseMin(b), a.cwiseMax(b));
+    for (const auto& [around, tree] : larger)
+      if (around.overlaps(box)) tree->for_each_near(box, visit);
   }
-  return out;
-}
+  bool none() const {
+    return std::all_of(near_.begin(), near_.end(), [](const auto& larger) { return larger.empty(); });
+  }
+
+ private:
+  struct Larger {
+    TreeBox box;
+    const TriangleTree* tree;
+  };
+  std::vector<std::vector<Larger>> near_;  ///< per part
+  std::vector<TriangleTree> trees_;
+};
 
 void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> absent) const {
-  const std::vector<int> asked = near_larger_parts(after, absent);
-  if (asked.empty()) return;
+  const LargerParts larger(*this, after);
+  if (larger.none()) return;
   const auto triangles = surface_->triangles();
-  TriangleTree tree = tree_;
-  tree.refit(after, triangles);
+  const auto representative = surface_->representative();
   const std::vector<Vec3> normals = vertex_normals(after, triangles);
   std::vector<char> folded(after.size(), 0);
-  parallel_for(asked.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t v = at(asked[k]);
-      if (normals[v] == Vec3::Zero()) continue;
+  parallel_for(after.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (absent[v] != 0 || at(representative[v]) != v || normals[v] == Vec3::Zero()) continue;
       const Vec3 &p = after[v], &along = normals[v];
-      tree.for_each_along(p, along, room_, [&](int index) {
+      larger.for_each_near(part_of_vertex_[v], p, p + room_ * along, [&](int index) {
         const Triangle& t = triangles[at(index)];
-        if (rank_of_vertex_[at(t[0])] >= rank_of_vertex_[v]) return;
-        if (jointed(part_of_vertex_[v], part_of_vertex_[at(t[0])])) return;
         for (const int corner : t)
           if (at(corner) == v || absent[at(corner)] != 0) return;
         const Vec3& a = after[at(t[0])];

@@ -30,10 +30,9 @@ class AbsentVertices {
   void find(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const;
 
  private:
+  class LargerParts;
   void find_deep(std::span<const Vec3> before, std::span<const Vec3> after, std::span<char> absent) const;
   void find_folds(std::span<const Vec3> after, std::span<char> absent) const;
-  /// What may be nearer than the room that cloth needs to a larger part that it is not jointed to.
-  std::vector<int> near_larger_parts(std::span<const Vec3> x, std::span<const char> absent) const;
   /// Where one bends against the other there is no fold (creases.h).
   bool jointed(int part, int other) const {
     return parents_[static_cast<std::size_t>(part)] == other || parents_[static_cast<std::size_t>(other)] == part;
@@ -41,7 +40,7 @@ class AbsentVertices {
 
   const PartSurface* surface_ = nullptr;
   std::vector<int> part_of_vertex_, parents_;  ///< parents of parts
-  std::vector<int> rank_of_vertex_;
+  std::vector<int> rank_of_vertex_, rank_;     ///< rank_: of parts
   Adjacency neighbours_;
   TriangleTree tree_;
   std::vector<float> deepest_of_vertex_;  ///< m

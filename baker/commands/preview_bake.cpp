@@ -142,8 +142,8 @@ Json describe(const Clip& clip) {
   return out;
 }
 
-/// Of each frame the vertices of a primary that some secondary on it does not meet, as first and count of each run; null
-/// where they all are met in all frames. The drawn body's vertices are the feasible collider's first.
+/// Of each frame the vertices of a primary that some secondary on it does not meet, as first and count of each run;
+/// null where they all are met in all frames. The drawn body's vertices are the feasible collider's first.
 Json absent_rows(const Manifest& manifest, const ManifestSystem& primary, int frames) {
   Json out(at(frames), Json::array());
   bool any = false;
@@ -152,7 +152,9 @@ Json absent_rows(const Manifest& manifest, const ManifestSystem& primary, int fr
     if (index < 0 || index >= frames) continue;
     std::vector<char> marks(at(primary.vertex_count), 0);
     for (const AbsentRuns& runs : frame.absent) {
-      const auto is_its = [&](const ManifestSystem& s) { return s.name == runs.system && s.primary == primary.primary; };
+      const auto is_its = [&](const ManifestSystem& s) {
+        return s.name == runs.system && s.primary == primary.primary;
+      };
       if (std::none_of(manifest.systems.begin(), manifest.systems.end(), is_its)) continue;
       const std::vector<char> own = marks_of(runs, primary.vertex_count);
       std::transform(own.begin(), own.end(), marks.begin(), marks.begin(), std::bit_or<char>());

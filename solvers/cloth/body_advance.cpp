@@ -16,8 +16,8 @@ constexpr std::size_t k_block = 2048;  ///< of a loop over vertices
 /// A blocked piece is cut to this share of the time to the first touch, but to no less than k_shortest_cut of itself.
 constexpr double k_approach = 0.9;
 constexpr double k_shortest_cut = 0.25;
-/// Before parts of the body are let go for lack of room, some pieces of a substep may be shorter than SubstepInput::shortest,
-/// down to this share of it: one is mostly enough for the cloth to find its way.
+/// Before parts of the body are let go for lack of room, some pieces of a substep may be shorter than
+/// SubstepInput::shortest, down to this share of it: one is mostly enough for the cloth to find its way.
 constexpr double k_last_shortest = 1.0 / 16;
 constexpr int k_most_short = 12;
 /// Shorter pieces are no way either where so many in a row take less than this share of the substep.
