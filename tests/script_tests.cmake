@@ -26,12 +26,10 @@ endif()
 ft_script_test(variants samples/variants.sh)
 ft_script_test(vest samples/vest.sh)
 ft_script_test(install install/install_test.sh ${CMAKE_BINARY_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/data/small_shot/skirt.obj ${CMAKE_CXX_COMPILER})
-# Some 20 bakes of half a minute to minutes each, which is more than the whole of the other tests: only where asked for
-# (cmake -DFOLLOWTHROUGH_SWEEP_TEST=ON). A bake under a sanitizer takes many times that.
-option(FOLLOWTHROUGH_SWEEP_TEST "Bake a tenth of the sweep as a test" OFF)
-if(FOLLOWTHROUGH_SWEEP_TEST AND TARGET sweep_tool AND TARGET make_garments AND NOT FOLLOWTHROUGH_SANITIZE)
+# A bake under a sanitizer takes many times as long.
+if(TARGET sweep_tool AND TARGET make_garments AND NOT FOLLOWTHROUGH_SANITIZE)
   ft_script_test(sweep bench/sweep_test.sh)
   if(TEST sweep)
-    set_tests_properties(sweep PROPERTIES TIMEOUT 7200 PROCESSORS 2)
+    set_tests_properties(sweep PROPERTIES PROCESSORS 2)
   endif()
 endif()
