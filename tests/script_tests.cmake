@@ -1,4 +1,4 @@
-# Tests of the whole program, as scripts: SCRIPT PROGRAM SHOT. All are slow. 77 means skipped.
+# Tests of the whole program, as scripts: SCRIPT PROGRAM SHOT. All but one are slow. 77 means skipped.
 function(ft_script_test name script)
   if(TARGET followthrough AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${script})
     add_test(NAME ${name} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/${script} $<TARGET_FILE:followthrough> ${ARGN})
@@ -22,6 +22,10 @@ ft_script_test(failing_writes baker/failing_writes.sh ${small_shot} --set shot.p
   --set solver.min_substeps=1 --set solver.max_substeps=2 --set primary.walker.speed=0.2)
 if(TARGET failing_write AND TEST failing_writes)
   set_property(TEST failing_writes APPEND PROPERTY ENVIRONMENT FT_FAILING_WRITE=$<TARGET_FILE:failing_write>)
+endif()
+ft_script_test(documents documents.sh)
+if(TEST documents)
+  set_tests_properties(documents PROPERTIES LABELS "")  # done in a second
 endif()
 ft_script_test(variants samples/variants.sh)
 ft_script_test(vest samples/vest.sh)
