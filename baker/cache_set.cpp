@@ -32,33 +32,65 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     const PrimaryPlan& primary = plan.primaries[plan.groups[g].primary];
     const auto& outputs = plan.groups[g].outputs;
     CHECK(outputs.size() == static_cast<std::size_t>(solver.system_count()));
+    const std::vector<ColliderSlice>& slices = slices_.emplace_back(
+        plan.groups[g].joint ? collider_slices(plan, plan.groups[g], names()) : std::vector<ColliderSlice>());
     for (int s = 0; s < solver.system_count(); ++s) {
       const GarmentOutput& output = outputs[static_cast<std::size_t>(s)];
-      add({g, s, false, output.mesh}, output.mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
+      Source source{.group = g, .garment = s, .primary = slices.empty() ? plan.groups[g].primary : output.primary};
+      source.mesh = output.mesh;
+      add(std::move(source), output.mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
       systems_.back().pattern_scale = output.pattern_scale;
       systems_.back().weld = output.weld;
+      for (const ColliderSlice& slice : slices) systems_.back().meets.push_back(slice.name);
     }
     const bool alone = outputs.empty();
     if (!plan.shot().cache_collider && !alone) continue;
     std::vector<Vec3> collider;
     solver.collider_positions(solver.initial_state(), collider);
-    if (!collider.empty() && !plan.groups[g].lockstep)  // a prop is its own collider
-      add({g, -1, true, shared(make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles()))},
-          primary.name + ".collider", "collider", false);
-    const auto is_there = [&](const ManifestSystem& system) { return system.name == primary.name; };
-    if (std::any_of(systems_.begin(), systems_.end(), is_there)) continue;
-    add({g, -1, false,
-         shared(make_triangle_mesh(primary.name, bind_pose_of(*primary.trajectory),
-                                   primary.trajectory->surface().triangles))},
-        primary.name, "body", alone);
+    for (const ColliderSlice& slice : slices) {
+      if (!slice.fixed) add_collider(g, slice, collider);
+      add_body(g, slice.primary, alone);
+    }
+    if (!slices.empty()) continue;
+    if (!collider.empty() && !plan.groups[g].lockstep) {  // a prop is its own collider
+      Source source{.group = g, .collider = true, .primary = plan.groups[g].primary};
+      source.mesh = shared(make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles()));
+      add(std::move(source), primary.name + ".collider", "collider", false);
+    }
+    add_body(g, plan.groups[g].primary, alone);
   }
+}
+
+std::vector<std::string> CacheSet::names() const {
+  std::vector<std::string> out;
+  for (const ManifestSystem& system : systems_) out.push_back(system.name);
+  return out;
+}
+
+void CacheSet::add_collider(std::size_t group, const ColliderSlice& slice, std::span<const Vec3> collider) {
+  std::vector<Vec3> own;
+  for (const int v : slice.vertices) own.push_back(collider[at(v)]);
+  Source source{.group = group, .collider = true, .primary = slice.primary, .slice = slice.vertices};
+  source.mesh = shared(make_triangle_mesh(slice.name, own, slice.triangles));
+  add(std::move(source), slice.name, "collider", false);
+}
+
+/// The drawn body, unless another group has it.
+void CacheSet::add_body(std::size_t group, std::size_t primary, bool all_formats) {
+  const PrimaryPlan& body = plan_.primaries[primary];
+  if (std::any_of(systems_.begin(), systems_.end(), [&](const ManifestSystem& s) { return s.name == body.name; }))
+    return;
+  Source source{.group = group, .primary = primary};
+  source.mesh =
+      shared(make_triangle_mesh(body.name, bind_pose_of(*body.trajectory), body.trajectory->surface().triangles));
+  add(std::move(source), body.name, "body", all_formats);
 }
 
 void CacheSet::add(Source source, std::string name, const std::string& role, bool all_formats) {
   ManifestSystem system;
   system.name = std::move(name);
   system.role = role;
-  system.primary = plan_.primaries[plan_.groups[source.group].primary].name;
+  system.primary = plan_.primaries[source.primary].name;
   system.vertex_count = source.mesh->vertex_count();
   system.face_count = source.mesh->face_count();
   system.topology = system.name + ".obj";
@@ -106,6 +138,21 @@ void CacheSet::positions_of(const Source& source, const State& state, std::span<
   spread_welded(joined_of, joined, x);
 }
 
+void CacheSet::slice_of(const Source& source, const State& state, std::span<Vec3> x) const {
+  std::vector<Vec3> all;
+  solvers_[source.group]->collider_positions(state, all);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = all[at(source.slice[i])];
+}
+
+std::vector<AbsentRuns> CacheSet::as_cached(std::size_t group, std::vector<AbsentRuns> absent) const {
+  if (slices_[group].empty()) return absent;
+  const int count = plan_.groups[group].poses->collider().vertex_count();
+  std::vector<AbsentRuns> out;
+  for (const AbsentRuns& runs : absent)
+    for (AbsentRuns& own : sliced(runs, slices_[group], count)) out.push_back(std::move(own));
+  return out;
+}
+
 Snapshot CacheSet::take(std::span<const State> states) const {
   Snapshot out;
   out.frame = states.empty() ? 0 : states[0].frame;
@@ -115,10 +162,12 @@ Snapshot CacheSet::take(std::span<const State> states) const {
     std::vector<Vec3> x(static_cast<std::size_t>(systems_[i].vertex_count));
     if (source.garment >= 0)
       positions_of(source, state, x);
+    else if (!source.slice.empty())
+      slice_of(source, state, x);
     else if (source.collider || solvers_[source.group]->moves_primary())
       solvers_[source.group]->collider_positions(state, x);
     else
-      plan_.primaries[plan_.groups[source.group].primary].trajectory->sample(state.time, x);
+      plan_.primaries[source.primary].trajectory->sample(state.time, x);
     out.positions.push_back(converted<Vec3f, Vec3>(x));
   }
   return out;
@@ -129,7 +178,7 @@ std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::
   if (before.empty()) return std::vector<Vec3>(x.size(), Vec3::Zero());
   std::vector<Vec3> v = converted<Vec3, Vec3f>(before);
   // Motion blur must not see the way from one place to the other.
-  const auto& teleports = plan_.primaries[plan_.groups[source.group].primary].scan.teleports;
+  const auto& teleports = plan_.primaries[source.primary].scan.teleports;
   if (const Teleport* teleport = teleport_into(teleports, frame)) carry(*teleport, std::span(v));
   for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - v[k]) * plan_.shot().fps;
   return v;

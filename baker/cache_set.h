@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/joint_collider.h"
 #include "baker/manifest.h"
 #include "baker/plan.h"
 #include "io/cache/cache.h"
@@ -30,6 +31,8 @@ class CacheSet {
   /// them.
   Status open(int keep_frames);
   Snapshot take(std::span<const State> states) const;
+  /// What a group's systems do not meet, in the numbers of the cached colliders.
+  std::vector<AbsentRuns> as_cached(std::size_t group, std::vector<AbsentRuns> absent) const;
   /// before: the snapshot of the frame before, for the velocities of what moves by itself; null: they are zero.
   Status write(const Snapshot& snapshot, const Snapshot* before);
   Status close();
@@ -44,18 +47,25 @@ class CacheSet {
     std::size_t group = 0;
     int garment = -1;  ///< -1: the collider or the body
     bool collider = false;
-    std::shared_ptr<const Mesh> mesh;  ///< rest shape; null once the files have it
+    std::size_t primary = 0;    ///< whom it belongs to
+    std::vector<int> slice{};   ///< of the collider's vertices; empty: all
+    std::shared_ptr<const Mesh> mesh{};  ///< rest shape; null once the files have it
   };
   /// Of a garment, in the order of its file.
   void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
   /// Of a garment at `frame` [m/s].
   std::vector<Vec3> velocities_of(const Source& source, int frame, std::span<const Vec3> x,
                                   std::span<const Vec3f> before) const;
+  void slice_of(const Source& source, const State& state, std::span<Vec3> x) const;
+  void add_collider(std::size_t group, const ColliderSlice& slice, std::span<const Vec3> collider);
+  void add_body(std::size_t group, std::size_t primary, bool all_formats);
+  std::vector<std::string> names() const;
   void add(Source source, std::string name, const std::string& role, bool all_formats);
 
   const BakePlan& plan_;
   const Solvers& solvers_;
   std::filesystem::path folder_;
+  std::vector<std::vector<ColliderSlice>> slices_;  ///< per group; empty without a joint body
   std::vector<Source> sources_;
   std::vector<ManifestSystem> systems_;
   std::vector<std::vector<std::unique_ptr<CacheWriter>>> writers_;

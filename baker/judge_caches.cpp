@@ -51,10 +51,10 @@ JudgedCloth as_simulated(CacheTrack track) {
   return out;
 }
 
-/// What moves with one primary.
+/// What was solved together.
 struct Group {
   std::vector<JudgedCloth> cloths;
-  std::vector<CacheTrack> collider, body;  ///< none or one
+  std::vector<CacheTrack> collider, body;  ///< one of each primary that it meets; none that is not cached
   std::vector<Triangle> cloth_triangles;
   RestEdges rest_edges;
   SewnPairs sewn;
@@ -95,11 +95,13 @@ void place_incident(const Group& group, int vertex, Incident& incident) {
 }
 
 /// Of each cloth, a mark for every vertex of the collider that it does not meet; empty: it meets all.
-std::vector<std::vector<char>> absent_for(const Group& group, const std::vector<AbsentRuns>& known, int count) {
+std::vector<std::vector<char>> absent_for(const Group& group, const std::vector<AbsentRuns>& known,
+                                          const std::string& collider, int count) {
   std::vector<std::vector<char>> out(group.cloths.size());
   for (std::size_t c = 0; c < out.size(); ++c)
     for (const AbsentRuns& runs : known)
-      if (runs.system == group.cloths[c].track.name) out[c] = marks_of(runs, count);
+      if (runs.system == group.cloths[c].track.name && (runs.collider.empty() || runs.collider == collider))
+        out[c] = marks_of(runs, count);
   return out;
 }
 
@@ -130,14 +132,15 @@ Result<FrameReport> judge_frame(const Group& group, const std::vector<AbsentRuns
     std::vector<Vec3> y;
     if (const Status read = collider.read(index, y); !read) return read.error();
     auto crossings = crossings_between(x, group.cloth_triangles, y, collider.triangles);
-    const auto marks = absent_for(group, absent, static_cast<int>(y.size()));
+    const auto marks = absent_for(group, absent, collider.name, static_cast<int>(y.size()));
+    int most = 0;
     for (const std::vector<char>& own : marks)
-      report.absent_vertices =
-          std::max(report.absent_vertices, static_cast<int>(std::count(own.begin(), own.end(), char{1})));
-    report.crossings_absent = static_cast<int>(std::erase_if(crossings, [&](const Crossing& c) {
+      most = std::max(most, static_cast<int>(std::count(own.begin(), own.end(), char{1})));
+    report.absent_vertices += most;
+    report.crossings_absent += static_cast<int>(std::erase_if(crossings, [&](const Crossing& c) {
       return second_is_marked(c, marks[group.cloth_of(c.edge_of_first ? c.edge[0] : c.triangle[0])]);
     }));
-    report.crossings_body = static_cast<int>(crossings.size());
+    report.crossings_body += static_cast<int>(crossings.size());
     if (!crossings.empty())
       incident(Incident::Kind::k_crossing, crossings[0].edge_of_first ? crossings[0].edge[0] : crossings[0].triangle[0],
                0, fmt::format("{} crossings with the feasible collider", crossings.size()));
@@ -150,7 +153,7 @@ Result<FrameReport> judge_frame(const Group& group, const std::vector<AbsentRuns
   for (const CacheTrack& body : group.body) {
     std::vector<Vec3> y;
     if (const Status read = body.read(index, y); !read) return read.error();
-    report.crossings_drawn = static_cast<int>(crossings_between(x, group.cloth_triangles, y, body.triangles).size());
+    report.crossings_drawn += static_cast<int>(crossings_between(x, group.cloth_triangles, y, body.triangles).size());
     int worst = -1;
     for (const Penetration& p : penetrations(x, y, body.triangles))
       if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
@@ -165,6 +168,34 @@ Result<FrameReport> judge_frame(const Group& group, const std::vector<AbsentRuns
 bool has_cache(const std::filesystem::path& folder, const ManifestSystem& system) {
   std::error_code error;
   return !system.caches.empty() && std::filesystem::exists(folder / system.caches[0].file, error);
+}
+
+/// Of cloths that were solved with several primaries: "a.collider", "b" and so on.
+std::string joint_name(const ManifestSystem& cloth) {
+  std::string out;
+  for (const std::string& name : cloth.meets) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+/// The colliders and the drawn bodies of all that a cloth meets, as far as they are cached.
+Status add_met(const std::filesystem::path& folder, const Manifest& manifest, const ManifestSystem& cloth,
+               Group& group) {
+  const auto is_met = [&](const ManifestSystem& s) {
+    return std::find(cloth.meets.begin(), cloth.meets.end(), s.name) != cloth.meets.end();
+  };
+  for (const ManifestSystem& system : manifest.systems) {
+    const bool collides = is_met(system), drawn = system.role == "body" &&
+        (collides || std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& s) {
+           return is_met(s) && s.primary == system.primary;
+         }));
+    for (const auto& [wanted, tracks] : {std::pair(collides, &group.collider), std::pair(drawn, &group.body)}) {
+      if (!wanted || !has_cache(folder, system)) continue;
+      auto track = open_track(folder, system, manifest);
+      if (!track) return track.error();
+      tracks->push_back(std::move(*track));
+    }
+  }
+  return {};
 }
 
 /// A prop is its own collider, as drawn.
@@ -218,7 +249,7 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     }
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
-    Group& group = groups[system.primary];
+    Group& group = groups[system.meets.empty() ? system.primary : joint_name(system)];
     if (system.role == "cords") {
       auto lines = middle_lines(track->rest);
       if (!lines) return lines.error();
@@ -232,6 +263,12 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
      : system.role == "collider" ? group.collider
                                  : group.body)
         .push_back(std::move(*track));
+  }
+  for (const ManifestSystem& system : manifest->systems) {
+    if (system.meets.empty()) continue;
+    const auto group = groups.find(joint_name(system));
+    if (group == groups.end() || !group->second.collider.empty() || !group->second.body.empty()) continue;
+    if (const Status added = add_met(bake_folder, *manifest, system, group->second); !added) return added.error();
   }
   if (groups.empty()) frames = 0;
   for (auto& [primary, group] : groups) {

@@ -160,6 +160,14 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
   return {};
 }
 
+/// Whether some group has the primary for a body.
+bool is_met(const BakePlan& plan, std::size_t primary) {
+  return std::any_of(plan.groups.begin(), plan.groups.end(), [&](const GroupPlan& group) {
+    return group.primary == primary ||
+           std::find(group.bodies.begin(), group.bodies.end(), primary) != group.bodies.end();
+  });
+}
+
 }  // namespace
 
 Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache) {
@@ -182,11 +190,13 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
   if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
+  auto cloths = plan_cloths(shot, plan);
+  if (!cloths) return cloths.error();
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-    if (const Status planned = plan_cloths(shot, p, plan); !planned) return planned.error();
+    for (GroupPlan& group : *cloths)
+      if (group.primary == p) plan.groups.push_back(std::move(group)), group.primary = plan.primaries.size();
     if (const Status planned = plan_cords(shot, p, plan); !planned) return planned.error();
-    const auto of_it = [&](const GroupPlan& group) { return group.primary == p; };
-    if (plan.primaries[p].hybrid && std::none_of(plan.groups.begin(), plan.groups.end(), of_it))
+    if (plan.primaries[p].hybrid && !is_met(plan, p))
       plan.groups.push_back({p, common_setup(shot), {}, {}});
   }
   if (plan.groups.empty()) return usage_error("no cloth or cords are on any primary", shot.file.string());

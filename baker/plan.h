@@ -10,6 +10,7 @@
 
 #include "baker/hybrid.h"
 #include "baker/inputs.h"
+#include "baker/joint_body.h"
 #include "baker/primary_mass.h"
 #include "baker/prop.h"
 #include "baker/yielding_character.h"
@@ -35,6 +36,7 @@ struct PrimaryPlan {
 
 /// How a garment leaves: in the vertex order of its file, whatever was joined for the simulation. Cords leave as tubes.
 struct GarmentOutput {
+  std::size_t primary = 0;           ///< whom it is on, into BakePlan::primaries
   std::shared_ptr<const Mesh> mesh;  ///< the file's, placed; with the simulated triangles if the shot file wants those
   std::vector<int> joined_of;        ///< per vertex of the file: its vertex in the simulation; empty: the same
   double pattern_scale = 0;          ///< of the garment
@@ -42,13 +44,16 @@ struct GarmentOutput {
   FileNumbers in_file;               ///< of the simulated mesh
 };
 
-/// All garments of one primary are solved together and feel each other, and so are all cords of one primary; cloth and
-/// cords do not feel each other, nor does what is on different primaries.
+/// Cloths that may meet are solved together and feel each other, with all primaries that they may meet (meeting.h); so
+/// are all cords of one primary. Cloth and cords do not feel each other.
 struct GroupPlan {
-  std::size_t primary = 0;  ///< into BakePlan::primaries
+  std::size_t primary = 0;  ///< into BakePlan::primaries: the first that has a secondary of the group
   ClothSetup setup;
   std::vector<GarmentOutput> outputs;     ///< one per garment of setup, or cord system of lockstep
   std::optional<LockstepSetup> lockstep;  ///< a group of cords: then `setup` is not used
+  std::shared_ptr<const JointBody> joint{};  ///< setup's primary, where cloth meets several bodies; else null
+  std::shared_ptr<const FeasiblePoses> poses{};  ///< of joint; the solver has them, too
+  std::vector<std::size_t> bodies{};         ///< the members of joint, into BakePlan::primaries; else empty
   // Without outputs: a hybrid primary alone, whose adjusted motion is cached.
 };
 

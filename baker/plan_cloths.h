@@ -5,8 +5,9 @@
 
 namespace ft {
 
-/// The garments of one primary, as a group of their own; `plan` stays as it is where there are none.
-Status plan_cloths(const Shot& shot, std::size_t primary, BakePlan& plan);
+/// All cloths of a shot whose primaries are planned, in groups of what may meet, by their first primary. Notes go into
+/// the plan.
+Result<std::vector<GroupPlan>> plan_cloths(const Shot& shot, BakePlan& plan);
 
 /// What all groups of a shot have in common.
 ClothSetup common_setup(const Shot& shot);

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "io/shot/shot_maps.h"
+#include "io/shot/shot_values.h"
+#include "io/shot/words.h"
 #include "solvers/cloth/attach.h"
 
 namespace ft {
@@ -100,6 +102,30 @@ std::vector<std::string> character_lines(const CharacterInfo& info) {
   return out;
 }
 
+namespace {
+
+const std::string& wearer_of(const BakePlan& plan, const GroupPlan& group, const ClothGarment& garment) {
+  const auto index = at(&garment - group.setup.garments.data());
+  return plan.primaries[group.outputs[index].primary].name;
+}
+
+/// The primaries that a cloth meets, and the cloths that it is solved with.
+std::string met_text(const BakePlan& plan, const GroupPlan& group, const ClothGarment& garment) {
+  std::vector<std::string> names, cloths;
+  for (std::size_t m = 0; m < group.bodies.size(); ++m) {
+    std::size_t left_out = 0;
+    const int first = group.joint->first_part(m), end = group.joint->first_part(m + 1);
+    for (const int part : garment.ignores) left_out += part >= first && part < end;
+    if (left_out < at(end - first)) names.push_back(in_quotes(plan.primaries[group.bodies[m]].name));
+  }
+  if (group.bodies.empty()) names.push_back("\"" + plan.primaries[group.primary].name + "\" alone");
+  for (const ClothGarment& other : group.setup.garments)
+    if (&other != &garment) cloths.push_back(in_quotes(other.name));
+  return joined(names) + (cloths.empty() ? "" : "; together with cloth " + joined(cloths));
+}
+
+}  // namespace
+
 std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder) {
   const Shot& shot = plan.shot();
   std::vector<std::string> out;
@@ -122,9 +148,10 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
       std::size_t pinned = 0;
       for (const ClothPin& pin : garment.pins) pinned += pin.to < 0 ? pin.vertices.size() : 0;
       out.push_back(fmt::format("cloth \"{}\" on \"{}\": {} vertices, {} faces, {} pinned, {}, {} at {:g} kg/m2",
-                                garment.name, plan.primaries[group.primary].name, garment.mesh.vertex_count(),
+                                garment.name, wearer_of(plan, group, garment), garment.mesh.vertex_count(),
                                 garment.mesh.face_count(), pinned, box_text(bounds(garment.mesh.positions)),
                                 garment.fabric.name, garment.fabric.mass_per_area));
+      if (plan.primaries.size() > 1) out.push_back("  meets " + met_text(plan, group, garment));
       for (const NamedMap& map : k_vertex_maps)
         if (!(garment.maps.*map.values).empty()) out.push_back("  " + map_text(map, garment.maps.*map.values));
       for (const ClothPin& pin : garment.pins)

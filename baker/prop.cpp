@@ -14,7 +14,15 @@ namespace {
 constexpr int k_sphere_levels = 4;       ///< of a sphere's surface: its triangles lie within 0.2 % of the radius
 constexpr double k_most_bending = 1e-3;  ///< that a rigid primary may deform, of its size [1]
 
+constexpr double k_ground_side = 60, k_ground_depth = 1;  ///< m
+
+/// `position` is a point of its upper side.
+Vec3 ground_size(const PrimarySpec& spec) {
+  return spec.size == Vec3::Zero() ? Vec3(k_ground_side, k_ground_depth, k_ground_side) : spec.size;
+}
+
 double release_time(const PrimarySpec& spec, const Shot& shot) {
+  if (spec.shape == k_ground) return std::numeric_limits<double>::infinity();
   switch (spec.release) {
     case Release::k_start: return spec.shape.empty() ? std::numeric_limits<double>::infinity() : 0;
     case Release::k_frame: return (spec.release_frame - shot.first_frame) / shot.fps;
@@ -106,8 +114,10 @@ Prop prop_of_shape(const PrimarySpec& spec, const Shot& shot) {
   out.name = spec.name;
   const double kilograms = spec.mass.value_or(0), unit = kilograms > 0 ? kilograms : 1;
   const double radius = spec.radius.value_or(0);
+  const bool ground = spec.shape == k_ground;
   TriangleSurface surface = spec.shape == "sphere" ? sphere_surface(radius, k_sphere_levels)
                             : spec.shape == "box"  ? box_surface(spec.size)
+                            : ground               ? box_surface(ground_size(spec))
                                                    : capsule_surface(radius, spec.length.value_or(0), k_sphere_levels);
   out.mass = spec.hollow ? hollow_mass(surface.positions, surface.triangles, unit).mass
                          : filled_mass(surface.positions, surface.triangles, unit).mass;
@@ -117,11 +127,13 @@ Prop prop_of_shape(const PrimarySpec& spec, const Shot& shot) {
   out.mass.mass = kilograms;
   out.samples = spec.shape == "sphere" ? sphere_shape(radius)
                 : spec.shape == "box"  ? box_shape(spec.size)
+                : ground               ? box_shape(ground_size(spec))
                                        : surface_shape(surface.positions, surface.triangles);
   out.surface = std::move(surface.positions);
   out.triangles = std::move(surface.triangles);
   RigidMotion start;
   start.pose.position = spec.position;
+  if (ground) start.pose.position.y() -= 0.5 * ground_size(spec).y();
   const Vec3 angles = spec.rotation_deg * (EIGEN_PI / 180);
   start.pose.rotation = Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
                         Eigen::AngleAxisd(angles.x(), Vec3::UnitX());

@@ -41,14 +41,18 @@ void apply_quality(const Shot& shot, ClothSetup& setup) {
                                 [](const ClothGarment& garment) { return !garment.mesh.stitches.empty(); });
   if (!sewn) setup.min_substeps = std::max(1, setup.min_substeps / k_fewer_substeps);
   setup.linear_tolerance = std::max(k_tolerance, setup.linear_tolerance);
-  if (!setup.primary) return;
+}
+
+std::shared_ptr<const Trajectory> with_quality(const Shot& shot, const ClothSetup& setup,
+                                               std::shared_ptr<const Trajectory> primary) {
+  if (!is_preview(shot) || !primary) return primary;
   // A body that is thicker than a tight garment has room for would squeeze it through.
   double thinnest = std::numeric_limits<double>::infinity();
   for (const ClothGarment& garment : setup.garments) {
     thinnest = std::min(thinnest, garment.thickness);
     for (const double own : garment.maps.thickness) thinnest = std::min(thinnest, own);
   }
-  setup.primary = coarse_body(setup.primary, k_coarsen_body, setup.feasible.max_edge, k_deviation * thinnest);
+  return coarse_body(std::move(primary), k_coarsen_body, setup.feasible.max_edge, k_deviation * thinnest);
 }
 
 void apply_quality(const Shot& shot, LockstepSetup& setup) {

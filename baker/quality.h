@@ -15,8 +15,11 @@ bool is_preview(const Shot& shot);
 /// By the settings that a bake was made with.
 bool is_preview(const Manifest& manifest);
 
-/// Makes a setup, with its primary, a preview's; a final one stays as it is.
+/// Makes a setup a preview's; a final one stays as it is. Its primary is with_quality()'s.
 void apply_quality(const Shot& shot, ClothSetup& setup);
+/// What a preview, with its setup, has for a primary.
+std::shared_ptr<const Trajectory> with_quality(const Shot& shot, const ClothSetup& setup,
+                                               std::shared_ptr<const Trajectory> primary);
 void apply_quality(const Shot& shot, LockstepSetup& setup);
 
 /// For the log and the manifest: what a preview's certificate is worth.

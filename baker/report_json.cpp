@@ -133,6 +133,7 @@ AbsentRuns absent_from(const Json& json) {
   AbsentRuns out;
   if (!json.is_object()) throw Faulty{"absent"};
   take_field(json, "system", out.system);
+  if (json.contains("collider")) take_field(json, "collider", out.collider);
   const auto runs = json.find("runs");
   if (runs == json.end() || !runs->is_array() || runs->size() % 2 != 0) throw Faulty{"absent"};
   for (std::size_t i = 0; i < runs->size(); i += 2) {
@@ -184,7 +185,9 @@ Json to_json(const InteractionForce& f) {
 Json to_json(const AbsentRuns& absent) {
   Json runs = Json::array();
   for (const auto& [first, count] : absent.runs) runs.push_back(first), runs.push_back(count);
-  return Json{{"system", absent.system}, {"runs", std::move(runs)}};
+  Json out{{"system", absent.system}, {"runs", std::move(runs)}};
+  if (!absent.collider.empty()) out["collider"] = absent.collider;
+  return out;
 }
 
 Json to_json(const FrameReport& report) {

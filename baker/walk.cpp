@@ -151,7 +151,7 @@ FrameReport Walk::advance() {
     FrameReport one = solvers_[g]->advance_frame(states_[g]);
     CHECK(states_[g].frame == expected && one.frame == expected);
     number_as_in_file(g, one.incidents);
-    one.absent = absent_of(*solvers_[g], states_[g]);
+    one.absent = caches_.as_cached(g, absent_of(*solvers_[g], states_[g]));
     report = g == 0 ? std::move(one) : merge(report, one);
   }
   return report;
@@ -229,7 +229,7 @@ Status Walk::frames() {
   Pace pace;
   SharedSnapshot before = take();  // in the caches already, where a bake goes on
   if (manifest_.frames.empty()) {
-    manifest_.frames.push_back(certify_start(plan_, solvers_, states_));
+    manifest_.frames.push_back(certify_start(plan_, solvers_, caches_, states_));
     if (const Status emitted = emit(before, nullptr, true); !emitted) return emitted;
   }
   const int interval = checkpoint_interval(states_);
@@ -296,7 +296,8 @@ Status Walk::write_report() const {
 
 }  // namespace
 
-FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states) {
+FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, const CacheSet& caches,
+                          std::span<const State> states) {
   FrameReport report;
   report.frame = states[0].frame;
   report.smallest_gap = std::numeric_limits<double>::infinity();  // not measured
@@ -321,7 +322,7 @@ FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::spa
     report.crossings_absent += static_cast<int>(std::erase_if(body, [&](const Crossing& c) {
       return second_is_marked(c, absent[at(system_of[at(c.edge_of_first ? c.edge[0] : c.triangle[0])])]);
     }));
-    for (AbsentRuns& runs : absent_of(*solvers[g], states[g])) {
+    for (AbsentRuns& runs : caches.as_cached(g, absent_of(*solvers[g], states[g]))) {
       report.absent_vertices = std::max(report.absent_vertices, vertex_count(runs));
       report.absent.push_back(std::move(runs));
     }

@@ -25,6 +25,7 @@ WalkResult walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, 
                 Manifest manifest, std::optional<Checkpoint> from, const RoomReport& room, Progress& progress);
 
 /// Certificate of a state that no solver has reported on (the first one, when there is no pre-roll).
-FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, std::span<const State> states);
+FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, const CacheSet& caches,
+                          std::span<const State> states);
 
 }  // namespace ft

@@ -102,7 +102,10 @@ void find_touching(const CarvePlan& plan, Yielding& part, const PartSurface& sur
 std::vector<int> parts_by_size(std::span<const SurfacePart> parts) {
   std::vector<int> order(parts.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return parts[at(a)].size > parts[at(b)].size; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const SurfacePart &p = parts[at(a)], &q = parts[at(b)];
+    return p.fixed != q.fixed ? p.fixed : p.size > q.size;
+  });
   return order;
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 /// Of the gap that carving keeps: with less room than that cloth is pressed [1]. Carved edges sag by some of it.
 constexpr double k_room_share = 0.8;
+constexpr std::size_t k_most_triangles = 400'000;  ///< of the refined collider
 
 }  // namespace
 
@@ -33,7 +34,9 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
   CHECK(static_cast<int>(bind_pose.size()) == drawn.vertex_count() && !drawn.parts.empty());
   m.carver.settings = settings;
   m.carver.near = std::max(1.5 * settings.gap, 0.55 * settings.max_edge);
-  m.mesh = refine_mesh(bind_pose, drawn.triangles, settings.max_edge);
+  std::vector<char> fixed;  // per triangle: nothing there has to give way
+  for (const Triangle& t : drawn.triangles) fixed.push_back(drawn.parts[at(drawn.part_of_vertex[at(t[0])])].fixed);
+  m.mesh = refine_mesh(bind_pose, drawn.triangles, settings.max_edge, k_most_triangles, fixed);
   std::vector<int> rank(drawn.parts.size());
   const std::vector<int> by_size = parts_by_size(drawn.parts);
   for (std::size_t i = 0; i < by_size.size(); ++i) rank[at(by_size[i])] = static_cast<int>(i);
@@ -88,7 +91,8 @@ CarveReport FeasibleCollider::evaluate(std::span<const Vec3> drawn, std::span<Ve
   const int part_count = impl_->carver.surface->part_count();
   Carver::Scratch scratch{positions, std::vector<TreeBox>(at(part_count)), std::vector<TriangleTree>(at(part_count))};
   for (int part = 0; part < part_count; ++part) scratch.boxes[at(part)] = impl_->carver.box_of(part, positions);
-  for (const int part : impl_->carver.plan.by_size) impl_->carver.give_way(part, scratch);
+  for (const int part : impl_->carver.plan.by_size)
+    if (!impl_->carver.plan.parts[at(part)].fixed) impl_->carver.give_way(part, scratch);
   const auto representative = impl_->carver.surface->representative();
   for (const int v : impl_->carver.plan.copies) {
     const std::size_t r = at(representative[at(v)]);

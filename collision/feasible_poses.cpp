@@ -5,21 +5,12 @@
 #include "baker/core/check.h"
 
 namespace ft {
-namespace {
-
-std::vector<Vec3> bind_pose(const Trajectory& body) {
-  std::vector<Vec3> out(at(body.surface().vertex_count()));
-  body.bind_pose(out);
-  return out;
-}
-
-}  // namespace
 
 FeasiblePoses::FeasiblePoses(std::shared_ptr<const Trajectory> body, const FeasibleSettings& settings,
                              std::size_t most_bytes)
     : body_(std::move(body)),
       settings_(settings),
-      collider_(body_->surface(), bind_pose(*body_), settings),
+      collider_(body_->surface(), bind_pose_apart_of(*body_), settings),
       most_bytes_(most_bytes) {}
 
 const FeasiblePoses::Carved* FeasiblePoses::kept(double time) const {

@@ -72,7 +72,7 @@ void RefinedMesh::positions(std::span<const Vec3> drawn, std::span<Vec3> refined
 }
 
 RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> triangles, double max_edge,
-                        std::size_t max_triangles) {
+                        std::size_t max_triangles, std::span<const char> whole) {
   CHECK(max_edge > 0);
   RefinedMesh mesh;
   mesh.drawn_vertex_count = static_cast<int>(pose.size());
@@ -84,13 +84,16 @@ RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> tr
     Round round;
     round.first_vertex = static_cast<int>(x.size());
     std::size_t pieces = mesh.triangles.size();
-    for (const Triangle& t : mesh.triangles)
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (!whole.empty() && whole[at(mesh.source[i])] != 0) continue;
+      const Triangle& t = mesh.triangles[i];
       for (std::size_t k = 0; k < 3; ++k) {
         const int a = t[k], b = t[(k + 1) % 3];
         if (a == b || !((x[at(a)] - x[at(b)]).norm() > max_edge * (1 + k_rounding))) continue;
         round.split.push_back(sorted(a, b));
         ++pieces;
       }
+    }
     if (round.split.empty() || pieces > max_triangles) return mesh;
     std::sort(round.split.begin(), round.split.end());
     round.split.erase(std::unique(round.split.begin(), round.split.end()), round.split.end());

@@ -24,7 +24,7 @@ struct RoomScanner::Impl {
         collider(poses->collider()),
         refined(at(collider.vertex_count())) {
     std::vector<Vec3> bind(at(poses->body().surface().vertex_count()));
-    poses->body().bind_pose(bind);
+    poses->body().bind_pose_apart(bind);
     collider.refine(bind, refined);
     shape = std::make_unique<PartSurface>(refined, collider.triangles(), collider.part_of_vertex(),
                                           static_cast<int>(parts.size()));

@@ -67,6 +67,7 @@ struct InteractionForce {
 struct AbsentRuns {
   std::string system;
   std::vector<std::array<int, 2>> runs;  ///< first vertex, and how many from there; ascending
+  std::string collider{};                ///< the cached system with these vertices, where the system meets several
 };
 
 /// The certificate of one frame, and what it took.

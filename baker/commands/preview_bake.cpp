@@ -152,9 +152,8 @@ Json absent_rows(const Manifest& manifest, const ManifestSystem& primary, int fr
     if (index < 0 || index >= frames) continue;
     std::vector<char> marks(at(primary.vertex_count), 0);
     for (const AbsentRuns& runs : frame.absent) {
-      const auto is_its = [&](const ManifestSystem& s) {
-        return s.name == runs.system && s.primary == primary.primary;
-      };
+      const std::string& of = runs.collider.empty() ? runs.system : runs.collider;
+      const auto is_its = [&](const ManifestSystem& s) { return s.name == of && s.primary == primary.primary; };
       if (std::none_of(manifest.systems.begin(), manifest.systems.end(), is_its)) continue;
       const std::vector<char> own = marks_of(runs, primary.vertex_count);
       std::transform(own.begin(), own.end(), marks.begin(), marks.begin(), std::bit_or<char>());
@@ -207,11 +206,21 @@ bool has_prop(const Manifest& manifest) {
   });
 }
 
+/// Whether a system is a set that stands still, such as a ground: cloth was solved with its drawn body for a collider.
+bool stands(const Manifest& manifest, const std::string& name) {
+  return std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& cloth) {
+    return name == cloth.primary ? false : std::find(cloth.meets.begin(), cloth.meets.end(), name) != cloth.meets.end();
+  }) && std::none_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& s) {
+    return s.role != "body" && s.name == name;
+  });
+}
+
 Result<Json> path_rows(const std::filesystem::path& folder, const Manifest& manifest, int frames) {
   const auto paths = primary_paths(folder, manifest);
   if (!paths) return paths.error();
   Json out = Json::array();
   for (const PrimaryPath& path : *paths) {
+    if (stands(manifest, path.primary)) continue;
     Json centres = Json::array();
     for (int f = 0; f < frames; ++f)
       centres.push_back({path.centres[at(f)].x(), path.centres[at(f)].y(), path.centres[at(f)].z()});
@@ -257,6 +266,7 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
     if (const Status done = quantise(clip, frames); !done) return done.error();
     Json system = describe(clip);
     if (!is_secondary(clip.system.role)) system["absent"] = absent_rows(*manifest, clip.system, frames);
+    if (clip.system.role == "body" && stands(*manifest, clip.system.name)) system["stands"] = true;
     bake["systems"].push_back(std::move(system));
   }
   return bake;

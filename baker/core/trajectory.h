@@ -21,6 +21,8 @@ struct SurfacePart {
   /// The joint with the parent is one about which it turns as a limb does, so that the two skins fold there; false: it
   /// rides on the parent, like an eye or a nail.
   bool folds = true;
+  /// It stands still in the whole shot, as a ground or a chair does: what overlaps it gives way, whatever its size.
+  bool fixed = false;
 };
 
 struct Surface {
@@ -39,6 +41,8 @@ class Trajectory {
   virtual const Surface& surface() const = 0;
   /// Positions of all vertices in the pose that garments are modelled on; file placement.
   virtual void bind_pose(std::span<Vec3> positions) const = 0;
+  /// bind_pose(), but of several bodies in one each placed where it starts, so that they do not stand in each other.
+  virtual void bind_pose_apart(std::span<Vec3> positions) const { bind_pose(positions); }
   virtual void sample(double time, std::span<Vec3> positions) const = 0;
   /// Takes file placement of the bind pose to where the pre-roll starts: garments are moved by it once.
   virtual Eigen::Isometry3d bind_to_start() const = 0;
@@ -50,6 +54,13 @@ class Trajectory {
 inline std::vector<Vec3> bind_pose_of(const Trajectory& trajectory) {
   std::vector<Vec3> out(static_cast<std::size_t>(trajectory.surface().vertex_count()));
   trajectory.bind_pose(out);
+  return out;
+}
+
+/// bind_pose_apart() [m].
+inline std::vector<Vec3> bind_pose_apart_of(const Trajectory& trajectory) {
+  std::vector<Vec3> out(static_cast<std::size_t>(trajectory.surface().vertex_count()));
+  trajectory.bind_pose_apart(out);
   return out;
 }
 

@@ -37,7 +37,7 @@
   const palette = [0x3f74c4, 0xc8694f, 0x4f9a6d, 0xb08a3e, 0x8560b5, 0x3d9aa8];
   let scene, camera, renderer, controls, sun, centre = null, marker = null;
   const box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
-  for (const s of bakes.flatMap((b) => b.systems))
+  for (const s of bakes.flatMap((b) => b.systems).filter((s) => !s.stands))  // a ground is wider than what happens on it
     for (let axis = 0; axis < 3; ++axis) {
       box.low[axis] = Math.min(box.low[axis], s.low[axis]);
       box.high[axis] = Math.max(box.high[axis], s.low[axis] + 65535 * s.step[axis]);
@@ -73,7 +73,7 @@
     const middle = [0, 1, 2].map((a) => 0.5 * (box.low[a] + box.high[a]));
     const floor = new THREE.Mesh(new THREE.PlaneGeometry(40 * size, 40 * size), new THREE.ShadowMaterial({ opacity: 0.22 }));
     floor.rotation.x = -Math.PI / 2;
-    floor.position.set(middle[0], box.low[1] - 0.001 * size, middle[2]);
+    floor.position.set(middle[0], box.low[1] - 0.002 * size, middle[2]);
     floor.receiveShadow = true;
     scene.add(floor);
     const cells = 2 * Math.ceil(3 * size);
@@ -103,7 +103,8 @@
         side: s.role === 'cloth' ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
         wireframe: secondary(s) && $('wireframe').checked });
       s.mesh = new THREE.Mesh(geometry, material);
-      s.mesh.castShadow = s.mesh.receiveShadow = true;
+      s.mesh.castShadow = !s.stands;
+      s.mesh.receiveShadow = true;
       s.mesh.frustumCulled = false;
       s.mesh.visible = s.role !== 'collider';
       group.add(s.mesh);
@@ -128,7 +129,7 @@
   /// Bounds of what is visible in the frame at hand.
   function bounds() {
     const b = new THREE.Box3();
-    for (const s of bake.systems) if (s.mesh && s.mesh.visible) b.union(new THREE.Box3().setFromBufferAttribute(s.mesh.geometry.attributes.position));
+    for (const s of bake.systems) if (s.mesh && s.mesh.visible && !s.stands) b.union(new THREE.Box3().setFromBufferAttribute(s.mesh.geometry.attributes.position));
     return b;
   }
   function fit() {

@@ -22,6 +22,8 @@ enum class Teleports { k_detect, k_ignore, k_frames };
 /// When a prop begins to move by itself.
 enum class Release { k_start, k_frame, k_contact };
 
+inline constexpr std::string_view k_ground = "ground";  ///< PrimarySpec::shape
+
 /// [primary.NAME]: what drives: a character or cache from a file, or a prop of a plain shape.
 struct PrimarySpec {
   std::string name;
@@ -44,7 +46,7 @@ struct PrimarySpec {
   std::vector<std::string> ignore;   ///< patterns (* and ?) of parts that no cloth meets
   Teleports teleports = Teleports::k_detect;
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
-  std::string shape;                 ///< "sphere", "box", "capsule" instead of `file`; empty: from the file
+  std::string shape;  ///< "sphere", "box", "capsule", "ground" instead of `file`; empty: from the file
   std::optional<double> radius;      ///< sphere, capsule [m]
   Vec3 size = Vec3::Zero();          ///< box [m]
   std::optional<double> length;      ///< capsule: between the centres of its ends, along y [m]
@@ -117,6 +119,7 @@ struct ClothSpec {
   double self_friction = 0.3;  ///< among cloths
   bool self_collision = true;
   std::vector<std::string> ignores;  ///< patterns (* and ?) of parts of its primary that it does not meet
+  std::vector<std::string> meets{"*"};  ///< patterns of primaries that it meets beside its own
   std::string coupling = "one-way";  ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
 };
 

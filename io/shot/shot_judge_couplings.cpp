@@ -21,6 +21,7 @@ constexpr ChoiceKeys k_primary_shapes[] = {
     {"sphere", "radius", "position rotation velocity spin hollow"},
     {"box", "size", "position rotation velocity spin hollow"},
     {"capsule", "radius length", "position rotation velocity spin hollow"},
+    {"ground", "", "size position"},
 };
 
 constexpr ChoiceKeys k_cords_shapes[] = {

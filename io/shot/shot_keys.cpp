@@ -98,6 +98,8 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"ignores", &ClothSpec::ignores, 0, 0, "", "", false, "exclude ignore_parts ignored without",
        "Parts of its primary that this cloth does not meet, beside those that the primary has under `ignore`: names "
        "with `*` and `?`, `[\"hand_*\"]`"},
+      {"meets", &ClothSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
+       "Primaries that this cloth meets beside the one that it is on: names with `*` and `?`; `[]`: no other"},
       {"coupling", &ClothSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",
        "Who feels whom: `one-way`, it feels the primary; `hybrid`, the primary yields to its stand-ins first; "
        "`two-way` "

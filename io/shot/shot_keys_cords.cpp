@@ -5,8 +5,8 @@ namespace ft {
 
 std::span<const ShotKey<PrimarySpec>> prop_keys() {
   static const ShotKey<PrimarySpec> keys[] = {
-      {"shape", &PrimarySpec::shape, 0, 0, "", "sphere box capsule", false, "primitive type geometry",
-       "A rigid prop of a plain shape, in the place of `file`"},
+      {"shape", &PrimarySpec::shape, 0, 0, "", "sphere box capsule ground", false, "primitive type geometry",
+       "A rigid prop of a plain shape, in the place of `file`; `ground`: a level floor that stands still"},
       {"radius", &PrimarySpec::radius, 1e-3, 100, "m", "", false, "r diameter", "Sphere, capsule"},
       {"size", &PrimarySpec::size, 1e-3, 1000, "m", "", false, "dimensions extents width", "Box: along x, y, z"},
       {"length", &PrimarySpec::length, 1e-3, 1000, "m", "", false, "height",

@@ -76,11 +76,16 @@ Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->verte
   tree_ = TriangleTree(bind, triangles);
   std::vector<int> nearest_part(model.contact.rest.size(), -1);
   anchors_.resize(nearest_part.size());
+  std::vector<TriangleTree> wearers(setup.garments.size());  // of a garment's wearer alone, where there are others
+  for (std::size_t g = 0; g < wearers.size(); ++g)
+    if (const auto& wearer = setup.garments[g].wearer)
+      wearers[g] = tree_of(bind, triangles, [&](const Triangle& t) { return wearer->has(parts[at(t[0])]); });
   parallel_for(nearest_part.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       TriangleTree::Hit hit;
       const Vec3& p = model.contact.rest[i];
-      tree_.closest(p, bind, triangles, hit);
+      const TriangleTree& worn_on = wearers[at(model.garment_of(static_cast<int>(i)))];
+      (worn_on.empty() ? tree_ : worn_on).closest(p, bind, triangles, hit);
       if (hit.triangle < 0) continue;
       const Triangle& t = triangles[at(hit.triangle)];
       nearest_part[i] = parts[at(t[0])];

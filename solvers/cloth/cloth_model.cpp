@@ -119,10 +119,11 @@ void place(ClothModel& model) {
   const ClothSetup& setup = model.setup;
   model.start.assign(model.contact.rest.begin(), model.contact.rest.end());
   if (!setup.primary) return;
-  const Eigen::Isometry3d to_start = setup.primary->bind_to_start();
   for (std::size_t g = 0; g < setup.garments.size(); ++g) {
     const auto& pins = setup.garments[g].pins;
     if (std::any_of(pins.begin(), pins.end(), [](const ClothPin& pin) { return pin.to_world; })) continue;
+    const auto& wearer = setup.garments[g].wearer;
+    const Eigen::Isometry3d to_start = wearer ? wearer->to_start : setup.primary->bind_to_start();
     for (int v = model.first_vertex[g]; v < model.first_vertex[g + 1]; ++v)
       model.start[at(v)] = to_start * model.start[at(v)];
   }

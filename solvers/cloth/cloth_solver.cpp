@@ -101,6 +101,7 @@ class ClothSolver final : public Solver {
   struct Frame;
   FrameReport advance(const Frame& frame, State& state) const;
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
+  Vec3 centre_of_wearer(std::size_t garment) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
 
@@ -172,6 +173,16 @@ void ClothSolver::add_forces(const AdvanceReport& step, double duration, FrameRe
     sum.peak = std::max(sum.peak, step.on_body[g].peak);
     sum.contact_share = std::min(1.0, sum.contact_share + step.on_body[g].contact_time / duration);
   }
+}
+
+/// Of the body that wears a garment, at the frame's end [m].
+Vec3 ClothSolver::centre_of_wearer(std::size_t garment) const {
+  const auto& wearer = model_->setup.garments[garment].wearer;
+  if (!wearer) return volume_centre(body_.end().feasible, collider_triangles());
+  std::vector<Triangle> own;
+  for (const Triangle& t : collider_triangles())
+    if (wearer->has(model_->collider->part_of_vertex()[at(t[0])])) own.push_back(t);
+  return volume_centre(body_.end().feasible, own);
 }
 
 /// Returns the mean of StepResult::lost_weight.
@@ -322,8 +333,8 @@ FrameReport ClothSolver::advance(const Frame& frame, State& state) const {
   report = std::move(best_report);
   motion = std::move(best);
   report.profile = spent;
-  const Vec3 centre = volume_centre(body_.end().feasible, collider_triangles());
-  for (InteractionForce& force : report.forces) force.mean = force.mean.moved(centre);
+  for (std::size_t g = 0; g < report.forces.size(); ++g)
+    report.forces[g].mean = report.forces[g].mean.moved(centre_of_wearer(g));
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,14 @@ struct ClothGarment {
   double self_friction = 0.3;  ///< among cloths [1]
   bool self_collision = true;
   std::vector<int> ignores;  ///< parts of the primary that it does not meet
+  /// Where the primary is several bodies in one: the parts of the body that wears it, first and count, and what takes
+  /// it to where that starts. Without a value the primary is one body, and the garment starts with it.
+  struct Wearer {
+    int first_part = 0, part_count = 0;
+    Eigen::Isometry3d to_start = Eigen::Isometry3d::Identity();
+    bool has(int part) const { return part >= first_part && part < first_part + part_count; }
+  };
+  std::optional<Wearer> wearer;
   VertexMaps maps;           ///< one value per vertex of `mesh`, or empty
 };
 

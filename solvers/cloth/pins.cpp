@@ -13,7 +13,16 @@ void pin(ClothModel& model) {
     bind = bind_pose_of(*setup.primary);
     body = setup.primary->surface().triangles;
   }
-  for (std::size_t g = 0; g < setup.garments.size(); ++g)
+  const auto worn_by = [&](const ClothGarment& garment) {  // what pins hold to
+    std::vector<Triangle> out = body;
+    if (garment.wearer && setup.primary)
+      std::erase_if(out, [&](const Triangle& t) {
+        return !garment.wearer->has(setup.primary->surface().part_of_vertex[at(t[0])]);
+      });
+    return out;
+  };
+  for (std::size_t g = 0; g < setup.garments.size(); ++g) {
+    const std::vector<Triangle> holder = worn_by(setup.garments[g]);
     for (const ClothPin& pin : setup.garments[g].pins) {
       if (pin.to >= 0) continue;
       const std::vector<HoldSpan> holds = hold_spans(pin, setup.garments[g].mesh.positions);
@@ -22,7 +31,7 @@ void pin(ClothModel& model) {
         const double weight = pin.weights.empty() ? 1.0 : pin.weights[k];
         if (weight <= 0 || model.unused[at(v)]) continue;
         const Vec3& x = model.contact.rest[at(v)];
-        PinPoint point = pin.to_world ? bind_pin(v, x, {}, {}) : bind_pin(v, x, bind, body);
+        PinPoint point = pin.to_world ? bind_pin(v, x, {}, {}) : bind_pin(v, x, bind, holder);
         const double area = model.contact.area[at(v)];
         point.stiffness = weight * pin.stiffness * area;
         point.max_pull = weight * pin.max_pull * area;
@@ -31,6 +40,7 @@ void pin(ClothModel& model) {
         model.pins.push_back(point);
       }
     }
+  }
 }
 
 Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
