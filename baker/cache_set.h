@@ -47,8 +47,8 @@ class CacheSet {
     std::size_t group = 0;
     int garment = -1;  ///< -1: the collider or the body
     bool collider = false;
-    std::size_t primary = 0;    ///< whom it belongs to
-    std::vector<int> slice{};   ///< of the collider's vertices; empty: all
+    std::size_t primary = 0;             ///< whom it belongs to
+    std::vector<int> slice{};            ///< of the collider's vertices; empty: all
     std::shared_ptr<const Mesh> mesh{};  ///< rest shape; null once the files have it
   };
   /// Of a garment, in the order of its file.

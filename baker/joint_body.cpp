@@ -48,6 +48,13 @@ void JointBody::sample(double time, std::span<Vec3> positions) const {
   fill(positions, [&](const Trajectory& body, std::span<Vec3> x) { body.sample(time, x); });
 }
 
+std::string JointBody::text() const {
+  std::string out;
+  for (std::size_t m = 0; m < members_.size(); ++m)
+    out += (m == 0 ? "" : m + 1 == members_.size() ? " and " : ", ") + members_[m].name;
+  return out;
+}
+
 std::size_t JointBody::member_of_part(int part) const {
   const auto next = std::upper_bound(first_part_.begin(), first_part_.end(), part);
   return static_cast<std::size_t>(next - first_part_.begin()) - 1;

@@ -32,6 +32,8 @@ class JointBody final : public Trajectory {
   /// First part of a member; of the number of members: how many parts there are.
   int first_part(std::size_t member) const { return first_part_[member]; }
   std::size_t member_of_part(int part) const;
+  /// The members' names: "walker, chair and floor".
+  std::string text() const;
 
  private:
   template <class Fill>

@@ -27,7 +27,8 @@ std::vector<ColliderSlice> collider_slices(const BakePlan& plan, const GroupPlan
     slice.vertices.push_back(static_cast<int>(v));
   }
   for (const Triangle& t : collider.triangles())
-    out[group.joint->member_of_part(parts[at(t[0])])].triangles.push_back({own[at(t[0])], own[at(t[1])], own[at(t[2])]});
+    out[group.joint->member_of_part(parts[at(t[0])])].triangles.push_back(
+        {own[at(t[0])], own[at(t[1])], own[at(t[2])]});
   return out;
 }
 

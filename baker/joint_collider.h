@@ -12,15 +12,15 @@
 namespace ft {
 
 struct ColliderSlice {
-  std::size_t primary = 0;           ///< into BakePlan::primaries
-  std::string name;                  ///< of the cached system: "walker.collider"; the primary's own where it is fixed
-  bool fixed = false;                ///< nothing there gives way: the collider is the body as drawn
-  std::vector<int> vertices;         ///< of the whole collider, ascending: those of the drawn body first
-  std::vector<Triangle> triangles;   ///< in the slice's own numbers
+  std::size_t primary = 0;          ///< into BakePlan::primaries
+  std::string name;                 ///< of the cached system: "walker.collider"; the primary's own where it is fixed
+  bool fixed = false;               ///< nothing there gives way: the collider is the body as drawn
+  std::vector<int> vertices;        ///< of the whole collider, ascending: those of the drawn body first
+  std::vector<Triangle> triangles;  ///< in the slice's own numbers
 };
 
-/// One for each body of a group with a joint body. taken: names that other groups' slices have; a second one of the same
-/// primary is called after the wearer, too.
+/// One for each body of a group with a joint body. taken: names that other groups' slices have; a second one of the
+/// same primary is called after the wearer, too.
 std::vector<ColliderSlice> collider_slices(const BakePlan& plan, const GroupPlan& group,
                                            std::span<const std::string> taken);
 

@@ -184,10 +184,11 @@ Status add_met(const std::filesystem::path& folder, const Manifest& manifest, co
     return std::find(cloth.meets.begin(), cloth.meets.end(), s.name) != cloth.meets.end();
   };
   for (const ManifestSystem& system : manifest.systems) {
-    const bool collides = is_met(system), drawn = system.role == "body" &&
-        (collides || std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& s) {
-           return is_met(s) && s.primary == system.primary;
-         }));
+    const bool collides = is_met(system),
+               drawn = system.role == "body" &&
+                       (collides ||
+                        std::any_of(manifest.systems.begin(), manifest.systems.end(),
+                                    [&](const ManifestSystem&s) { return is_met(s) && s.primary == system.primary; }));
     for (const auto& [wanted, tracks] : {std::pair(collides, &group.collider), std::pair(drawn, &group.body)}) {
       if (!wanted || !has_cache(folder, system)) continue;
       auto track = open_track(folder, system, manifest);

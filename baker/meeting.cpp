@@ -90,8 +90,10 @@ std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan
     if (std::none_of(cloths.begin(), cloths.end(), [&](const ClothReach& c) { return c.wearer == w; })) continue;
     const int root = together.root(static_cast<int>(w));
     const auto known = std::find(root_of.begin(), root_of.end(), root);
-    if (known == root_of.end()) root_of.push_back(root), out.push_back({{w}, {w}});
-    else out[at(known - root_of.begin())].wearers.push_back(w), out[at(known - root_of.begin())].bodies.push_back(w);
+    if (known == root_of.end())
+      root_of.push_back(root), out.push_back({{w}, {w}});
+    else
+      out[at(known - root_of.begin())].wearers.push_back(w), out[at(known - root_of.begin())].bodies.push_back(w);
   }
   for (Meeting& meeting : out) {
     for (std::size_t c = 0; c < cloths.size(); ++c) {

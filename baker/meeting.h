@@ -22,9 +22,9 @@ struct Meeting {
 struct ClothReach {
   std::string name;
   std::size_t wearer = 0;
-  Box start;                 ///< where it starts [m]
-  bool may_leave = false;    ///< nothing holds it to its wearer all the time
-  std::vector<char> meets;   ///< per primary
+  Box start;                ///< where it starts [m]
+  bool may_leave = false;   ///< nothing holds it to its wearer all the time
+  std::vector<char> meets;  ///< per primary
 };
 
 /// Whether a primary stands still in all frames of the shot, pre-roll included.

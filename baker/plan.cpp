@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/placed_trajectory.h"
 #include "baker/plan_cloths.h"
 #include "baker/plan_cords.h"
 #include "baker/quality.h"
@@ -91,6 +92,18 @@ void note_pass(const HybridPass& pass, const std::string& primary, std::vector<s
   notes.insert(notes.end(), pass.notes.begin(), pass.notes.end());
 }
 
+/// Where `position` and `rotation` have it.
+Status place_character(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported) {
+  if (spec.position == Vec3::Zero() && spec.rotation_deg == Vec3::Zero()) return {};
+  if (is_hybrid(shot, spec.name))
+    return usage_error("a character that yields to stand-ins cannot have position or rotation",
+                       shot.file.filename().string() + ": primary \"" + spec.name + "\"",
+                       "move it in the program that it comes from");
+  const Eigen::Isometry3d place = Eigen::Translation3d(spec.position) * rotation_of_degrees(spec.rotation_deg);
+  imported.trajectory = std::make_unique<PlacedTrajectory>(std::move(imported.trajectory), place);
+  return {};
+}
+
 Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, const Importer& importer,
                                    const std::filesystem::path& import_cache, std::vector<std::string>& notes) {
   const ImportRequest request = import_request(shot, spec, import_cache);
@@ -100,6 +113,7 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   for (const std::string& note : imported->info.notes) notes.push_back("primary \"" + spec.name + "\": " + note);
   if (const Status checked = check_primary(shot, spec, *imported->trajectory, imported->info, notes); !checked)
     return checked.error();
+  if (const Status placed = place_character(shot, spec, *imported); !placed) return placed.error();
   PrimaryPlan out;
   out.name = spec.name;
   out.scan = scan_of(shot, spec, *imported->trajectory);
@@ -196,8 +210,7 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     for (GroupPlan& group : *cloths)
       if (group.primary == p) plan.groups.push_back(std::move(group)), group.primary = plan.primaries.size();
     if (const Status planned = plan_cords(shot, p, plan); !planned) return planned.error();
-    if (plan.primaries[p].hybrid && !is_met(plan, p))
-      plan.groups.push_back({p, common_setup(shot), {}, {}});
+    if (plan.primaries[p].hybrid && !is_met(plan, p)) plan.groups.push_back({p, common_setup(shot), {}, {}});
   }
   if (plan.groups.empty()) return usage_error("no cloth or cords are on any primary", shot.file.string());
   return plan;

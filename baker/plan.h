@@ -49,11 +49,11 @@ struct GarmentOutput {
 struct GroupPlan {
   std::size_t primary = 0;  ///< into BakePlan::primaries: the first that has a secondary of the group
   ClothSetup setup;
-  std::vector<GarmentOutput> outputs;     ///< one per garment of setup, or cord system of lockstep
-  std::optional<LockstepSetup> lockstep;  ///< a group of cords: then `setup` is not used
-  std::shared_ptr<const JointBody> joint{};  ///< setup's primary, where cloth meets several bodies; else null
+  std::vector<GarmentOutput> outputs;            ///< one per garment of setup, or cord system of lockstep
+  std::optional<LockstepSetup> lockstep;         ///< a group of cords: then `setup` is not used
+  std::shared_ptr<const JointBody> joint{};      ///< setup's primary, where cloth meets several bodies; else null
   std::shared_ptr<const FeasiblePoses> poses{};  ///< of joint; the solver has them, too
-  std::vector<std::size_t> bodies{};         ///< the members of joint, into BakePlan::primaries; else empty
+  std::vector<std::size_t> bodies{};             ///< the members of joint, into BakePlan::primaries; else empty
   // Without outputs: a hybrid primary alone, whose adjusted motion is cached.
 };
 

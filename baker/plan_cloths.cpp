@@ -290,8 +290,8 @@ Status add_reaches(const Shot& shot, const GroupPlan& group, const BakePlan& pla
     const bool moved = std::none_of(pins.begin(), pins.end(), in_the_world);
     Box start;
     for (const Vec3& x : garment.mesh.positions) start.include(moved ? (to_start * x).eval() : x);
-    out.push_back({garment.name, group.primary, start, std::none_of(pins.begin(), pins.end(), holds_always),
-                   std::move(*meets)});
+    out.push_back(
+        {garment.name, group.primary, start, std::none_of(pins.begin(), pins.end(), holds_always), std::move(*meets)});
   }
   return {};
 }
@@ -365,8 +365,8 @@ Result<std::vector<GroupPlan>> plan_cloths(const Shot& shot, BakePlan& plan) {
   if (plan.primaries.size() > 1)
     for (const PrimaryPlan& primary : plan.primaries)
       if (const std::string why = why_alone(shot, primary); !why.empty())
-        plan.notes.push_back(fmt::format("cloth of others does not meet \"{}\", and its own meets nothing else: {}",
-                                         primary.name, why));
+        plan.notes.push_back(
+            fmt::format("cloth of others does not meet \"{}\", and its own meets nothing else: {}", primary.name, why));
   for (const Meeting& meeting : find_meetings(shot, plan.primaries, reaches)) {
     GroupPlan group = std::move(own[meeting.wearers[0]]);
     for (std::size_t w = 1; w < meeting.wearers.size(); ++w) merge_cloths(std::move(own[meeting.wearers[w]]), group);

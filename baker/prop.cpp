@@ -109,6 +109,12 @@ class PropTrajectory final : public Trajectory {
 
 }  // namespace
 
+Quat rotation_of_degrees(const Vec3& degrees) {
+  const Vec3 angles = degrees * (EIGEN_PI / 180);
+  return Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Vec3::UnitX());
+}
+
 Prop prop_of_shape(const PrimarySpec& spec, const Shot& shot) {
   Prop out;
   out.name = spec.name;
@@ -134,9 +140,7 @@ Prop prop_of_shape(const PrimarySpec& spec, const Shot& shot) {
   RigidMotion start;
   start.pose.position = spec.position;
   if (ground) start.pose.position.y() -= 0.5 * ground_size(spec).y();
-  const Vec3 angles = spec.rotation_deg * (EIGEN_PI / 180);
-  start.pose.rotation = Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
-                        Eigen::AngleAxisd(angles.x(), Vec3::UnitX());
+  start.pose.rotation = rotation_of_degrees(spec.rotation_deg);
   const Vec3 velocity = spec.velocity, spin = spec.spin;
   out.release = release_time(spec, shot);
   out.release_on_contact = spec.release == Release::k_contact;

@@ -27,6 +27,9 @@ struct Prop {
   bool release_on_contact = false;                           ///< or when it meets a secondary, in a two-way bake
 };
 
+/// Turned about x, then y, then z of the world.
+Quat rotation_of_degrees(const Vec3& degrees);
+
 /// Of a primary with a shape. The shot was judged.
 Prop prop_of_shape(const PrimarySpec& spec, const Shot& shot);
 

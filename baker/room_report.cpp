@@ -97,6 +97,15 @@ void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report
   });
   report.frame_count += static_cast<int>(count);
   const std::vector<char> met = met_parts(group, parts.size());
+  // Of several bodies, a part goes with its own primary's name.
+  const auto owner = [&](int part) {
+    return group.joint ? group.joint->members()[group.joint->member_of_part(part)].name : primary.name;
+  };
+  const auto name = [&](int part) {
+    const std::string &full = parts[at(part)].name, start = owner(part) + ".";
+    return group.joint && full.starts_with(start) ? full.substr(start.size()) : full;
+  };
+  const auto other = [&](int part, int of) { return owner(part) == owner(of) ? name(part) : parts[at(part)].name; };
   Ranges<std::pair<int, int>, RoomPlace> places(report.places);
   Ranges<std::size_t, AbsentPlace> absences(report.absent);
   for (std::size_t k = 0; k < count; ++k) {
@@ -107,17 +116,17 @@ void add_places(const BakePlan& plan, const GroupPlan& group, RoomReport& report
       if (known == nullptr || now.clearance < known->clearance) known = &now;
       if (!wears[at(now.part_a)] && !wears[at(now.part_b)]) continue;
       if (!met[at(now.part_a)] || !met[at(now.part_b)]) continue;
-      RoomPlace place{
-          primary.name, parts[at(now.part_a)].name, parts[at(now.part_b)].name, frame, frame, frame, now.clearance,
-          now.place};
+      RoomPlace place{owner(now.part_a), name(now.part_a), other(now.part_b, now.part_a), frame, frame, frame,
+                      now.clearance,     now.place};
       places.add({now.part_a, now.part_b}, frame, std::move(place),
                  [](const RoomPlace& a, const RoomPlace& b) { return a.clearance < b.clearance; });
     }
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (absent[k][p] <= 0 || !met[p]) continue;
       const TightPlace* by = tightest[p];
-      AbsentPlace place{primary.name, parts[p].name, by == nullptr ? "" : parts[at(by->part_b)].name, frame, frame,
-                        frame,        absent[k][p]};
+      const int part = static_cast<int>(p);
+      AbsentPlace place{owner(part), name(part),  by == nullptr ? "" : other(by->part_b, part), frame, frame,
+                        frame,       absent[k][p]};
       absences.add(p, frame, std::move(place),
                    [](const AbsentPlace& a, const AbsentPlace& b) { return a.share > b.share; });
     }

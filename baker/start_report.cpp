@@ -36,7 +36,9 @@ Start place(const ClothSetup& setup) {
     out.first_vertex.push_back(first);
     const bool in_the_world =
         std::any_of(garment.pins.begin(), garment.pins.end(), [](const ClothPin& pin) { return pin.to_world; });
-    const Eigen::Isometry3d move = in_the_world ? Eigen::Isometry3d::Identity() : setup.primary->bind_to_start();
+    const Eigen::Isometry3d move = in_the_world     ? Eigen::Isometry3d::Identity()
+                                   : garment.wearer ? garment.wearer->to_start
+                                                    : setup.primary->bind_to_start();
     for (const Vec3& p : garment.mesh.positions) out.x.push_back(move * p);
     for (const Triangle& t : triangulate(garment.mesh))
       out.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
@@ -50,6 +52,7 @@ Start place(const ClothSetup& setup) {
   return out;
 }
 
+/// primary: what the body is called.
 void add_body(const ClothSetup& setup, const std::string& primary, const Start& start, std::vector<BadStart>& bad) {
   const double time = -setup.preroll_frames / setup.fps;
   std::vector<Vec3> drawn(at(setup.primary->surface().vertex_count())),
@@ -116,7 +119,7 @@ StartReport find_start(const BakePlan& plan) {
     out.garment_count += static_cast<int>(setup.garments.size());
     const Start start = place(setup);
     std::vector<BadStart> bad;
-    add_body(setup, plan.primaries[group.primary].name, start, bad);
+    add_body(setup, group.joint ? group.joint->text() : plan.primaries[group.primary].name, start, bad);
     add_cloths(setup, start, bad);
     for (BadStart& b : bad) {
       if (b.vertex < 0) continue;

@@ -27,8 +27,8 @@ struct RefinedMesh {
 };
 
 /// Edges longer than max_edge [m] in the given pose are split until none is left, or until another round would give
-/// more than max_triangles (a hall's floor must not eat the memory). whole, per triangle or empty: these, which share no
-/// edge with others, are not split.
+/// more than max_triangles (a hall's floor must not eat the memory). whole, per triangle or empty: these, which share
+/// no edge with others, are not split.
 RefinedMesh refine_mesh(std::span<const Vec3> pose, std::span<const Triangle> triangles, double max_edge,
                         std::size_t max_triangles = 400'000, std::span<const char> whole = {});
 

@@ -208,11 +208,14 @@ bool has_prop(const Manifest& manifest) {
 
 /// Whether a system is a set that stands still, such as a ground: cloth was solved with its drawn body for a collider.
 bool stands(const Manifest& manifest, const std::string& name) {
-  return std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& cloth) {
-    return name == cloth.primary ? false : std::find(cloth.meets.begin(), cloth.meets.end(), name) != cloth.meets.end();
-  }) && std::none_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& s) {
-    return s.role != "body" && s.name == name;
-  });
+  return std::any_of(manifest.systems.begin(), manifest.systems.end(),
+                     [&](const ManifestSystem& cloth) {
+                       return name == cloth.primary
+                                  ? false
+                                  : std::find(cloth.meets.begin(), cloth.meets.end(), name) != cloth.meets.end();
+                     }) &&
+         std::none_of(manifest.systems.begin(), manifest.systems.end(),
+                      [&](const ManifestSystem& s) { return s.role != "body" && s.name == name; });
 }
 
 Result<Json> path_rows(const std::filesystem::path& folder, const Manifest& manifest, int frames) {

@@ -99,7 +99,7 @@
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
       geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
       s.plain = secondary(s) ? palette[garment++ % palette.length] : 0xc4beb4;
-      const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0,
+      const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
         side: s.role === 'cloth' ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
         wireframe: secondary(s) && $('wireframe').checked });
       s.mesh = new THREE.Mesh(geometry, material);

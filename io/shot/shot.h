@@ -46,7 +46,7 @@ struct PrimarySpec {
   std::vector<std::string> ignore;   ///< patterns (* and ?) of parts that no cloth meets
   Teleports teleports = Teleports::k_detect;
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
-  std::string shape;  ///< "sphere", "box", "capsule", "ground" instead of `file`; empty: from the file
+  std::string shape;                 ///< "sphere", "box", "capsule", "ground" instead of `file`; empty: from the file
   std::optional<double> radius;      ///< sphere, capsule [m]
   Vec3 size = Vec3::Zero();          ///< box [m]
   std::optional<double> length;      ///< capsule: between the centres of its ends, along y [m]
@@ -118,9 +118,9 @@ struct ClothSpec {
   double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
   double self_friction = 0.3;  ///< among cloths
   bool self_collision = true;
-  std::vector<std::string> ignores;  ///< patterns (* and ?) of parts of its primary that it does not meet
+  std::vector<std::string> ignores;     ///< patterns (* and ?) of parts of its primary that it does not meet
   std::vector<std::string> meets{"*"};  ///< patterns of primaries that it meets beside its own
-  std::string coupling = "one-way";  ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
+  std::string coupling = "one-way";     ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
 };
 
 /// [cords.NAME]: what follows, of cords: a net, a rope, a chain of knots, the edges of a mesh.

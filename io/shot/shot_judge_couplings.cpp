@@ -17,7 +17,8 @@ struct ChoiceKeys {
 
 constexpr ChoiceKeys k_primary_shapes[] = {
     {"", "file",
-     "animation topology clip clip_start speed unit_scale up source_fps body height meshes ignore teleports limbs"},
+     "animation topology clip clip_start speed unit_scale up source_fps body height meshes ignore teleports limbs "
+     "position rotation"},
     {"sphere", "radius", "position rotation velocity spin hollow"},
     {"box", "size", "position rotation velocity spin hollow"},
     {"capsule", "radius length", "position rotation velocity spin hollow"},

@@ -12,9 +12,12 @@ std::span<const ShotKey<PrimarySpec>> prop_keys() {
       {"length", &PrimarySpec::length, 1e-3, 1000, "m", "", false, "height",
        "Capsule: between the centres of its round ends, along y"},
       {"position", &PrimarySpec::position, -1e4, 1e4, "m", "", false, "centre center place location translate",
-       "A shape's centre at the shot's first frame, y up"},
+       "A shape's centre at the shot's first frame, of a ground a point of its upper side; a character or cache is "
+       "moved "
+       "by it. y up"},
       {"rotation", &PrimarySpec::rotation_deg, -3600, 3600, "degrees", "", false, "orientation angles rotate",
-       "A shape at the first frame: turned about x, then y, then z of the world"},
+       "A shape at the first frame, or all of a character or cache about the origin: turned about x, then y, then z of "
+       "the world"},
       {"velocity", &PrimarySpec::velocity, -1000, 1000, "m/s", "", false, "speed_vector throw",
        "Of a shape's centre; it keeps it until it is released"},
       {"spin", &PrimarySpec::spin, -10'000, 10'000, "rad/s", "", false, "angular_velocity omega",

@@ -55,7 +55,7 @@ struct ClothGarment {
     bool has(int part) const { return part >= first_part && part < first_part + part_count; }
   };
   std::optional<Wearer> wearer;
-  VertexMaps maps;           ///< one value per vertex of `mesh`, or empty
+  VertexMaps maps;  ///< one value per vertex of `mesh`, or empty
 };
 
 struct ClothSetup {

@@ -81,10 +81,10 @@ TEST(Quality, A_preview_moves_in_a_coarser_body) {
   ClothSetup setup;
   setup.primary = std::make_shared<ScriptedBody>(ball, bind, 0, [](double, std::span<Vec3>) {});
   apply_quality(shot, setup);
-  EXPECT_EQ(setup.primary->surface().triangles.size(), ball.triangles.size());
+  EXPECT_EQ(with_quality(shot, setup, setup.primary), setup.primary);
   shot.quality = "preview";
   apply_quality(shot, setup);
-  EXPECT_LT(2 * setup.primary->surface().triangles.size(), ball.triangles.size());
+  EXPECT_LT(2 * with_quality(shot, setup, setup.primary)->surface().triangles.size(), ball.triangles.size());
 }
 
 TEST(Quality, A_word_that_is_no_quality_is_refused) {
