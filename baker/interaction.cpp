@@ -101,6 +101,9 @@ std::vector<std::string> interaction_lines(const std::vector<Interaction>& inter
                                 primary.mass.kilograms > 0 ? "  a = " + text(i.acceleration, "m/s2") : ""));
     }
   }
+  for (const Interaction& i : interactions)
+    if (!i.secondary.empty() && i.frames == 0)
+      out.push_back(fmt::format("\"{}\" touches nothing in any frame: is it where \"{}\" is?", i.secondary, i.primary));
   return out;
 }
 
