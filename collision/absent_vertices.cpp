@@ -24,7 +24,7 @@ AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3>
   rank_of_vertex_.reserve(part_of_vertex.size());
   deepest_of_vertex_.reserve(part_of_vertex.size());
   part_of_vertex_.assign(part_of_vertex.begin(), part_of_vertex.end());
-  for (const SurfacePart& part : parts) parents_.push_back(part.parent);
+  for (const SurfacePart& part : parts) parents_.push_back(part.parent), fixed_.push_back(part.fixed ? 1 : 0);
   for (const int part : part_of_vertex) {
     rank_of_vertex_.push_back(rank[at(part)]);
     deepest_of_vertex_.push_back(static_cast<float>(std::max(deepest, k_pressed_flat * surface.half_thickness(part))));
@@ -121,6 +121,7 @@ void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> abs
   parallel_for(after.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (absent[v] != 0 || at(representative[v]) != v || normals[v] == Vec3::Zero()) continue;
+      if (fixed_[at(part_of_vertex_[v])] != 0) continue;
       const Vec3 &p = after[v], &along = normals[v];
       larger.for_each_near(part_of_vertex_[v], p, p + room_ * along, [&](int index) {
         const Triangle& t = triangles[at(index)];

@@ -7,6 +7,7 @@
 //     a way out of the middle of a trunk);
 //   - it looks at a larger part that is nearer than the cloth between needs: in an armpit, where skin folds on
 //     skin and carving leaves what touches in the bind pose as it is. Not where the two are jointed (creases.h).
+// What stands still (SurfacePart::fixed) is never absent: a chair on the ground stays a chair.
 #pragma once
 
 #include <span>
@@ -40,6 +41,7 @@ class AbsentVertices {
 
   const PartSurface* surface_ = nullptr;
   std::vector<int> part_of_vertex_, parents_;  ///< parents of parts
+  std::vector<char> fixed_;                    ///< of parts
   std::vector<int> rank_of_vertex_, rank_;     ///< rank_: of parts
   Adjacency neighbours_;
   TriangleTree tree_;

@@ -152,6 +152,21 @@ TEST(Scene, A_cloth_meets_what_its_key_says) {
   EXPECT_NE(wrong.error().text().find("did you mean \"floor\""), std::string::npos) << wrong.error().text();
 }
 
+TEST(Scene, A_box_on_the_ground_stays_whole) {
+  BallScene scene;
+  scene.add("[primary.chair]\nshape = \"box\"\nsize = [0.4, 0.3, 0.4]\nposition = [0, 0.15, 0]\nrelease = 9999\n");
+  scene.add_sheet("sheet", "chair", 0);
+  scene.add(k_ground);
+  auto plan = scene.plan();
+  ASSERT_TRUE(plan) << plan.error().text();
+  const FeasiblePoses& poses = *plan->groups.at(0).poses;
+  std::vector<Vec3> drawn(at(poses.body().surface().vertex_count())), x(at(poses.collider().vertex_count()));
+  std::vector<char> absent(x.size());
+  poses.body().sample(0, drawn);
+  EXPECT_EQ(poses.evaluate(0, drawn, x, absent).moved_vertices, 0);
+  EXPECT_EQ(std::count(absent.begin(), absent.end(), char{1}), 0) << "although its bottom looks at the ground";
+}
+
 TEST(Scene, Joint_bodies_keep_their_parts_apart_and_what_stands_still_as_it_is) {
   BallScene scene;
   scene.add_ball("ball", 0);

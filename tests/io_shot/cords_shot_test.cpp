@@ -121,7 +121,8 @@ TEST_F(CordsShot, A_primary_is_a_file_or_a_shape) {
   expect_fault({{"hollow = true", "clip = \"Roll\""}},
                "shot.toml:8:1: primary \"ball\": clip goes with file, not with shape = \"sphere\"");
   expect_fault({{"hollow = true", "size = [1, 1, 1]"}},
-               "shot.toml:8:1: primary \"ball\": size goes with shape = \"box\" or shape = \"ground\", not with shape = \"sphere\"");
+               "shot.toml:8:1: primary \"ball\": size goes with shape = \"box\" or shape = \"ground\", not with shape "
+               "= \"sphere\"");
   expect_fault({{"shape = \"sphere\"", "shape = \"capsule\""}},
                "shot.toml:4:1: primary \"ball\": length is missing; shape = \"capsule\" needs it");
   expect_fault({{"shape = \"sphere\"", "shape = \"spere\""}},
