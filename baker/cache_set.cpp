@@ -49,7 +49,7 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     solver.collider_positions(solver.initial_state(), collider);
     for (const ColliderSlice& slice : slices) {
       if (!slice.fixed) add_collider(g, slice, collider);
-      add_body(g, slice.primary, alone);
+      add_body(g, slice.primary);
     }
     if (!slices.empty()) continue;
     if (!collider.empty() && !plan.groups[g].lockstep) {  // a prop is its own collider
@@ -57,7 +57,7 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       source.mesh = shared(make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles()));
       add(std::move(source), primary.name + ".collider", "collider", false);
     }
-    add_body(g, plan.groups[g].primary, alone);
+    add_body(g, plan.groups[g].primary);
   }
 }
 
@@ -75,9 +75,11 @@ void CacheSet::add_collider(std::size_t group, const ColliderSlice& slice, std::
   add(std::move(source), slice.name, "collider", false);
 }
 
-/// The drawn body, unless another group has it.
-void CacheSet::add_body(std::size_t group, std::size_t primary, bool all_formats) {
+/// The drawn body, unless another group has it. Of a group without outputs it is what the bake is for.
+void CacheSet::add_body(std::size_t group, std::size_t primary) {
   const PrimaryPlan& body = plan_.primaries[primary];
+  const bool all_formats = std::any_of(plan_.groups.begin(), plan_.groups.end(),
+                                       [&](const GroupPlan& g) { return g.primary == primary && g.outputs.empty(); });
   if (std::any_of(systems_.begin(), systems_.end(), [&](const ManifestSystem& s) { return s.name == body.name; }))
     return;
   Source source{.group = group, .primary = primary};

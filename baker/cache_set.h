@@ -58,7 +58,7 @@ class CacheSet {
                                   std::span<const Vec3f> before) const;
   void slice_of(const Source& source, const State& state, std::span<Vec3> x) const;
   void add_collider(std::size_t group, const ColliderSlice& slice, std::span<const Vec3> collider);
-  void add_body(std::size_t group, std::size_t primary, bool all_formats);
+  void add_body(std::size_t group, std::size_t primary);
   std::vector<std::string> names() const;
   void add(Source source, std::string name, const std::string& role, bool all_formats);
 

@@ -59,6 +59,7 @@ std::vector<Interaction> interactions(const Manifest& manifest, const std::vecto
     for (const ManifestSystem& s : manifest.systems)
       if (is_secondary(s.role) && s.primary == primary.name) secondaries.push_back(s.name);
     std::vector<Sum> sums(secondaries.size());
+    std::vector<char> measured(secondaries.size(), 0);
     Sum together;
     for (const FrameReport& frame : manifest.frames) {
       if (frame.frame < manifest.first_written) continue;
@@ -67,7 +68,9 @@ std::vector<Interaction> interactions(const Manifest& manifest, const std::vecto
       bool any = false;
       for (const InteractionForce& f : frame.forces) {
         const auto own = std::find(secondaries.begin(), secondaries.end(), f.system);
-        if (own == secondaries.end() || f.contact_share <= 0) continue;
+        if (own == secondaries.end()) continue;
+        measured[static_cast<std::size_t>(own - secondaries.begin())] = 1;
+        if (f.contact_share <= 0) continue;
         sums[static_cast<std::size_t>(own - secondaries.begin())].add(f.mean.force, f.mean.torque, f.peak);
         all += f.mean;
         peak += f.peak;
@@ -75,8 +78,10 @@ std::vector<Interaction> interactions(const Manifest& manifest, const std::vecto
       }
       if (any) together.add(all.force, all.torque, peak);
     }
-    for (std::size_t s = 0; s < sums.size(); ++s)
+    for (std::size_t s = 0; s < sums.size(); ++s) {
       out.push_back(sums[s].row(primary.name, secondaries[s], primary.mass.kilograms, frame_time));
+      out.back().measured = measured[s] != 0;
+    }
     if (sums.size() > 1) out.push_back(together.row(primary.name, {}, primary.mass.kilograms, frame_time));
   }
   return out;
@@ -102,7 +107,7 @@ std::vector<std::string> interaction_lines(const std::vector<Interaction>& inter
     }
   }
   for (const Interaction& i : interactions)
-    if (!i.secondary.empty() && i.frames == 0)
+    if (i.measured && i.frames == 0)
       out.push_back(fmt::format("\"{}\" touches nothing in any frame: is it where \"{}\" is?", i.secondary, i.primary));
   return out;
 }

@@ -23,6 +23,7 @@ struct Interaction {
   std::string primary;
   std::string secondary;        ///< empty: all of the primary's together, where there are several
   int frames = 0;               ///< with contact
+  bool measured = false;        ///< its solver has told of its forces
   Spread force;                 ///< size of a frame's mean force [N]
   Spread torque;                ///< size of a frame's mean torque about the primary's centre of volume [N m]
   Spread acceleration;          ///< effective: |F| / M [m/s2]; all 0 where the mass is not known
@@ -33,7 +34,7 @@ struct Interaction {
 /// Of the written frames; secondaries in the manifest's order, each primary's sum behind its own.
 std::vector<Interaction> interactions(const Manifest& manifest, const std::vector<PrimaryPlan>& primaries);
 
-/// A table to be read, with the primaries' masses and where they come from; empty where nothing touched.
+/// A table to be read, with the primaries' masses and where they come from; and what touches nothing.
 std::vector<std::string> interaction_lines(const std::vector<Interaction>& interactions,
                                            const std::vector<PrimaryPlan>& primaries);
 Json to_json(const std::vector<Interaction>& interactions, const std::vector<PrimaryPlan>& primaries);

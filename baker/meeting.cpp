@@ -75,6 +75,7 @@ bool stands_still(const Shot& shot, const PrimaryPlan& primary) {
 
 std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan> primaries,
                                    std::span<const ClothReach> cloths) {
+  if (primaries.size() == 1) return {{{0}, {0}}};
   std::vector<std::vector<Box>> bodies, reaches;
   for (const PrimaryPlan& primary : primaries) bodies.push_back(boxes_of(shot, *primary.trajectory));
   for (const ClothReach& cloth : cloths) reaches.push_back(boxes_of(cloth, bodies[cloth.wearer], shot));

@@ -174,11 +174,12 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
   return {};
 }
 
-/// Whether some group has the primary for a body.
-bool is_met(const BakePlan& plan, std::size_t primary) {
+/// Whether some secondary is on the primary.
+bool has_secondaries(const BakePlan& plan, std::size_t primary) {
   return std::any_of(plan.groups.begin(), plan.groups.end(), [&](const GroupPlan& group) {
     return group.primary == primary ||
-           std::find(group.bodies.begin(), group.bodies.end(), primary) != group.bodies.end();
+           std::any_of(group.outputs.begin(), group.outputs.end(),
+                       [&](const GarmentOutput& output) { return group.joint && output.primary == primary; });
   });
 }
 
@@ -210,7 +211,7 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     for (GroupPlan& group : *cloths)
       if (group.primary == p) plan.groups.push_back(std::move(group)), group.primary = plan.primaries.size();
     if (const Status planned = plan_cords(shot, p, plan); !planned) return planned.error();
-    if (plan.primaries[p].hybrid && !is_met(plan, p)) plan.groups.push_back({p, common_setup(shot), {}, {}});
+    if (plan.primaries[p].hybrid && !has_secondaries(plan, p)) plan.groups.push_back({p, common_setup(shot), {}, {}});
   }
   if (plan.groups.empty()) return usage_error("no cloth or cords are on any primary", shot.file.string());
   return plan;
