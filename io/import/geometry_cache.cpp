@@ -7,6 +7,7 @@
 
 #include "baker/core/bytes.h"
 #include "baker/core/file.h"
+#include "io/cache/cache.h"
 #include "io/import/stray_vertices.h"
 #include "io/shot/mesh_file.h"
 
@@ -109,11 +110,29 @@ Status read_obj_sequence(const std::filesystem::path& file, double fps, Hasher& 
   return {};
 }
 
+/// A mesh of an Alembic archive, by our own reader. fps above 0 is in the place of the file's.
+Status read_alembic(const std::filesystem::path& file, double fps, GeometryCache& out) {
+  auto reader = open_cache(file);
+  if (!reader) return reader.error();
+  const CacheInfo& info = (*reader)->info();
+  if (info.frame_count < 1) return input_error("holds no sample", file.string());
+  out.mesh = info.mesh;
+  out.vertex_count = info.vertex_count;
+  out.positions.reserve(at(info.frame_count) * at(info.vertex_count));
+  std::vector<Vec3f> frame;
+  for (int i = 0; i < info.frame_count; ++i) {
+    if (const Status read = (*reader)->read_frame(i, frame); !read) return read;
+    out.positions.insert(out.positions.end(), frame.begin(), frame.end());
+    out.times.push_back(i / (fps > 0 ? fps : info.fps));
+  }
+  return {};
+}
+
 }  // namespace
 
 bool is_geometry_cache(const std::filesystem::path& file) {
   const std::string e = extension(file);
-  return e == ".pc2" || e == ".mdd" || e == ".obj";
+  return e == ".pc2" || e == ".mdd" || e == ".obj" || e == ".abc";
 }
 
 Result<std::vector<std::filesystem::path>> numbered_sequence(const std::filesystem::path& file) {
@@ -164,8 +183,10 @@ Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, con
     if (!bytes) return bytes.error();
     const Hash128 hash = hash_bytes(*bytes);
     hasher.number(hash.low).number(hash.high);
-    out.format = kind == ".pc2" ? "PC2" : "MDD";
-    const Status read = kind == ".pc2" ? read_pc2(*bytes, fps, name, out) : read_mdd(*bytes, fps, name, out);
+    out.format = kind == ".pc2" ? "PC2" : kind == ".mdd" ? "MDD" : "Alembic";
+    const Status read = kind == ".pc2"   ? read_pc2(*bytes, fps, name, out)
+                        : kind == ".mdd" ? read_mdd(*bytes, fps, name, out)
+                                         : read_alembic(file, fps, out);
     if (!read) return read.error();
   }
   if (!topology.empty()) {

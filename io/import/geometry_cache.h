@@ -1,5 +1,5 @@
-// Primaries that are a geometry cache: PC2 and MDD with an OBJ for the faces, or a numbered sequence of OBJ files (one
-// alone is a prop that stands still). Read whole, in the file's own vertex order.
+// Primaries that are a geometry cache: Alembic, PC2 and MDD with an OBJ for the faces, or a numbered sequence of OBJ
+// files (one alone is a prop that stands still). Read whole, in the file's own vertex order.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct StrayVertex {
 };
 
 struct GeometryCache {
-  std::string format;  ///< "PC2", "MDD", "OBJ"
+  std::string format;  ///< "Alembic", "PC2", "MDD", "OBJ"
   Mesh mesh;           ///< faces; positions are those of the topology file
   int vertex_count = 0;
   std::vector<double> times;     ///< s, ascending, the first is 0

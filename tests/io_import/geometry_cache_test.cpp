@@ -8,8 +8,10 @@
 #include <cstdio>
 
 #include "baker/core/file.h"
+#include "io/cache/cache.h"
 #include "io/import/import.h"
 #include "io/import/sampled_trajectory.h"
+#include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
 
 namespace ft {
@@ -76,7 +78,24 @@ void expect_motion(const ImportRequest& request) {
   EXPECT_LT((p[2] - place(4, 2).cast<double>()).norm(), 1e-6) << "held after the end";
 }
 
-TEST(Geometry_cache, Pc2_mdd_and_obj_sequences_move_alike) {
+/// As a bake leaves it, at 10 fps.
+void write_alembic(const std::filesystem::path& file, const std::filesystem::path& topology) {
+  CacheInfo info;
+  info.system = "body";
+  info.mesh = *read_obj(topology);
+  info.fps = 10;
+  info.frame_count = 5;
+  auto writer = find_cache_format("abc")->open_writer(file, info, 0);
+  ASSERT_TRUE(writer) << writer.error().text();
+  for (int s = 0; s < 5; ++s) {
+    std::vector<Vec3> x;
+    for (int v = 0; v < 4; ++v) x.push_back(place(s, v).cast<double>());
+    ASSERT_TRUE((*writer)->write_frame(x, {}));
+  }
+  ASSERT_TRUE((*writer)->close());
+}
+
+TEST(Geometry_cache, Pc2_mdd_alembic_and_obj_sequences_move_alike) {
   const test::ScratchFolder scratch;
   ASSERT_TRUE(write_text_durably(scratch / "body.obj", k_tetrahedron));
   ASSERT_TRUE(write_file_durably(scratch / "body.pc2", make_pc2(4, 5)));
@@ -104,7 +123,12 @@ TEST(Geometry_cache, Pc2_mdd_and_obj_sequences_move_alike) {
   expect_motion(request);
   request.source_fps = 0;  // an MDD has times of its own
   expect_motion(request);
-  request.topology.clear(), request.source_fps = 10;
+  request.topology.clear();
+  write_alembic(scratch / "body.abc", scratch / "body.obj");
+  request.file = scratch / "body.abc";  // so has Alembic, and faces
+  expect_motion(request);
+  request.source_fps = 10;
+  expect_motion(request);
   request.file = scratch / "step_100.obj";  // 98, 99, 100: by number, not by letter
   expect_motion(request);
   request.file = scratch / "step_####.obj";
