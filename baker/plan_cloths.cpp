@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "baker/meeting.h"
 #include "baker/pins.h"
 #include "baker/plan_common.h"
-#include "baker/quality.h"
 #include "baker/vertex_maps.h"
 #include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
@@ -18,11 +16,12 @@
 #include "solvers/cloth/coarse_garment.h"
 
 namespace ft {
-namespace {
 
 std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
   return shot.file.filename().string() + ": cloth \"" + cloth.name + "\"";
 }
+
+namespace {
 
 /// Scale, axis and offset of the shot file -> metres, Y-up, the primary's bind pose.
 void place_garment(Mesh& mesh, const ClothSpec& spec) {
@@ -238,7 +237,19 @@ void note_riding(const ClothGarment& garment, std::vector<std::string>& notes) {
                   garment.name, all - moves->kept.size(), all, 1e3 * shortest_edge(garment)));
 }
 
-/// The cloths of one primary, as if they met nothing else.
+}  // namespace
+
+ClothSetup common_setup(const Shot& shot) {
+  ClothSetup setup;
+  take_from_shot(shot, setup);
+  setup.max_substeps = shot.solver.max_substeps;
+  setup.newton_iterations = shot.solver.newton_iterations;
+  setup.linear_tolerance = shot.solver.linear_tolerance;
+  setup.feasible.gap = shot.solver.gap;
+  setup.feasible.carve = shot.solver.carve;
+  return setup;
+}
+
 Result<GroupPlan> cloths_of(const Shot& shot, std::size_t p, BakePlan& plan) {
   GroupPlan group{p, common_setup(shot), {}, {}};
   group.setup.primary = plan.primaries[p].trajectory;
@@ -258,129 +269,6 @@ Result<GroupPlan> cloths_of(const Shot& shot, std::size_t p, BakePlan& plan) {
     return added.error();
   for (const ClothGarment& garment : group.setup.garments) note_riding(garment, plan.notes);
   return group;
-}
-
-/// Why no other primary's cloth can meet a primary, nor its own cloth another primary; empty: they can.
-std::string why_alone(const Shot& shot, const PrimaryPlan& primary) {
-  const auto two_way = [&](const CordsSpec& c) { return c.on == primary.name && c.coupling == "two-way"; };
-  if (std::any_of(shot.cords.begin(), shot.cords.end(), two_way))
-    return "where it goes is only known once its cords are solved (two-way)";
-  if (!primary.scan.teleports.empty()) return "it is cut to another place within the shot";
-  return {};
-}
-
-/// What decides about the cloths of a group that was made by cloths_of().
-Status add_reaches(const Shot& shot, const GroupPlan& group, const BakePlan& plan, std::vector<ClothReach>& out) {
-  const Eigen::Isometry3d to_start = group.setup.primary->bind_to_start();
-  for (const ClothGarment& garment : group.setup.garments) {
-    const auto spec = std::find_if(shot.cloths.begin(), shot.cloths.end(),
-                                   [&](const ClothSpec& cloth) { return cloth.name == garment.name; });
-    CHECK(spec != shot.cloths.end());
-    auto meets = meets_of(*spec, plan.primaries);
-    if (!meets) return at_place(meets.error(), cloth_place(shot, *spec));
-    for (std::size_t p = 0; p < plan.primaries.size(); ++p)
-      if (p != group.primary &&
-          (!why_alone(shot, plan.primaries[p]).empty() || !why_alone(shot, plan.primaries[group.primary]).empty()))
-        (*meets)[p] = 0;
-    const auto holds_always = [](const ClothPin& pin) {
-      return pin.to < 0 && !pin.to_world && pin.hold.from == HoldSpan{}.from && pin.hold.until == HoldSpan{}.until;
-    };
-    const auto in_the_world = [](const ClothPin& pin) { return pin.to_world; };
-    const auto& pins = garment.pins;
-    const bool moved = std::none_of(pins.begin(), pins.end(), in_the_world);
-    Box start;
-    for (const Vec3& x : garment.mesh.positions) start.include(moved ? (to_start * x).eval() : x);
-    out.push_back(
-        {garment.name, group.primary, start, std::none_of(pins.begin(), pins.end(), holds_always), std::move(*meets)});
-  }
-  return {};
-}
-
-/// Adds the cloths of `other` to a group.
-void merge_cloths(GroupPlan&& other, GroupPlan& group) {
-  const int first = static_cast<int>(group.setup.garments.size());
-  for (std::size_t g = 0; g < other.outputs.size(); ++g) {
-    for (ClothPin& pin : other.setup.garments[g].pins)
-      if (pin.to >= 0) pin.to += first;
-    group.setup.garments.push_back(std::move(other.setup.garments[g]));
-    group.outputs.push_back(std::move(other.outputs[g]));
-  }
-}
-
-/// Makes several primaries the one body of a group. A garment goes on ignoring what its own keys say, and all of those
-/// primaries that it does not meet.
-void join_bodies(const Shot& shot, const BakePlan& plan, const Meeting& meeting, std::span<const ClothReach> reaches,
-                 GroupPlan& group) {
-  std::vector<JointBody::Member> members;
-  for (const std::size_t p : meeting.bodies) {
-    const PrimaryPlan& primary = plan.primaries[p];
-    members.push_back({primary.name, with_quality(shot, group.setup, primary.trajectory), stands_still(shot, primary)});
-  }
-  group.joint = std::make_shared<const JointBody>(std::move(members));
-  group.bodies = meeting.bodies;
-  for (std::size_t g = 0; g < group.setup.garments.size(); ++g) {
-    ClothGarment& garment = group.setup.garments[g];
-    const auto reach = std::find_if(reaches.begin(), reaches.end(),
-                                    [&](const ClothReach& known) { return known.name == garment.name; });
-    CHECK(reach != reaches.end());
-    for (std::size_t m = 0; m < group.bodies.size(); ++m) {
-      const int first = group.joint->first_part(m), end = group.joint->first_part(m + 1);
-      if (group.bodies[m] == group.outputs[g].primary) {
-        for (int& part : garment.ignores) part += first;
-        garment.wearer = {first, end - first, plan.primaries[group.bodies[m]].trajectory->bind_to_start()};
-      }
-    }
-    for (std::size_t m = 0; m < group.bodies.size(); ++m) {
-      if (reach->meets[group.bodies[m]] != 0) continue;
-      for (int part = group.joint->first_part(m); part < group.joint->first_part(m + 1); ++part)
-        garment.ignores.push_back(part);
-    }
-    std::sort(garment.ignores.begin(), garment.ignores.end());
-  }
-  group.setup.primary = group.joint;
-}
-
-}  // namespace
-
-ClothSetup common_setup(const Shot& shot) {
-  ClothSetup setup;
-  take_from_shot(shot, setup);
-  setup.max_substeps = shot.solver.max_substeps;
-  setup.newton_iterations = shot.solver.newton_iterations;
-  setup.linear_tolerance = shot.solver.linear_tolerance;
-  setup.feasible.gap = shot.solver.gap;
-  setup.feasible.carve = shot.solver.carve;
-  return setup;
-}
-Result<std::vector<GroupPlan>> plan_cloths(const Shot& shot, BakePlan& plan) {
-  std::vector<GroupPlan> own, out;
-  std::vector<ClothReach> reaches;
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-    auto group = cloths_of(shot, p, plan);
-    if (!group) return group.error();
-    if (const Status added = add_reaches(shot, *group, plan, reaches); !added) return added.error();
-    own.push_back(std::move(*group));
-  }
-  if (reaches.empty()) return out;
-  if (plan.primaries.size() > 1)
-    for (const PrimaryPlan& primary : plan.primaries)
-      if (const std::string why = why_alone(shot, primary); !why.empty())
-        plan.notes.push_back(
-            fmt::format("cloth of others does not meet \"{}\", and its own meets nothing else: {}", primary.name, why));
-  for (const Meeting& meeting : find_meetings(shot, plan.primaries, reaches)) {
-    GroupPlan group = std::move(own[meeting.wearers[0]]);
-    for (std::size_t w = 1; w < meeting.wearers.size(); ++w) merge_cloths(std::move(own[meeting.wearers[w]]), group);
-    apply_quality(shot, group.setup);
-    if (meeting.bodies.size() > 1) {
-      join_bodies(shot, plan, meeting, reaches, group);
-    } else {
-      group.setup.primary = with_quality(shot, group.setup, group.setup.primary);
-    }
-    group.setup.poses = std::make_shared<FeasiblePoses>(group.setup.primary, group.setup.feasible);
-    if (group.joint) group.poses = group.setup.poses;
-    out.push_back(std::move(group));
-  }
-  return out;
 }
 
 }  // namespace ft
