@@ -23,6 +23,9 @@ constexpr double k_touching = 5e-4;
 /// it is on the wrong side. Less for skin of another part.
 constexpr double k_same_side = 0.08, k_same_side_elsewhere = 0.03;
 
+/// Cloth is caught where it is stretched by this share [1], so near to what it does not wear, in contact radii.
+constexpr double k_caught = 0.25, k_caught_reach = 2;
+
 /// Cloth that was put on lies no farther from the skin [m].
 constexpr double k_on_skin = 0.05;
 
@@ -255,18 +258,51 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
         if (held[k].inside) open_skin(std::span(&near[k], 1));
       }
     }
-    bool more = true;
-    while (more) {
-      more = false;
-      for (std::size_t p = 0; p < parents_.size(); ++p)
-        if (gone[p] == 0 && parents_[p] >= 0 && gone[at(parents_[p])] != 0) gone[p] = 1, more = true;
-    }
+    add_descendants(gone);
     grow(model, body, k_margin, 0, stays);
     for (int b = 0; b < static_cast<int>(body_count_); ++b) {
       char& is = motion.absent[place(g, b)];
       const bool limb = gone[at(parts[at(b)])] != 0;
       is = static_cast<char>(planned(g, b, deep) || limb || stays[at(b)] != 0);
     }
+  }
+}
+
+void Absence::add_descendants(std::vector<char>& gone) const {
+  bool more = true;
+  while (more) {
+    more = false;
+    for (std::size_t p = 0; p < parents_.size(); ++p)
+      if (gone[p] == 0 && parents_[p] >= 0 && gone[at(parents_[p])] != 0) gone[p] = 1, more = true;
+  }
+}
+
+void Absence::let_go_of_what_caught(const ClothModel& model, const CheckedSurface& collider,
+                                    ClothMotion& motion) const {
+  const auto parts = model.collider->part_of_vertex();
+  std::vector<std::vector<char>> gone(worn_.size(), std::vector<char>(parents_.size(), 0));
+  bool any = false;
+  const RestEdges& rest = model.rest_edges;
+  for (std::size_t e = 0; e < rest.edges.size(); ++e) {
+    const auto [a, b] = rest.edges[e];
+    if ((motion.x[at(a)] - motion.x[at(b)]).norm() < (1 + k_caught) * rest.lengths[e]) continue;
+    for (const int v : {a, b}) {
+      const int g = model.garment_of(v);
+      const double reach = k_caught_reach * model.contact.radius[at(v)];
+      const Nearest n = nearest(motion.x[at(v)], collider.positions(), collider.triangles(), collider.tree(), reach);
+      if (n.triangle < 0) continue;
+      const Triangle& t = collider.triangles()[at(n.triangle)];
+      const int part = parts[at(t[0])];
+      if (worn_[at(g)][at(part)] != 0 || is_absent(motion.absent, g, t)) continue;
+      gone[at(g)][at(part)] = 1;
+      any = true;
+    }
+  }
+  if (!any) return;
+  for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
+    add_descendants(gone[at(g)]);
+    for (int b = 0; b < static_cast<int>(body_count_); ++b)
+      if (gone[at(g)][at(parts[at(b)])] != 0) motion.absent[place(g, b)] = 1;
   }
 }
 

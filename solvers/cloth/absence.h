@@ -4,7 +4,8 @@
 //   planned    the body is too deep in itself there (collision/absent_vertices.h), or the shot has it ignored
 //   let go     cloth was blocked on all sides (Candidates::release_blocked), or what was planned is over but the cloth
 //              is still on the wrong side or crosses it. A part that a garment does not wear (a hand, for a skirt) and
-//              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook.
+//              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook. So
+//              does one in which cloth is caught, which would drag it along and stretch it.
 //
 // What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it. Until
 // then cloth that it lay on is drawn back there (draw_back.h), and other cloth inside is pushed out. What is absent for
@@ -58,6 +59,9 @@ class Absence {
   /// cloth (first) with the collider, absent or not.
   void bring_back(const ClothModel& model, std::span<const Crossing> crossings, const CheckedSurface& collider,
                   std::span<const char> deep, ClothMotion& motion) const;
+  /// At the end of a frame, after bring_back(): a part that a garment does not wear and that has caught it, so that the
+  /// cloth on it is stretched far beyond what clothes bear, goes as a whole with all that hangs on it.
+  void let_go_of_what_caught(const ClothModel& model, const CheckedSurface& collider, ClothMotion& motion) const;
   /// Of a garment's vertices that are let go, how many, and one of them, or -1.
   struct LetGo {
     int count = 0, vertex = -1;
@@ -88,6 +92,8 @@ class Absence {
     float weight[3] = {0, 0, 0};
     float height = 0;  ///< along the triangle's normal [m]
   };
+  /// Adds all parts that hang on parts that are gone.
+  void add_descendants(std::vector<char>& gone) const;
   void grow(const ClothModel& model, std::span<const Vec3> body, double reach, int least_rank,
             std::vector<char>& marked) const;
 

@@ -188,6 +188,7 @@ int Certificate::certify(const BodyPose& body, ClothMotion& m, FrameReport& repo
   avoidable += certify_cloths(model_, own, m, report);
   if (model_.collider) {
     model_.absence.bring_back(model_, with_body, collider_, body.absent, m);
+    model_.absence.let_go_of_what_caught(model_, collider_, m);
     describe_absent(model_, body, m, report);
   }
   cloth_.forget_boxes();
