@@ -25,7 +25,8 @@ std::span<const ShotKey<Shot>> shot_keys() {
 std::span<const ShotKey<PrimarySpec>> primary_keys() {
   static const ShotKey<PrimarySpec> keys[] = {
       {"file", &PrimarySpec::file, 0, 0, "", "", false, "mesh path model character",
-       "Character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (Alembic, PC2, MDD, OBJ sequence); or `shape`, below"},
+       "Character (FBX, glTF/GLB, DAE, BVH, ...) or geometry cache (Alembic, PC2, MDD, OBJ sequence); or `shape`, "
+       "below"},
       {"animation", &PrimarySpec::animation, 0, 0, "", "", false, "motion anim",
        "Second file with the motion for the skeleton in `file`, matched by node name"},
       {"topology", &PrimarySpec::topology, 0, 0, "", "", false, "faces mesh",
