@@ -23,8 +23,9 @@ constexpr double k_touching = 5e-4;
 /// it is on the wrong side. Less for skin of another part.
 constexpr double k_same_side = 0.08, k_same_side_elsewhere = 0.03;
 
-/// Cloth is caught where it is stretched by this share [1], so near to what it does not wear, in contact radii.
-constexpr double k_caught = 0.25, k_caught_reach = 2;
+/// A garment is caught where it is stretched by this share [1], so near to what it does not wear, in contact radii; and
+/// where that goes for this share of its edges [1], for single ones of tight clothes are.
+constexpr double k_caught = 0.25, k_caught_reach = 2, k_caught_edges = 0.005;
 
 /// Cloth that was put on lies no farther from the skin [m].
 constexpr double k_on_skin = 0.05;
@@ -281,13 +282,22 @@ void Absence::let_go_of_what_caught(const ClothModel& model, const CheckedSurfac
                                     ClothMotion& motion) const {
   const auto parts = model.collider->part_of_vertex();
   std::vector<std::vector<char>> gone(worn_.size(), std::vector<char>(parents_.size(), 0));
-  bool any = false;
   const RestEdges& rest = model.rest_edges;
+  std::vector<int> edges(worn_.size(), 0), stretched_count(worn_.size(), 0);
+  std::vector<Edge> stretched;
   for (std::size_t e = 0; e < rest.edges.size(); ++e) {
     const auto [a, b] = rest.edges[e];
+    const std::size_t g = at(model.garment_of(a));
+    ++edges[g];
     if ((motion.x[at(a)] - motion.x[at(b)]).norm() < (1 + k_caught) * rest.lengths[e]) continue;
+    ++stretched_count[g];
+    stretched.push_back(rest.edges[e]);
+  }
+  bool any = false;
+  for (const auto& [a, b] : stretched) {
+    const int g = model.garment_of(a);
+    if (stretched_count[at(g)] < k_caught_edges * edges[at(g)]) continue;
     for (const int v : {a, b}) {
-      const int g = model.garment_of(v);
       const double reach = k_caught_reach * model.contact.radius[at(v)];
       const Nearest n = nearest(motion.x[at(v)], collider.positions(), collider.triangles(), collider.tree(), reach);
       if (n.triangle < 0) continue;
