@@ -206,16 +206,12 @@ bool has_prop(const Manifest& manifest) {
   });
 }
 
-/// Whether a system is a set that stands still, such as a ground: cloth was solved with its drawn body for a collider.
-bool stands(const Manifest& manifest, const std::string& name) {
-  return std::any_of(manifest.systems.begin(), manifest.systems.end(),
-                     [&](const ManifestSystem& cloth) {
-                       return name == cloth.primary
-                                  ? false
-                                  : std::find(cloth.meets.begin(), cloth.meets.end(), name) != cloth.meets.end();
-                     }) &&
-         std::none_of(manifest.systems.begin(), manifest.systems.end(),
-                      [&](const ManifestSystem& s) { return s.role != "body" && s.name == name; });
+/// Whether a primary is a set that stands still, such as a ground: cloth of others was solved with its drawn body for a
+/// collider.
+bool stands(const Manifest& manifest, const std::string& primary) {
+  return std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& cloth) {
+    return cloth.primary != primary && std::find(cloth.meets.begin(), cloth.meets.end(), primary) != cloth.meets.end();
+  });
 }
 
 Result<Json> path_rows(const std::filesystem::path& folder, const Manifest& manifest, int frames) {

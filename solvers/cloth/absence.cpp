@@ -73,7 +73,10 @@ Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->verte
   const ClothSetup& setup = model.setup;
   const auto parts = model.collider->part_of_vertex();
   const auto triangles = model.collider->triangles();
-  for (const SurfacePart& part : model.collider->trajectory().surface().parts) parents_.push_back(part.parent);
+  for (const SurfacePart& part : model.collider->trajectory().surface().parts) {
+    parents_.push_back(part.parent);
+    fixed_.push_back(part.fixed ? 1 : 0);
+  }
   neighbours_ = vertex_neighbours(body_count_, unique_edges(triangles));
   std::vector<Vec3> bind(body_count_);
   model.collider->refined_bind(bind);
@@ -162,7 +165,7 @@ int Absence::let_go(const ClothModel& model, int garment, std::span<const int> b
   std::vector<char> marked(body_count_, 0);
   int rank = std::numeric_limits<int>::max();
   for (const int v : body_vertices) {
-    if (worn_[at(garment)][at(parts[at(v)])] != 0) continue;
+    if (!goes_whole(garment, parts[at(v)])) continue;
     marked[at(v)] = 1;
     rank = std::min(rank, model.part_rank[at(parts[at(v)])]);
   }
@@ -212,7 +215,7 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
       for (const int b : element) {
         if (deep[at(b)] != 0) continue;
         stays[at(b)] = 1;
-        if (is_through && worn_[at(g)][at(parts[at(b)])] == 0) gone[at(parts[at(b)])] = 1;
+        if (is_through && goes_whole(g, parts[at(b)])) gone[at(parts[at(b)])] = 1;
       }
     };
     for (const Crossing& c : crossings) {
@@ -303,7 +306,7 @@ void Absence::let_go_of_what_caught(const ClothModel& model, const CheckedSurfac
       if (n.triangle < 0) continue;
       const Triangle& t = collider.triangles()[at(n.triangle)];
       const int part = parts[at(t[0])];
-      if (worn_[at(g)][at(part)] != 0 || is_absent(motion.absent, g, t)) continue;
+      if (!goes_whole(g, part) || is_absent(motion.absent, g, t)) continue;
       gone[at(g)][at(part)] = 1;
       any = true;
     }

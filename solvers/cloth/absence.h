@@ -86,6 +86,12 @@ class Absence {
   bool planned(int garment, int body_vertex, std::span<const char> deep) const {
     return deep[static_cast<std::size_t>(body_vertex)] != 0 || ignored_[place(garment, body_vertex)] != 0;
   }
+  /// Whether a part goes as a whole, where a garment has got through it or is caught in it: a limb that the garment
+  /// does not wear. A set that stands still never does.
+  bool goes_whole(int garment, int part) const {
+    return worn_[static_cast<std::size_t>(garment)][static_cast<std::size_t>(part)] == 0 &&
+           fixed_[static_cast<std::size_t>(part)] == 0;
+  }
   /// Where a vertex of the cloth lay on the collider in the bind pose.
   struct Anchor {
     Triangle triangle{-1, -1, -1};  ///< -1: it did not lie on it
@@ -101,6 +107,7 @@ class Absence {
   std::vector<char> ignored_;            ///< as ClothMotion::absent
   std::vector<std::vector<char>> worn_;  ///< per garment and part
   std::vector<int> parents_;             ///< per part
+  std::vector<char> fixed_;              ///< per part: SurfacePart::fixed
   Adjacency neighbours_;                 ///< of the collider's vertices
   TriangleTree tree_;                    ///< of the collider in its bind pose
   std::vector<Anchor> anchors_;          ///< per vertex of the cloth

@@ -14,7 +14,7 @@ namespace {
 /// A sheet on a large ball, which it wears, and a small ball a metre above, which it does not.
 class CaughtScene {
  public:
-  CaughtScene() {
+  explicit CaughtScene(bool fixed = false) {
     Surface surface;
     std::vector<Vec3> points;
     make_sphere(0.3, 16, 24, points, surface.triangles);
@@ -22,6 +22,7 @@ class CaughtScene {
     make_sphere(0.05, 12, 16, points, surface.triangles);
     for (std::size_t i = large; i < points.size(); ++i) points[i].y() += k_height;
     surface.parts = {{"trunk", -1, 1.0}, {"hand", -1, 0.001}};
+    surface.parts[1].fixed = fixed;
     surface.part_of_vertex.resize(points.size(), 1);
     std::fill_n(surface.part_of_vertex.begin(), large, 0);
     ClothSetup setup;
@@ -68,6 +69,12 @@ TEST(Absence, A_part_in_which_cloth_is_caught_goes_as_a_whole) {
   scene.motion.x[0] = Vec3(0, CaughtScene::k_height + 0.053, 0);  // stretched to it, by far
   EXPECT_EQ(scene.absent(1), 1);
   EXPECT_EQ(scene.absent(0), 0) << "what is worn stays";
+}
+
+TEST(Absence, A_set_that_stands_still_is_never_let_go_as_a_whole) {
+  CaughtScene scene(true);
+  scene.motion.x[0] = Vec3(0, CaughtScene::k_height + 0.053, 0);
+  EXPECT_EQ(scene.absent(1), 0) << "cloth that is caught on the ground would fall through it";
 }
 
 TEST(Absence, What_is_stretched_elsewhere_has_not_been_caught) {
