@@ -98,13 +98,12 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
   auto inputs = read_inputs(options.shot_file, overrides, {}, faults);
   if (!inputs) return inputs.error();
   // Whatever the shot file has them, forces are those on a primary that does not yield.
-  for (ClothSpec& cloth : inputs->shot.cloths) cloth.coupling = "one-way";
-  for (CordsSpec& cords : inputs->shot.cords) cords.coupling = "one-way";
+  for (const auto& secondary : inputs->shot.secondaries) secondary->coupling = "one-way";
   auto plan = make_plan(std::move(*inputs), services.importer, {});
   if (!plan) return plan.error();
-  std::erase_if(plan->groups, [](const GroupPlan& group) { return group.outputs.empty(); });
+  std::erase_if(plan->groups, [](const auto& group) { return group->outputs.empty(); });
   if (plan->groups.empty())
-    return usage_error("has no cloth or cords whose forces could be measured", options.shot_file.string(),
+    return usage_error("has no secondary whose forces could be measured", options.shot_file.string(),
                        "stand-ins alone are met by bake");
   const Shot& shot = plan->shot();
   AdvicePass out;
@@ -113,11 +112,11 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
   double frame_seconds = 0;
   std::vector<FrameReport> reports;
   auto left = static_cast<double>(plan->groups.size());  // groups that share what is left of the time
-  for (GroupPlan& group : plan->groups) {
-    const PrimaryPlan& primary = plan->primaries[group.primary];
+  for (const auto& group : plan->groups) {
+    const PrimaryPlan& primary = plan->primaries[group->primary];
     const double share = (options.seconds - since(clock)) / left--;
     const auto begin = Clock::now();
-    auto solver = make_group_solver(group, services.make_solver);
+    auto solver = services.make_solver(*group);
     if (!solver) return solver.error();
     State state = (*solver)->initial_state();
     reports.clear();
@@ -140,11 +139,11 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     if (measured < out.shot_frames)
       out.notes.push_back(fmt::format("\"{}\": {} of {} frames were measured in the time given; --seconds gives more",
                                       primary.name, measured, out.shot_frames));
-    for (const GarmentOutput& secondary : group.outputs) {
+    for (const SystemOutput& secondary : group->outputs) {
       Evidence e;
       e.primary = primary.name;
       e.secondary = secondary.mesh->name;
-      e.two_way_possible = group.lockstep.has_value();
+      e.two_way_possible = group->can_be_two_way();
       std::vector<Wrench> forces(reports.size());
       for (std::size_t i = 0; i < reports.size(); ++i) {
         const FrameReport& r = reports[i];

@@ -7,7 +7,6 @@
 #include <csignal>
 
 #include "baker/bake_folder.h"
-#include "baker/body_only.h"
 #include "baker/cache_set.h"
 #include "baker/core/file.h"
 #include "baker/hybrid_files.h"
@@ -132,13 +131,8 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
 
 Result<Solvers> make_solvers(BakePlan& plan, const SolverFactory& factory) {
   Solvers out;
-  for (GroupPlan& group : plan.groups) {
-    if (group.outputs.empty()) {
-      const Shot& shot = plan.shot();
-      out.push_back(make_body_only(shot.first_frame, shot.preroll, shot.fps));
-      continue;
-    }
-    auto solver = make_group_solver(group, factory);
+  for (const auto& group : plan.groups) {
+    auto solver = factory(*group);
     if (!solver) return solver.error();
     out.push_back(std::move(*solver));
   }
@@ -185,8 +179,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
     return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
 
   CacheSet caches(*plan, *solvers, folder.path);
-  for (GroupPlan& group : plan->groups)
-    for (GarmentOutput& output : group.outputs) output.mesh.reset();  // the caches have them, and forget them in turn
+  for (const auto& group : plan->groups)
+    for (SystemOutput& output : group->outputs) output.mesh.reset();  // the caches have them, and forget them in turn
   warn_of_space(folder, caches.expected_bytes(), progress);
   auto files = write_hybrid_files(*plan, folder.path, manifest.notes);
   if (!files) return failed(files.error());
@@ -207,8 +201,8 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
 
 }  // namespace
 
-Result<std::unique_ptr<Solver>> make_group_solver(GroupPlan& group, const SolverFactory& cloth) {
-  return group.lockstep ? make_lockstep_solver(*group.lockstep) : cloth(std::move(group.setup));
+Result<std::unique_ptr<Solver>> make_group_solver(SystemGroup& group) {
+  return group.make_solver();
 }
 
 BakeResult bake(const BakeOptions& options, const BakeServices& services, Progress& progress) {

@@ -28,7 +28,7 @@ struct BakeOptions {
   bool explain = false;                ///< say whether the bake is up to date and why not; nothing else
 };
 
-using SolverFactory = std::function<Result<std::unique_ptr<Solver>>(ClothSetup)>;
+using SolverFactory = std::function<Result<std::unique_ptr<Solver>>(SystemGroup&)>;
 
 struct BakeServices {
   Importer importer;
@@ -41,8 +41,8 @@ struct BakeResult {
   std::vector<std::string> faults;  ///< for stderr
 };
 
-/// Cloth by the factory, cords in lock step with their prop. Takes the group's setup.
-Result<std::unique_ptr<Solver>> make_group_solver(GroupPlan& group, const SolverFactory& cloth);
+/// The solver that the group's kind has for it.
+Result<std::unique_ptr<Solver>> make_group_solver(SystemGroup& group);
 
 /// progress is told of the walk only; what ends before the walk is in the result alone.
 BakeResult bake(const BakeOptions& options, const BakeServices& services, Progress& progress);

@@ -29,16 +29,15 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
   CHECK(plan.groups.size() == solvers.size());
   for (std::size_t g = 0; g < solvers.size(); ++g) {
     const Solver& solver = *solvers[g];
-    const PrimaryPlan& primary = plan.primaries[plan.groups[g].primary];
-    const auto& outputs = plan.groups[g].outputs;
+    const PrimaryPlan& primary = plan.primaries[plan.groups[g]->primary];
+    const auto& outputs = plan.groups[g]->outputs;
     CHECK(outputs.size() == static_cast<std::size_t>(solver.system_count()));
-    const std::vector<ColliderSlice>& slices = slices_.emplace_back(
-        plan.groups[g].joint ? collider_slices(plan, plan.groups[g], names()) : std::vector<ColliderSlice>());
+    const std::vector<ColliderSlice>& slices = slices_.emplace_back(plan.groups[g]->slices(plan, names()));
     for (int s = 0; s < solver.system_count(); ++s) {
-      const GarmentOutput& output = outputs[static_cast<std::size_t>(s)];
-      Source source{.group = g, .garment = s, .primary = slices.empty() ? plan.groups[g].primary : output.primary};
+      const SystemOutput& output = outputs[static_cast<std::size_t>(s)];
+      Source source{.group = g, .garment = s, .primary = output.primary};
       source.mesh = output.mesh;
-      add(std::move(source), output.mesh->name, plan.groups[g].lockstep ? "cords" : "cloth", true);
+      add(std::move(source), output.mesh->name, std::string(plan.groups[g]->role()), true);
       systems_.back().pattern_scale = output.pattern_scale;
       systems_.back().weld = output.weld;
       for (const ColliderSlice& slice : slices) systems_.back().meets.push_back(slice.name);
@@ -52,12 +51,12 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       add_body(g, slice.primary);
     }
     if (!slices.empty()) continue;
-    if (!collider.empty() && !plan.groups[g].lockstep) {  // a prop is its own collider
-      Source source{.group = g, .collider = true, .primary = plan.groups[g].primary};
+    if (!collider.empty() && plan.groups[g]->has_feasible_collider()) {
+      Source source{.group = g, .collider = true, .primary = plan.groups[g]->primary};
       source.mesh = shared(make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles()));
       add(std::move(source), primary.name + ".collider", "collider", false);
     }
-    add_body(g, plan.groups[g].primary);
+    add_body(g, plan.groups[g]->primary);
   }
 }
 
@@ -79,7 +78,7 @@ void CacheSet::add_collider(std::size_t group, const ColliderSlice& slice, std::
 void CacheSet::add_body(std::size_t group, std::size_t primary) {
   const PrimaryPlan& body = plan_.primaries[primary];
   const bool all_formats = std::any_of(plan_.groups.begin(), plan_.groups.end(),
-                                       [&](const GroupPlan& g) { return g.primary == primary && g.outputs.empty(); });
+                                       [&](const auto& g) { return g->primary == primary && g->outputs.empty(); });
   if (std::any_of(systems_.begin(), systems_.end(), [&](const ManifestSystem& s) { return s.name == body.name; }))
     return;
   Source source{.group = group, .primary = primary};
@@ -133,7 +132,7 @@ Status CacheSet::open(int keep_frames) {
 
 void CacheSet::positions_of(const Source& source, const State& state, std::span<Vec3> x) const {
   const Solver& solver = *solvers_[source.group];
-  const auto& joined_of = plan_.groups[source.group].outputs[static_cast<std::size_t>(source.garment)].joined_of;
+  const auto& joined_of = plan_.groups[source.group]->outputs[static_cast<std::size_t>(source.garment)].joined_of;
   if (joined_of.empty()) return solver.system_positions(state, source.garment, x);
   std::vector<Vec3> joined(static_cast<std::size_t>(solver.system_mesh(source.garment).vertex_count()));
   solver.system_positions(state, source.garment, joined);
@@ -148,10 +147,9 @@ void CacheSet::slice_of(const Source& source, const State& state, std::span<Vec3
 
 std::vector<AbsentRuns> CacheSet::as_cached(std::size_t group, std::vector<AbsentRuns> absent) const {
   if (slices_[group].empty()) return absent;
-  const int count = plan_.groups[group].poses->collider().vertex_count();
   std::vector<AbsentRuns> out;
   for (const AbsentRuns& runs : absent)
-    for (AbsentRuns& own : sliced(runs, slices_[group], count)) out.push_back(std::move(own));
+    for (AbsentRuns& own : sliced(runs, slices_[group])) out.push_back(std::move(own));
   return out;
 }
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "baker/joint_collider.h"
 #include "baker/manifest.h"
 #include "baker/plan.h"
 #include "io/cache/cache.h"

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "baker/core/corner_uvs.h"
 #include "io/shot/mesh_file.h"
-#include "solvers/cloth/sewing.h"
 
 namespace ft {
 
@@ -38,15 +36,6 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
     return input_error("has no vt, and the manifest says that the cloth is cut from its pattern",
                        (folder / system.topology).string());
   return track;
-}
-
-RestEdges rest_edges_of(const Mesh& rest, std::span<const Triangle> triangles, double pattern_scale) {
-  RestEdges out = rest_edges(rest.positions, triangles);
-  if (!(pattern_scale > 0)) return out;
-  const ClothPiece piece{0, rest.vertex_count(), Fabric{}, pattern_scale};
-  lengths_from_pattern(
-      make_cloth_topology(rest.positions, triangles, std::span(&piece, 1), corner_uvs(rest, triangles)), out);
-  return out;
 }
 
 }  // namespace ft

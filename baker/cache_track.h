@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "baker/core/edge_strain.h"
 #include "baker/manifest.h"
 #include "io/cache/cache.h"
 
@@ -28,9 +27,5 @@ struct CacheTrack {
 /// Opens the first cache of a system; refuses one whose topology or number of frames is not what the manifest says.
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest);
-
-/// The lengths from which the bake of a cloth measured its strain, in a mesh at rest and the triangles that it is split
-/// into; pattern_scale as in CacheTrack.
-RestEdges rest_edges_of(const Mesh& rest, std::span<const Triangle> triangles, double pattern_scale);
 
 }  // namespace ft

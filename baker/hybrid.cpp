@@ -16,10 +16,8 @@ constexpr double k_without_end = 2e4;  ///< of a mat whose size is not given [m]
 
 std::vector<std::string> stood_in_for(const Shot& shot, const std::string& primary) {
   std::vector<std::string> out;
-  for (const ClothSpec& c : shot.cloths)
-    if (c.on == primary && c.coupling == "hybrid") out.push_back(c.name);
-  for (const CordsSpec& c : shot.cords)
-    if (c.on == primary && c.coupling == "hybrid") out.push_back(c.name);
+  for (const auto& s : shot.secondaries)
+    if (s->on == primary && s->coupling == "hybrid") out.push_back(s->name);
   return out;
 }
 

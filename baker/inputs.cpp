@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/core/file.h"
+#include "baker/systems/system.h"
 #include "baker/version.h"
 #include "io/cache/cache.h"
-#include "solvers/energies/fabric.h"
 
 namespace ft {
 namespace {
@@ -57,10 +57,10 @@ bool shapes_the_bake(const std::string& key) {
 }
 
 /// The feasible collider of a primary has a cache of its own.
-Status judge_cache_name(const Shot& shot, const std::string& kind, const std::string& name) {
+Status judge_cache_name(const Shot& shot, const SecondarySpec& secondary) {
   for (const PrimarySpec& primary : shot.primaries)
-    if (primary.name + ".collider" == name)
-      return usage_error(kind + " \"" + name + "\" has the name of a cache of primary \"" + primary.name + "\"",
+    if (primary.name + ".collider" == secondary.name)
+      return usage_error(secondary.owner() + " has the name of a cache of primary \"" + primary.name + "\"",
                          shot.file.string(), "give it another name");
   return {};
 }
@@ -69,9 +69,11 @@ Status judge_cache_name(const Shot& shot, const std::string& kind, const std::st
 
 ShotVocabulary shot_vocabulary() {
   ShotVocabulary words;
-  for (const Fabric& fabric : fabrics()) words.fabrics.push_back(fabric.name);
-  for (const FabricKey& key : fabric_keys()) words.fabric_keys.emplace_back(key.key, key.lowest, key.highest, key.unit);
-  for (const CacheFormat& format : cache_formats()) words.cache_formats.emplace_back(format.name);
+  for (const SystemKind* kind : system_kinds()) {
+    words.sections.push_back(&kind->section());
+    for (auto& [name, list] : kind->section().lists()) words.lists.emplace(std::move(name), std::move(list));
+  }
+  for (const CacheFormat& format : cache_formats()) words.lists["@formats"].emplace_back(format.name);
   return words;
 }
 
@@ -111,22 +113,11 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
          {std::pair{".file", primary.file}, {".animation", primary.animation}, {".topology", primary.topology}})
       if (const Status added = add_file(inputs, role + key, path); !added) return added.error();
   }
-  for (const ClothSpec& cloth : s.cloths) {
-    if (const Status added = add_file(inputs, "cloth." + cloth.name + ".mesh", cloth.mesh); !added)
-      return added.error();
-    const auto add_values = [&](const char* list, std::size_t number, const std::filesystem::path& path) {
-      return add_file(inputs, "cloth." + cloth.name + "." + list + "." + std::to_string(number + 1) + ".file", path);
-    };
-    for (std::size_t i = 0; i < cloth.maps.size(); ++i)
-      if (const Status added = add_values("maps", i, cloth.maps[i].file); !added) return added.error();
-    for (std::size_t i = 0; i < cloth.pins.size(); ++i)
-      if (const Status added = add_values("pins", i, cloth.pins[i].file); !added) return added.error();
-    if (const Status free = judge_cache_name(s, "cloth", cloth.name); !free) return free.error();
-  }
-  for (const CordsSpec& cords : s.cords) {
-    if (const Status added = add_file(inputs, "cords." + cords.name + ".mesh", cords.mesh); !added)
-      return added.error();
-    if (const Status free = judge_cache_name(s, "cords", cords.name); !free) return free.error();
+  for (const auto& secondary : s.secondaries) {
+    const std::string role = std::string(secondary->kind()) + "." + secondary->name + ".";
+    for (const auto& [key, path] : secondary->section->files(*secondary))
+      if (const Status added = add_file(inputs, role + key, path); !added) return added.error();
+    if (const Status free = judge_cache_name(s, *secondary); !free) return free.error();
   }
   for (const StandInKeys& standin : s.standins)
     if (const Status added = add_file(inputs, "standin." + standin.name + ".mesh", standin.mesh); !added)

@@ -13,19 +13,17 @@ namespace ft {
 
 struct CacheJudgement {
   std::string shot;
-  /// Crossings, penetration, strain, what was absent (as numbers); of cords the gap, which is infinite where there are
-  /// none. Energy is not judged.
+  /// Crossings, penetration, strain, what was absent (as numbers); the gap, which is infinite where no kind measures
+  /// it. Energy is not judged.
   std::vector<FrameReport> frames;
-  bool complete = false;   ///< the bake came to its end
-  int frame_count = 0;     ///< that the caches should have
-  int missing_frames = 0;  ///< of those
-  bool has_collider = false, has_body = false, has_cords = false;
+  bool complete = false;           ///< the bake came to its end
+  int frame_count = 0;             ///< that the caches should have
+  int missing_frames = 0;          ///< of those
   std::vector<std::string> notes;  ///< what could not be judged
 };
 
-/// Reads every frame of every cache in the first format of each system, as far as all have it. Garments on one primary
-/// are judged together, cords each for itself. Cloth is judged as it was simulated: joined by its `weld`, faces split
-/// as the bake splits them.
+/// Reads every frame of every cache in the first format of each system, as far as all have it. Each kind of secondary
+/// judges its own systems (systems/system.h).
 Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder);
 
 }  // namespace ft

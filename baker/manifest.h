@@ -25,12 +25,12 @@ struct ManifestCache {
 
 /// Whether a system of this role is what a solver moved, and not what it was moved by.
 inline bool is_secondary(const std::string& role) {
-  return role == "cloth" || role == "cords";
+  return role != "collider" && role != "body";
 }
 
 struct ManifestSystem {
   std::string name;
-  std::string role;     ///< "cloth", "cords", "collider" (the feasible one), "body" (as drawn)
+  std::string role;     ///< "collider" (the feasible one), "body" (as drawn), or the name of its kind: "cloth"
   std::string primary;  ///< whom it belongs to
   int vertex_count = 0, face_count = 0;
   std::string topology;  ///< OBJ of the rest shape, for formats that hold points only

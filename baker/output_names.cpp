@@ -11,8 +11,10 @@ std::vector<std::string> output_names(const Shot& shot) {
     for (const std::string& format : shot.cache_formats)
       if (const CacheFormat* known = find_cache_format(format)) out.push_back(name + std::string(known->extension));
   };
-  for (const ClothSpec& cloth : shot.cloths) add_system(cloth.name);
-  for (const CordsSpec& cords : shot.cords) add_system(cords.name);
+  for (const auto& secondary : shot.secondaries) {
+    add_system(secondary->name);
+    for (std::string& file : secondary->section->written_files(*secondary)) out.push_back(std::move(file));
+  }
   for (const PrimarySpec& primary : shot.primaries) {
     add_system(primary.name);
     add_system(primary.name + ".collider");

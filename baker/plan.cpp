@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/body_only.h"
 #include "baker/placed_trajectory.h"
-#include "baker/plan_cloths.h"
-#include "baker/plan_cords.h"
 #include "baker/quality.h"
 
 namespace ft {
@@ -133,10 +132,12 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   return out;
 }
 
-/// Whether something asks for a primary that is one rigid body: cords on it, or a coupling that moves it.
+/// Whether something asks for a primary that is one rigid body: a secondary that asks for it, or a coupling that moves
+/// it.
 bool has_to_be_rigid(const Shot& shot, const PrimaryPlan& primary) {
   return (is_hybrid(shot, primary.name) && !primary.yielding) ||
-         std::any_of(shot.cords.begin(), shot.cords.end(), [&](const CordsSpec& c) { return c.on == primary.name; });
+         std::any_of(shot.secondaries.begin(), shot.secondaries.end(),
+                     [&](const auto& s) { return s->on == primary.name && s->section->needs_rigid_primary(); });
 }
 
 /// Its prop, and where it goes: along its track or, once stand-ins have been met, the adjusted one.
@@ -176,11 +177,30 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
 
 /// Whether some secondary is on the primary.
 bool has_secondaries(const BakePlan& plan, std::size_t primary) {
-  return std::any_of(plan.groups.begin(), plan.groups.end(), [&](const GroupPlan& group) {
-    return group.primary == primary ||
-           std::any_of(group.outputs.begin(), group.outputs.end(),
-                       [&](const GarmentOutput& output) { return group.joint && output.primary == primary; });
+  return std::any_of(plan.groups.begin(), plan.groups.end(), [&](const auto& group) {
+    return std::any_of(group->outputs.begin(), group->outputs.end(),
+                       [&](const SystemOutput& output) { return output.primary == primary; });
   });
+}
+
+/// Groups of all kinds, by their first primary; behind them primaries that yield and have no secondary.
+Status plan_systems(const Shot& shot, BakePlan& plan) {
+  std::vector<SystemGroups> of_kinds;
+  for (const SystemKind* kind : system_kinds()) {
+    auto groups = kind->plan(shot, plan);
+    if (!groups) return groups.error();
+    of_kinds.push_back(std::move(*groups));
+  }
+  for (std::size_t p = 0; p < plan.primaries.size(); ++p)
+    for (SystemGroups& groups : of_kinds)
+      for (auto& group : groups)
+        if (group && group->primary == p) plan.groups.push_back(std::move(group));
+  for (std::size_t p = 0; p < plan.primaries.size(); ++p)
+    if (plan.primaries[p].hybrid && !has_secondaries(plan, p))
+      plan.groups.push_back(std::make_unique<BodyGroup>(p, shot.first_frame, shot.preroll, shot.fps));
+  std::stable_sort(plan.groups.begin(), plan.groups.end(),
+                   [](const auto& a, const auto& b) { return a->primary < b->primary; });
+  return {};
 }
 
 }  // namespace
@@ -205,15 +225,8 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
   if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
-  auto cloths = plan_cloths(shot, plan);
-  if (!cloths) return cloths.error();
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-    for (GroupPlan& group : *cloths)
-      if (group.primary == p) plan.groups.push_back(std::move(group)), group.primary = plan.primaries.size();
-    if (const Status planned = plan_cords(shot, p, plan); !planned) return planned.error();
-    if (plan.primaries[p].hybrid && !has_secondaries(plan, p)) plan.groups.push_back({p, common_setup(shot), {}, {}});
-  }
-  if (plan.groups.empty()) return usage_error("no cloth or cords are on any primary", shot.file.string());
+  if (const Status planned = plan_systems(shot, plan); !planned) return planned.error();
+  if (plan.groups.empty()) return usage_error("no secondary is on any primary", shot.file.string());
   return plan;
 }
 

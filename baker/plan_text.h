@@ -11,6 +11,8 @@
 namespace ft {
 
 std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder);
+/// "0.4 x 0.9 x 0.3 m".
+std::string box_text(const Box& box);
 /// "1.4 MB", powers of 1000.
 std::string size_text(std::uint64_t bytes);
 /// "sewn: 851 stitches in 94 seams".

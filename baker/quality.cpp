@@ -1,25 +1,8 @@
 #include "baker/quality.h"
 
 #include <algorithm>
-#include <limits>
-
-#include "collision/coarse_body.h"
 
 namespace ft {
-namespace {
-
-// Tuned for less than a quarter of a final bake's time in the benchmark's scene S2 and in the samples: longer steps
-// alone cost more than they save, since what may meet in a step grows faster than the step.
-constexpr double k_coarsen = 2.2;          ///< edges of garments, in those of a final bake [1]
-constexpr double k_coarsen_body = 2.5;     ///< of body and collider [1]
-constexpr double k_deviation = 2. / 3;     ///< of the body's surface, aimed at, in the least contact distance [1]
-constexpr double k_travel = 1.45;          ///< of the body in a substep, in that of a final bake [1]
-constexpr int k_fewer_substeps = 4;        ///< times fewer substeps at least
-constexpr double k_longer_cord_steps = 5;  ///< [1]
-constexpr double k_looser_cords = 100;     ///< of what Newton leaves to move [1]
-constexpr double k_tolerance = 0.2;        ///< of the linear solver at least [1]
-
-}  // namespace
 
 bool is_preview(const Shot& shot) {
   return shot.quality == "preview";
@@ -29,38 +12,6 @@ bool is_preview(const Manifest& manifest) {
   return std::ranges::any_of(manifest.settings, [](const auto& setting) {
     return setting.first == "shot.quality" && setting.second == "\"preview\"";
   });
-}
-
-void apply_quality(const Shot& shot, ClothSetup& setup) {
-  if (!is_preview(shot)) return;
-  setup.coarsen = k_coarsen;
-  setup.feasible.max_edge *= k_coarsen_body;
-  setup.travel *= k_travel;
-  // Seams keep their edges: pleats along them crumple in longer steps.
-  const bool sewn = std::any_of(setup.garments.begin(), setup.garments.end(),
-                                [](const ClothGarment& garment) { return !garment.mesh.stitches.empty(); });
-  if (!sewn) setup.min_substeps = std::max(1, setup.min_substeps / k_fewer_substeps);
-  setup.linear_tolerance = std::max(k_tolerance, setup.linear_tolerance);
-}
-
-std::shared_ptr<const Trajectory> with_quality(const Shot& shot, const ClothSetup& setup,
-                                               std::shared_ptr<const Trajectory> primary) {
-  if (!is_preview(shot) || !primary) return primary;
-  // A body that is thicker than a tight garment has room for would squeeze it through.
-  double thinnest = std::numeric_limits<double>::infinity();
-  for (const ClothGarment& garment : setup.garments) {
-    thinnest = std::min(thinnest, garment.thickness);
-    for (const double own : garment.maps.thickness) thinnest = std::min(thinnest, own);
-  }
-  return coarse_body(std::move(primary), k_coarsen_body, setup.feasible.max_edge, k_deviation * thinnest);
-}
-
-void apply_quality(const Shot& shot, LockstepSetup& setup) {
-  if (!is_preview(shot)) return;
-  setup.longest_step *= k_longer_cord_steps;
-  setup.settled *= k_looser_cords;
-  setup.most_halvings = 0;
-  setup.min_substeps = std::max(1, setup.min_substeps / k_fewer_substeps);
 }
 
 std::string quality_note() {

@@ -14,7 +14,6 @@
 #include "baker/report_json.h"
 #include "baker/signals.h"
 #include "baker/writer_thread.h"
-#include "collision/crossings.h"
 
 namespace ft {
 namespace {
@@ -135,7 +134,7 @@ Status Walk::start(std::optional<Checkpoint> from) {
 }
 
 void Walk::number_as_in_file(std::size_t group, std::span<Incident> incidents) const {
-  const auto& outputs = plan_.groups[group].outputs;
+  const auto& outputs = plan_.groups[group]->outputs;
   for (Incident& incident : incidents)
     for (int s = 0; s < solvers_[group]->system_count() && incident.vertex >= 0; ++s)
       if (solvers_[group]->system_mesh(s).name == incident.system) {
@@ -204,7 +203,7 @@ Status Walk::settle() {
     std::string note = fmt::format(
         "cloth on \"{}\" started through cloth: before the pre-roll it had {} frames to get out of it, the body "
         "standing still; ",
-        plan_.primaries[plan_.groups[g].primary].name, settled.frames);
+        plan_.primaries[plan_.groups[g]->primary].name, settled.frames);
     note += settled.crossings == 0 ? std::string("no crossings are left")
                                    : fmt::format("{} crossings are left, which the frames name", settled.crossings);
     progress_.note(note);
@@ -302,40 +301,10 @@ FrameReport certify_start(const BakePlan& plan, const Solvers& solvers, const Ca
   report.frame = states[0].frame;
   report.smallest_gap = std::numeric_limits<double>::infinity();  // not measured
   for (std::size_t g = 0; g < solvers.size(); ++g) {
-    if (plan.groups[g].lockstep) continue;  // tubes run through each other at every knot
-    std::vector<Vec3> collider;
-    solvers[g]->collider_positions(states[g], collider);
-    std::vector<Vec3> cloth;
-    std::vector<Triangle> triangles;
-    std::vector<std::vector<char>> absent;  // of each system
-    std::vector<int> system_of;             // of each vertex
-    for (int s = 0; s < solvers[g]->system_count(); ++s) {
-      const Mesh& mesh = solvers[g]->system_mesh(s);
-      const int first = static_cast<int>(cloth.size());
-      cloth.resize(cloth.size() + mesh.positions.size());
-      solvers[g]->system_positions(states[g], s, std::span(cloth).subspan(static_cast<std::size_t>(first)));
-      for (const Triangle& t : triangulate(mesh)) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-      absent.push_back(solvers[g]->collider_absent(states[g], s));
-      system_of.resize(cloth.size(), s);
-    }
-    auto body = crossings_between(cloth, triangles, collider, solvers[g]->collider_triangles());
-    report.crossings_absent += static_cast<int>(std::erase_if(body, [&](const Crossing& c) {
-      return second_is_marked(c, absent[at(system_of[at(c.edge_of_first ? c.edge[0] : c.triangle[0])])]);
-    }));
+    plan.groups[g]->add_certificate(plan, *solvers[g], states[g], report);
     for (AbsentRuns& runs : caches.as_cached(g, absent_of(*solvers[g], states[g]))) {
       report.absent_vertices = std::max(report.absent_vertices, vertex_count(runs));
       report.absent.push_back(std::move(runs));
-    }
-    report.crossings_body += static_cast<int>(body.size());
-    report.crossings_self += static_cast<int>(crossings_within(cloth, triangles).size());
-    if (!body.empty()) {
-      Incident incident;
-      incident.kind = Incident::Kind::k_start_inside;
-      incident.frame = report.frame;
-      incident.system = plan.primaries[plan.groups[g].primary].name;
-      incident.place = cloth[static_cast<std::size_t>(body[0].edge_of_first ? body[0].edge[0] : body[0].triangle[0])];
-      incident.text = fmt::format("{} crossings with the body where the bake starts", body.size());
-      report.incidents.push_back(std::move(incident));
     }
   }
   return report;

@@ -40,7 +40,7 @@ int run(const AdviseArguments& a) {
   Context context = Context::k_none;
   if (!a.context.empty()) context = context_from(a.context).value();  // the command line knows the names
   ShotFaults faults;
-  auto pass = run_advice_pass(a.options, {import_primary, make_cloth_solver}, faults);
+  auto pass = run_advice_pass(a.options, {import_primary, make_group_solver}, faults);
   if (!pass) {
     if (faults.messages.empty()) complain(pass.error().text());
     for (const std::string& fault : faults.messages) complain(fault);

@@ -47,7 +47,7 @@ int run(BakeArguments& a) {
   const auto all = combine(std::move(sinks));
 
   const ThreadLimit limit(a.threads);
-  const BakeResult result = bake(a.options, {import_primary, make_cloth_solver}, *all);
+  const BakeResult result = bake(a.options, {import_primary, make_group_solver}, *all);
   for (const std::string& line : result.lines) std::printf("%s\n", line.c_str());
   if (a.profile)
     for (const std::string& line : profile.lines()) std::printf("%s\n", line.c_str());

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -26,7 +27,7 @@ struct CheckArguments {
 struct Totals {
   int crossing_frames = 0, crossings_body = 0, crossings_self = 0;
   double deepest = 0, strain_p99 = 0;
-  double cord_gap = std::numeric_limits<double>::infinity();
+  double smallest_gap = std::numeric_limits<double>::infinity();
   int deepest_frame = 0, strain_frame = 0;
   int absent_frames = 0, absent_vertices = 0, crossings_absent = 0;
 };
@@ -40,7 +41,7 @@ Totals add_up(const std::vector<FrameReport>& frames) {
     out.absent_frames += f.absent_vertices > 0;
     out.absent_vertices = std::max(out.absent_vertices, f.absent_vertices);
     out.crossings_absent += f.crossings_absent;
-    out.cord_gap = std::min(out.cord_gap, f.smallest_gap);
+    out.smallest_gap = std::min(out.smallest_gap, f.smallest_gap);
     if (f.deepest_drawn > out.deepest) out.deepest = f.deepest_drawn, out.deepest_frame = f.frame;
     if (f.strain_p99 > out.strain_p99) out.strain_p99 = f.strain_p99, out.strain_frame = f.frame;
   }
@@ -91,12 +92,14 @@ int run(const CheckArguments& a) {
     complain(judgement.error().text());
     return exit_code(judgement.error().kind);
   }
+  const bool has_gap = std::any_of(judgement->frames.begin(), judgement->frames.end(),
+                                   [](const FrameReport& f) { return std::isfinite(f.smallest_gap); });
   std::printf("frame  crossings: body  cloth  drawn   inside drawn   strain p99      max%s\n",
-              judgement->has_cords ? "   gap of cords" : "");
+              has_gap ? "   gap of cords" : "");
   for (const FrameReport& f : judgement->frames) {
     std::printf("%5d %16d %6d %6d %11.2f mm %10.2f %% %8.2f %%", f.frame, f.crossings_body, f.crossings_self,
                 f.crossings_drawn, 1e3 * f.deepest_drawn, 100 * f.strain_p99, 100 * f.strain_max);
-    if (judgement->has_cords) std::printf(" %11.3f mm", 1e3 * f.smallest_gap);
+    if (has_gap) std::printf(" %11.3f mm", 1e3 * f.smallest_gap);
     std::printf("\n");
   }
   for (const FrameReport& f : judgement->frames)
@@ -117,7 +120,7 @@ int run(const CheckArguments& a) {
       "worst p99 strain %.2f %%%s\n",
       failed.empty() ? "passed" : "FAILED", judgement->frames.size(), totals.crossings_body, totals.crossings_self,
       1e3 * totals.deepest, 100 * totals.strain_p99,
-      judgement->has_cords ? fmt::format(", least gap of cords {:.3f} mm", 1e3 * totals.cord_gap).c_str() : "");
+      has_gap ? fmt::format(", least gap of cords {:.3f} mm", 1e3 * totals.smallest_gap).c_str() : "");
   if (!a.json.empty())
     if (const Status written = write_text_durably(a.json, to_text(json_of(*judgement, totals, failed))); !written) {
       complain(written.error().text());

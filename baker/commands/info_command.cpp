@@ -86,8 +86,8 @@ Result<Lines> shot_info(const std::filesystem::path& path, bool scan) {
     for (std::size_t i = 1; i < faults.messages.size(); ++i) complain(faults.messages[i]);
     return shot.error();
   }
-  Lines out{fmt::format("shot: frames {}-{} at {:g} fps, {} primaries, {} cloths", shot->first_frame, shot->last_frame,
-                        shot->fps, shot->primaries.size(), shot->cloths.size())};
+  Lines out{fmt::format("shot: frames {}-{} at {:g} fps, {} primaries, {} secondaries", shot->first_frame,
+                        shot->last_frame, shot->fps, shot->primaries.size(), shot->secondaries.size())};
   for (const auto& [key, value] : settings(*shot)) out.push_back("  " + key + " = " + value);
   if (!scan) return out;
   auto found = scan_lines(path);

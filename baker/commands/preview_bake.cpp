@@ -13,6 +13,7 @@
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/primary_paths.h"
+#include "baker/systems/system.h"
 #include "collision/triangle_tree.h"
 
 namespace ft {
@@ -96,13 +97,15 @@ void add_gap(Clip& clip, std::span<const Vec3> x, std::span<const Vec3> surface,
   });
 }
 
-/// Strain of every cloth, and the gap of all secondaries to what they must not pass: the feasible collider, else the
-/// drawn body. Tubes have no strain to show: cords are what stretches, and no edge of a tube is one.
+/// Strain of what has it in the edges of its mesh, and the gap of all secondaries to what they must not pass: the
+/// feasible collider, else the drawn body.
 Status measure(std::vector<Clip>& clips, int frames) {
   for (Clip& clip : clips) {
     if (!is_secondary(clip.system.role)) continue;
-    const bool cloth = clip.system.role == "cloth";
-    if (cloth) clip.rest_edges = rest_edges_of(clip.track.rest, clip.track.triangles, clip.track.pattern_scale);
+    const SystemKind* kind = find_system_kind(clip.system.role);
+    std::optional<RestEdges> rest = kind ? kind->rest_edges(clip.track) : std::nullopt;
+    const bool strained = rest.has_value();
+    if (rest) clip.rest_edges = std::move(*rest);
     const Clip* surface = nullptr;
     for (const Clip& other : clips)
       if (other.system.primary == clip.system.primary &&
@@ -113,7 +116,7 @@ Status measure(std::vector<Clip>& clips, int frames) {
     for (int f = 0; f < frames; ++f) {
       x.clear();
       if (const Status read = clip.track.read(f, x); !read) return read;
-      if (cloth) add_strain(clip, x);
+      if (strained) add_strain(clip, x);
       if (surface == nullptr) continue;
       y.clear();
       if (const Status read = surface->track.read(f, y); !read) return read;

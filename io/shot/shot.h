@@ -1,10 +1,13 @@
 // The shot file: what to bake, as plain structs with good defaults. shot_read.cpp reads it from TOML and reports every
 // fault at once, with line and column, the allowed range and what was probably meant. The keys, their ranges and units
-// stand once, in shot_keys.cpp; reading, messages, --set, the settings list and the reference all come from that table.
+// stand once, in shot_keys*.cpp and in the folders of the kinds of secondaries; reading, messages, --set, the settings
+// list and the reference all come from that table.
 #pragma once
 
 #include <filesystem>
-#include <limits>
+#include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +16,7 @@
 
 #include "baker/core/result.h"
 #include "baker/core/types.h"
+#include "io/shot/secondary.h"
 
 namespace ft {
 
@@ -67,90 +71,6 @@ struct PrimarySpec {
   std::optional<double> max_acceleration;  ///< by the stand-ins together [m/s2]
 };
 
-/// One way to hold a garment to its primary, or to a garment.
-inline constexpr std::string_view k_pin_world = "world";  ///< PinSpec::to: a place that does not move
-struct PinSpec {
-  enum class Select { k_group, k_within, k_vertices, k_file };
-  Select select = Select::k_group;
-  std::string group;           ///< vertex group of the garment's mesh
-  double within = 0;           ///< garment vertices nearer than this to the body in the bind pose [m]
-  std::vector<int> vertices;   ///< garment vertices, from 0, file order
-  std::filesystem::path file;  ///< values file with a weight per vertex, see vertex_values.h
-  std::string column;          ///< of `file`; empty: the only one
-  double stiffness = 1e6;  ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
-  double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
-  std::optional<double> from, until;  ///< frames of the shot: it holds after the one, and up to and including the other
-  double fade = 0;                    ///< frames that its force takes to come after `from` and to go after `until`
-  std::string to;  ///< name of the cloth that it holds to, on the same primary, or "world"; empty: the primary
-  Vec3 opens = Vec3::Zero();  ///< direction in which its vertices let go one after another; zero: all together
-};
-
-/// What varies over a garment, and where its values come from: see shot_maps.h for what can vary.
-struct MapSpec {
-  std::string of;                   ///< "thickness", "stretch", ...
-  std::string from;                 ///< vertex group or colour channel, whose weights run from 0 to 1; or
-  std::filesystem::path file;       ///< values file
-  std::string column;               ///< of `file`; empty: the only one
-  std::optional<double> low, high;  ///< value at 0 and at 1; without them the file's numbers are the values
-};
-
-inline constexpr std::string_view k_faces_triangles = "triangles";  ///< ClothSpec::faces
-
-/// [cloth.NAME]: what follows.
-struct ClothSpec {
-  std::string name;
-  std::filesystem::path mesh;     ///< OBJ (own reader, file's vertex order)
-  std::string fabric = "cotton";  ///< name of a measured fabric
-  std::string on;                 ///< name of the primary
-  std::vector<PinSpec> pins;
-  std::vector<MapSpec> maps;
-  std::vector<std::pair<std::string, double>> fabric_overrides;  ///< "mass_per_area" = 0.2 ...: keys of solvers' Fabric
-  double weld = 0;        ///< garment vertices nearer than this are joined for the simulation [m]; 0: none, see weld.h
-  double unit_scale = 1;  ///< m per mesh unit
-  std::string up = "y";
-  Vec3 offset = Vec3::Zero();  ///< m, added after scale and axis
-  std::string faces = "file";  ///< of the caches: those of the file, or the "triangles" that are simulated
-  std::string rest;  ///< "mesh": rest lengths of the placed mesh; "pattern": of the flat pattern in vt; "": pattern if
-                     ///< it is sewn
-  double pattern_scale = 1;    ///< m per unit of vt
-  double sewing_time = 0;      ///< s from the start of the pre-roll until seams are closed; 0: half of the pre-roll
-  double thickness = 3e-3;     ///< m: contact begins at this distance from the body, 0.5e-3..10e-3
-  double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
-  double self_friction = 0.3;  ///< among cloths
-  bool self_collision = true;
-  std::vector<std::string> ignores;     ///< patterns (* and ?) of parts of its primary that it does not meet
-  std::vector<std::string> meets{"*"};  ///< patterns of primaries that it meets beside its own
-  std::string coupling = "one-way";     ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
-};
-
-/// [cords.NAME]: what follows, of cords: a net, a rope, a chain of knots, the edges of a mesh.
-struct CordsSpec {
-  std::string name;
-  std::string shape;                           ///< "net", "rope", "knots", "mesh"
-  int columns = 12, rows = 6;                  ///< net: loops at the rim, rings of knots below it
-  double radius_top = 0.225;                   ///< net: of the rim [m]
-  double radius_bottom = 0.12, length = 0.42;  ///< net [m]
-  int points = 0;                              ///< pieces a side, a rope, between two knots, an edge; 0: 2, 32, 4, 1
-  Vec3 position = Vec3::Zero();                ///< centre of the rim, start of a rope, offset of a mesh [m]
-  Vec3 to = Vec3::Zero();                      ///< rope, knots: its other end [m]
-  int knots = 1;                               ///< knots: how many, evenly spaced, the last at the end
-  double knot_mass = 0;                        ///< kg each, of `mass`
-  std::filesystem::path mesh;                  ///< OBJ whose edges are cords
-  double unit_scale = 1;                       ///< m per mesh unit
-  std::string up = "y";                        ///< of the mesh
-  std::string held;        ///< rope, knots: "start", "end", "both", "none"; mesh: a vertex group or none
-  double mass = 0;         ///< kg, all of it
-  double stretch = 3000;   ///< EA: force at a strain of 1 [N]
-  double bend = 0;         ///< EI [N m2]
-  double damping = 1e-4;   ///< of stretch and bend, in units of their stiffness [s]
-  double radius = 1.5e-3;  ///< of a cord, drawn and in contact [m]
-  double friction = 0.4;   ///< Coulomb coefficient
-  bool self_collision = false;
-  double hold_stiffness = 2e4;  ///< of the springs that hold points [N/m]
-  std::string on;               ///< name of the primary
-  std::string coupling = "one-way";
-};
-
 /// [standin.NAME]: what a primary meets in the place of a hybrid secondary. Members have the names of their keys.
 struct StandInKeys {
   std::string name;
@@ -196,6 +116,8 @@ struct SolverSpec {
   Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
 };
 
+using Secondaries = std::vector<std::shared_ptr<SecondarySpec>>;
+
 struct Shot {
   std::filesystem::path file;  ///< the shot file; other paths are resolved against its folder
   int first_frame = 1, last_frame = 1;
@@ -204,8 +126,7 @@ struct Shot {
   bool write_preroll = false;
   std::string quality = "final";  ///< "final" or "preview"
   std::vector<PrimarySpec> primaries;
-  std::vector<ClothSpec> cloths;
-  std::vector<CordsSpec> cords;
+  Secondaries secondaries;  ///< by kind, then in the order of the file
   std::vector<StandInKeys> standins;
   WindSpec wind;
   SolverSpec solver;
@@ -216,24 +137,11 @@ struct Shot {
   std::vector<std::string> notes;  ///< what is allowed and may be a mistake: a stand-in that is not used
 };
 
-/// A fabric's key that a cloth may override. Made from a bare name it has no range.
-struct FabricKeyWord {
-  FabricKeyWord(std::string_view name) : key(name) {}
-  FabricKeyWord(const std::string& name) : key(name) {}
-  FabricKeyWord(const char* name) : key(name) {}
-  FabricKeyWord(std::string_view name, double low, double high, std::string_view key_unit)
-      : key(name), lowest(low), highest(high), unit(key_unit) {}
-  std::string key;
-  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
-  std::string unit;
-};
-
-/// Names that the program knows and the shot file may use; the conductor fills it from the registries above this floor.
-/// An empty list of fabrics or formats is not checked.
+/// What the shot file may name; the conductor fills it from the registries above this floor.
 struct ShotVocabulary {
-  std::vector<std::string> fabrics;
-  std::vector<FabricKeyWord> fabric_keys;
-  std::vector<std::string> cache_formats;
+  std::vector<const SecondarySection*> sections;  ///< kinds of secondaries, in the order of the reference
+  /// Words that keys allow by "@fabrics", "@formats"; a list that is not there is not checked.
+  std::map<std::string, std::vector<std::string>, std::less<>> lists;
 };
 
 /// All faults of one shot file in the order of the file; the first is also what Result carries.
@@ -252,17 +160,16 @@ Result<Shot> parse_shot(std::string_view text, const std::filesystem::path& file
 
 /// Every setting as (key path, value text), in the order of the file's sections: ("cloth.skirt.fabric", "\"denim\"").
 /// Paths are relative to the shot file's folder, so that a moved project is the same shot.
-std::vector<std::pair<std::string, std::string>> settings(const Shot& shot);
+Settings settings(const Shot& shot);
 
 /// settings() as lines "key = value": changes exactly when a value changes. For hashing.
 std::string canonical(const Shot& shot);
 
 /// What differs between two lists of settings, for "stale because ...": "cloth.skirt.fabric changed from \"cotton\" to
 /// \"denim\"".
-std::vector<std::string> changed_settings(const std::vector<std::pair<std::string, std::string>>& before,
-                                          const std::vector<std::pair<std::string, std::string>>& now);
+std::vector<std::string> changed_settings(const Settings& before, const Settings& now);
 
 /// The keys of the shot file as Markdown tables, from the table that the reader uses.
-std::string shot_file_reference(const ShotVocabulary& vocabulary = {});
+std::string shot_file_reference(const ShotVocabulary& vocabulary);
 
 }  // namespace ft

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/shot/secondary.h"
 #include "io/shot/words.h"
 
 namespace ft {
@@ -13,45 +14,21 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// kind: "cloth" or "cords".
-template <class Spec>
-void judge_wearer(const Value& root, std::string_view kind, Spec& spec, const std::vector<std::string>& primaries,
+void judge_wearer(const Value& root, SecondarySpec& spec, const std::vector<std::string>& primaries,
                   FaultList& faults) {
-  const std::string owner = std::string(kind) + " " + in_quotes(spec.name);
+  const std::string owner = spec.owner();
   if (contains(primaries, spec.name))
-    faults.add(place_of(root, {kind, spec.name}),
+    faults.add(place_of(root, {spec.kind(), spec.name}),
                owner + ": a primary has the same name, their caches would overwrite each other");
   if (spec.on.empty() && primaries.size() == 1) spec.on = primaries.front();
   if (primaries.empty() || contains(primaries, spec.on)) return;
-  const Place place = place_of(root, {kind, spec.name, "on"});
+  const Place place = place_of(root, {spec.kind(), spec.name, "on"});
   if (spec.on.empty())
-    faults.add(place, owner + ": on is missing; it says " + (kind == "cloth" ? "who wears it" : "whom they meet") +
+    faults.add(place, owner + ": on is missing; it says " + std::string(spec.section->whom()) +
                           " (one of: " + joined(primaries) + ")");
   else
     faults.add(place,
                with_hint(owner + ": on = " + in_quotes(spec.on) + " names no primary", suggestion(spec.on, primaries)));
-}
-
-/// Pins that hold to a cloth: only what one primary wears is solved together.
-void judge_attachments(const Value& root, const ClothSpec& cloth, const std::vector<ClothSpec>& cloths,
-                       const std::vector<std::string>& primaries, FaultList& faults) {
-  const Place place = place_of(root, {"cloth", cloth.name, "pins"});
-  std::vector<std::string> names;
-  for (const ClothSpec& other : cloths) names.push_back(other.name);
-  for (const PinSpec& pin : cloth.pins) {
-    if (pin.to.empty() || pin.to == k_pin_world) continue;
-    const std::string fault = "cloth " + in_quotes(cloth.name) + ": to = " + in_quotes(pin.to);
-    const auto held = std::find(names.begin(), names.end(), pin.to) - names.begin();
-    if (held == std::ssize(names))
-      faults.add(place, with_hint(fault + " names no cloth", contains(primaries, pin.to)
-                                                                 ? "a pin without to holds to the primary"
-                                                                 : suggestion(pin.to, names)));
-    else if (cloths[static_cast<std::size_t>(held)].on != cloth.on)
-      faults.add(place, fault + " is worn by another primary; only cloths on the same one can hold each other");
-    else if (pin.to == cloth.name && pin.select == PinSpec::Select::k_within)
-      faults.add(place,
-                 fault + " is the cloth itself, to which all of it is near: say which side by group, vertices or file");
-  }
 }
 
 }  // namespace
@@ -96,23 +73,6 @@ std::optional<FrameRange> read_frames(const ValueReader& reader, const Value& va
   return range;
 }
 
-void read_vertices(const ValueReader& reader, const Value& value, std::vector<int>& out) {
-  const bool list = value.kind == Value::Kind::k_list;
-  std::string text, fault;
-  for (const Value& item : list ? std::span(value.items) : std::span(&value, 1)) {
-    if (item.kind != Value::Kind::k_text && item.kind != Value::Kind::k_integer)
-      return reader.fault(item, "needs vertices like \"0-199\" or [0, 1, 2], not " + describe(item));
-    if (!text.empty()) text.append(",");
-    text.append(item.kind == Value::Kind::k_integer ? std::to_string(item.integer) : item.text);
-  }
-  if (list && value.items.empty()) return reader.fault(value, "is empty");
-  std::vector<int> vertices;
-  if (parse_vertices(text, vertices, fault))
-    out = std::move(vertices);
-  else
-    reader.fault(value, fault);
-}
-
 void read_teleports(const ValueReader& reader, const Value& value, const Allowed& frames, PrimarySpec& spec) {
   const bool number = value.kind == Value::Kind::k_integer || value.kind == Value::Kind::k_number;
   if (value.kind == Value::Kind::k_text) {
@@ -141,26 +101,15 @@ void read_release(const ValueReader& reader, const Value& value, const Allowed& 
   }
 }
 
-void judge_hold(const std::string& owner, const Value& value, const PinSpec& pin, FaultList& faults) {
-  const Member *until = value.find("until"), *fade = value.find("fade"), *opens = value.find("opens");
-  if (until && pin.from && pin.until && !(*pin.from < *pin.until))
-    faults.add(until->place, owner + ": until = " + number_text(*pin.until) +
-                                 " is not after from = " + number_text(*pin.from) + ": it would never hold");
-  if (fade && !until && !value.find("from"))
-    faults.add(fade->place, owner + ": fade needs until (or from), the frame at which it begins");
-  if (opens && !(pin.fade > 0))
-    faults.add(opens->place, owner + ": opens needs fade, the frames that it takes from one end to the other");
-  for (const char* key : {"stiffness", "max_pull"})
-    if (const Member* member = value.find(key); member && value.find("to") && pin.to != k_pin_world)
-      faults.add(member->place, owner + ": " + key + " does not go with to: a cloth is held as firmly as by a seam; " +
-                                    "weights below 1 (file, group) hold it less");
-}
-
-void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
+void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary, FaultList& faults) {
   if (root.find("shot") == nullptr) faults.add({}, "has no [shot] section: frames = \"1-100\" is needed");
   if (shot.primaries.empty()) faults.add({}, "has no [primary.NAME] section: the character that the cloth is worn by");
-  if (shot.cloths.empty() && shot.cords.empty() && shot.standins.empty())
-    faults.add({}, "has no [cloth.NAME] or [cords.NAME] section: there is nothing to bake");
+  if (shot.secondaries.empty() && shot.standins.empty()) {
+    std::vector<std::string> kinds;
+    for (const SecondarySection* section : vocabulary.sections)
+      kinds.push_back(std::string("[").append(section->name()).append(".NAME]"));
+    faults.add({}, "has no " + joined(kinds, " or ") + " section: there is nothing to bake");
+  }
   const int low = shot.solver.min_substeps, high = shot.solver.max_substeps;
   if (low > high) {
     const Member* solver = root.find("solver");
@@ -170,15 +119,16 @@ void judge_whole(const Value& root, Shot& shot, FaultList& faults) {
   }
   std::vector<std::string> primaries;
   for (const PrimarySpec& primary : shot.primaries) primaries.push_back(primary.name);
-  for (ClothSpec& cloth : shot.cloths) judge_wearer(root, "cloth", cloth, primaries, faults);
-  for (CordsSpec& cords : shot.cords) {
-    judge_wearer(root, "cords", cords, primaries, faults);
-    if (std::any_of(shot.cloths.begin(), shot.cloths.end(), [&](const auto& c) { return c.name == cords.name; }))
-      faults.add(place_of(root, {"cords", cords.name}), "cords " + in_quotes(cords.name) +
-                                                            ": a cloth has the same name, their caches would overwrite "
-                                                            "each other");
+  for (const auto& secondary : shot.secondaries) judge_wearer(root, *secondary, primaries, faults);
+  for (std::size_t i = 0; i < shot.secondaries.size(); ++i) {
+    const SecondarySpec& own = *shot.secondaries[i];
+    for (std::size_t k = 0; k < i; ++k)
+      if (shot.secondaries[k]->name == own.name)
+        faults.add(place_of(root, {own.kind(), own.name}),
+                   own.owner() + ": a " + std::string(shot.secondaries[k]->kind()) +
+                       " has the same name, their caches would overwrite each other");
   }
-  for (const ClothSpec& cloth : shot.cloths) judge_attachments(root, cloth, shot.cloths, primaries, faults);
+  for (const auto& secondary : shot.secondaries) secondary->section->judge(root, *secondary, shot, faults);
   judge_couplings(root, shot, faults);
 }
 

@@ -32,9 +32,9 @@ std::span<const ShotKey<StandInKeys>> standin_keys() {
        "drag "
        "below a level; `spring`: pulls when it is taut; `weight`: is carried; `fitted`: a damping fitted to recorded "
        "forces"},
-      {"for", &StandInKeys::stands_for, 0, 0, "", "@secondaries", false, "of secondary cloth cords stands_for",
-       "The cloth or cords that it stands for; not needed when there is only one"},
-      {"on", &StandInKeys::on, 0, 0, "", "@primaries", false, "primary",
+      {"for", &StandInKeys::stands_for, 0, 0, "", "@name of a secondary", false, "of secondary cloth cords stands_for",
+       "The secondary that it stands for; not needed when there is only one"},
+      {"on", &StandInKeys::on, 0, 0, "", "@name of a primary", false, "primary",
        "In the place of `for`: the primary that meets it, when what it stands for is not baked here"},
       {"shape", &StandInKeys::shape, 0, 0, "", "box cone mesh", false, "volume geometry", "Of a volume"},
       {"position", &StandInKeys::position, -1e4, 1e4, "m", "", false, "centre center place level location offset",

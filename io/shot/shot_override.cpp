@@ -7,14 +7,14 @@
 
 namespace ft {
 
-void apply_override(Value& root, const std::string& text, FaultList& faults) {
+void apply_override(Value& root, const std::string& text, const ShotVocabulary& vocabulary, FaultList& faults) {
   std::vector<std::string> path;
   Value value;
   std::string fault;
   const Place place{0, 0, "--set " + printable(text, 80)};
   if (!parse_override(text, path, value, fault)) return faults.add(place, fault);
-  const std::vector<std::string> sections = section_names();
-  const bool named = is_named_section(path.front());
+  const std::vector<std::string> sections = section_names(vocabulary);
+  const bool named = is_named_section(vocabulary, path.front());
   if (std::find(sections.begin(), sections.end(), path.front()) == sections.end())
     return faults.add(place,
                       with_hint("unknown section " + in_quotes(path.front()), suggestion(path.front(), sections)));

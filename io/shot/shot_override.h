@@ -3,11 +3,12 @@
 
 #include <string>
 
+#include "io/shot/shot.h"
 #include "io/shot/shot_values.h"
 
 namespace ft {
 
-/// "cloth.dress.fabric=denim". Cloths and primaries need to exist; other sections are made when they are missing.
-void apply_override(Value& root, const std::string& text, FaultList& faults);
+/// "cloth.dress.fabric=denim". Named sections need to exist; other sections are made when they are missing.
+void apply_override(Value& root, const std::string& text, const ShotVocabulary& vocabulary, FaultList& faults);
 
 }  // namespace ft

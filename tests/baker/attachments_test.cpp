@@ -28,7 +28,7 @@ class Buttoned : public testing::Test {
   }
   BakeServices services() const {
     BakeServices out = scene_.services();
-    out.make_solver = [](ClothSetup setup) { return make_cloth_solver(std::move(setup)); };
+    out.make_solver = make_group_solver;
     return out;
   }
   BakeResult run(const BakeOptions& options, Progress&& progress = Progress()) const {

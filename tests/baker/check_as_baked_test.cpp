@@ -37,7 +37,7 @@ Mesh two_panels() {
 
 BakeResult bake_for_real(const FakeScene& scene) {
   BakeServices services = scene.services();
-  services.make_solver = [](ClothSetup setup) { return make_cloth_solver(std::move(setup)); };
+  services.make_solver = make_group_solver;
   Progress silent;
   return bake(scene.options(), services, silent);
 }

@@ -24,7 +24,7 @@ TEST(CheckStrain, Check_and_manifest_agree_on_a_cloth_that_is_cut_from_its_patte
   scene.write_garment(sheet_with_pattern());
   scene.write_shot(3, "rest = \"pattern\"\npattern_scale = 0.1\npins = [{ vertices = \"0-2\" }]");
   BakeServices services = scene.services();
-  services.make_solver = [](ClothSetup setup) { return make_cloth_solver(std::move(setup)); };
+  services.make_solver = make_group_solver;
   Progress silent;
   const BakeResult baked = bake(scene.options(), services, silent);
   ASSERT_EQ(baked.exit_code, 0) << text(baked);

@@ -35,7 +35,7 @@ Outcome bake_of(const std::string& coupling) {
   Outcome out;
   auto plan = plan_of({"cords.net.coupling=" + coupling});
   EXPECT_TRUE(plan) << plan.error().text();
-  auto solver = make_lockstep_solver(*plan->groups.at(0).lockstep);
+  auto solver = plan->groups.at(0)->make_solver();
   EXPECT_TRUE(solver) << solver.error().text();
   State state = (*solver)->initial_state();
   int touched = 0;

@@ -127,8 +127,10 @@ BakeServices FakeScene::services(FakeBehaviour behaviour) const {
             out.info.bind_bounds.include(Vec3::Ones());
             return out;
           },
-          [behaviour](ClothSetup setup) -> Result<std::unique_ptr<Solver>> {
-            return std::unique_ptr<Solver>(std::make_unique<FakeSolver>(std::move(setup), behaviour));
+          [behaviour](SystemGroup& group) -> Result<std::unique_ptr<Solver>> {
+            auto* cloth = dynamic_cast<ClothGroup*>(&group);
+            if (!cloth) return group.make_solver();
+            return std::unique_ptr<Solver>(std::make_unique<FakeSolver>(std::move(cloth->setup), behaviour));
           }};
 }
 

@@ -10,6 +10,8 @@
 
 #include "baker/bake.h"
 #include "baker/bake_folder.h"
+#include "baker/systems/cloth/cloth_group.h"
+#include "baker/systems/cords/cords_group.h"
 #include "tests/support/assets.h"
 
 namespace ft::test {

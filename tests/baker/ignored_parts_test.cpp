@@ -30,9 +30,10 @@ Planned planned(const std::vector<std::string>& keys, const std::string& extra =
   options.overrides = keys;
   BakeServices services = scene.services({.move = box_of_parts});
   Planned out;
-  services.make_solver = [&out, make = services.make_solver](ClothSetup setup) {
-    for (const ClothGarment& garment : setup.garments) out.ignores.push_back(garment.ignores);
-    return make(std::move(setup));
+  services.make_solver = [&out, make = services.make_solver](SystemGroup& group) {
+    for (const ClothGarment& garment : dynamic_cast<ClothGroup&>(group).setup.garments)
+      out.ignores.push_back(garment.ignores);
+    return make(group);
   };
   Progress silent;
   bake(options, services, silent);

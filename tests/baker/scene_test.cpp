@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "baker/joint_collider.h"
-#include "baker/meeting.h"
 #include "baker/plan.h"
+#include "baker/systems/cloth/cloth_group.h"
+#include "baker/systems/cloth/meeting.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
 #include "tests/support/scripted_body.h"
@@ -47,7 +47,12 @@ class BallScene {
 };
 
 /// All frames; the last report, with the sums of what must never be.
-FrameReport bake_of(GroupPlan& group, int last_frame, std::vector<Vec3>& x) {
+/// The cloths of a plan's group.
+ClothGroup& cloths(const Result<BakePlan>& plan, std::size_t group) {
+  return dynamic_cast<ClothGroup&>(*plan->groups.at(group));
+}
+
+FrameReport bake_of(ClothGroup& group, int last_frame, std::vector<Vec3>& x) {
   auto solver = make_cloth_solver(std::move(group.setup));
   EXPECT_TRUE(solver) << solver.error().text();
   State state = (*solver)->initial_state();
@@ -71,10 +76,10 @@ TEST(Scene, Cloth_that_slides_off_a_ball_comes_to_rest_on_the_ground) {
   auto plan = scene.plan(120);
   ASSERT_TRUE(plan) << plan.error().text();
   ASSERT_EQ(plan->groups.size(), 1u);
-  EXPECT_EQ(plan->groups[0].bodies, (std::vector<std::size_t>{0, 1}));
-  const double mass = 0.25 * plan->groups[0].setup.garments[0].fabric.mass_per_area;
+  EXPECT_EQ(cloths(plan, 0).bodies, (std::vector<std::size_t>{0, 1}));
+  const double mass = 0.25 * cloths(plan, 0).setup.garments[0].fabric.mass_per_area;
   std::vector<Vec3> x;
-  const FrameReport end = bake_of(plan->groups[0], 120, x);
+  const FrameReport end = bake_of(cloths(plan, 0), 120, x);
   EXPECT_EQ(end.crossings_body, 0);
   const double lowest =
       (*std::min_element(x.begin(), x.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); })).y();
@@ -95,14 +100,14 @@ TEST(Scene, What_is_near_is_solved_together_and_what_is_far_apart_alone) {
     ASSERT_TRUE(plan) << plan.error().text();
     if (distance < 1) {
       ASSERT_EQ(plan->groups.size(), 1u);
-      EXPECT_EQ(plan->groups[0].bodies, (std::vector<std::size_t>{0, 1, 2}));
-      ASSERT_EQ(plan->groups[0].outputs.size(), 2u);
-      EXPECT_EQ(plan->groups[0].outputs[1].primary, 1u);
+      EXPECT_EQ(cloths(plan, 0).bodies, (std::vector<std::size_t>{0, 1, 2}));
+      ASSERT_EQ(cloths(plan, 0).outputs.size(), 2u);
+      EXPECT_EQ(cloths(plan, 0).outputs[1].primary, 1u);
       continue;
     }
     ASSERT_EQ(plan->groups.size(), 2u);
-    EXPECT_EQ(plan->groups[0].bodies, (std::vector<std::size_t>{0, 2}));
-    EXPECT_EQ(plan->groups[1].bodies, (std::vector<std::size_t>{1, 2}));
+    EXPECT_EQ(cloths(plan, 0).bodies, (std::vector<std::size_t>{0, 2}));
+    EXPECT_EQ(cloths(plan, 1).bodies, (std::vector<std::size_t>{1, 2}));
     // And gives the bytes that it gives alone.
     BallScene alone;
     alone.add_ball("b", distance);
@@ -111,8 +116,8 @@ TEST(Scene, What_is_near_is_solved_together_and_what_is_far_apart_alone) {
     auto alone_plan = alone.plan();
     ASSERT_TRUE(alone_plan) << alone_plan.error().text();
     std::vector<Vec3> x, y;
-    bake_of(plan->groups[1], 24, x);
-    bake_of(alone_plan->groups[0], 24, y);
+    bake_of(cloths(plan, 1), 24, x);
+    bake_of(cloths(alone_plan, 0), 24, y);
     EXPECT_EQ(x, y);
   }
 }
@@ -128,7 +133,7 @@ TEST(Scene, Cloths_of_two_wearers_meet_each_other) {
   ASSERT_TRUE(plan) << plan.error().text();
   ASSERT_EQ(plan->groups.size(), 1u);
   std::vector<Vec3> x;
-  EXPECT_EQ(bake_of(plan->groups[0], 40, x).crossings_body, 0);
+  EXPECT_EQ(bake_of(cloths(plan, 0), 40, x).crossings_body, 0);
 }
 
 TEST(Scene, A_cloth_meets_what_its_key_says) {
@@ -138,11 +143,11 @@ TEST(Scene, A_cloth_meets_what_its_key_says) {
   scene.add_sheet("none", "ball", 0, "meets = []");
   auto alone = scene.plan();
   ASSERT_TRUE(alone) << alone.error().text();
-  EXPECT_FALSE(alone->groups.at(0).joint);
+  EXPECT_FALSE(cloths(alone, 0).joint);
   scene.add_sheet("all", "ball", 0.8);
   auto both = scene.plan();
   ASSERT_TRUE(both) << both.error().text();
-  const GroupPlan& group = both->groups.at(0);
+  const ClothGroup& group = cloths(both, 0);
   ASSERT_TRUE(group.joint);
   EXPECT_EQ(group.setup.garments[0].ignores, (std::vector<int>{1})) << "the ground is part 1";
   EXPECT_TRUE(group.setup.garments[1].ignores.empty());
@@ -159,7 +164,7 @@ TEST(Scene, A_box_on_the_ground_stays_whole) {
   scene.add(k_ground);
   auto plan = scene.plan();
   ASSERT_TRUE(plan) << plan.error().text();
-  const FeasiblePoses& poses = *plan->groups.at(0).poses;
+  const FeasiblePoses& poses = *cloths(plan, 0).setup.poses;
   std::vector<Vec3> drawn(at(poses.body().surface().vertex_count())), x(at(poses.collider().vertex_count()));
   std::vector<char> absent(x.size());
   poses.body().sample(0, drawn);
@@ -174,14 +179,14 @@ TEST(Scene, Joint_bodies_keep_their_parts_apart_and_what_stands_still_as_it_is) 
   scene.add_sheet("sheet", "ball", 0);
   auto plan = scene.plan();
   ASSERT_TRUE(plan) << plan.error().text();
-  const GroupPlan& group = plan->groups.at(0);
+  const ClothGroup& group = cloths(plan, 0);
   const Surface& surface = group.joint->surface();
   ASSERT_EQ(surface.parts.size(), 2u);
   EXPECT_EQ(surface.parts[1].name, "floor");
   EXPECT_TRUE(surface.parts[1].fixed);
   EXPECT_EQ(surface.vertex_count(), plan->primaries[0].trajectory->surface().vertex_count() +
                                         plan->primaries[1].trajectory->surface().vertex_count());
-  const std::vector<ColliderSlice> slices = collider_slices(*plan, group, {});
+  const std::vector<ColliderSlice> slices = group.slices(*plan, {});
   ASSERT_EQ(slices.size(), 2u);
   EXPECT_EQ(slices[1].name, "floor");
   EXPECT_EQ(slices[1].triangles.size(), plan->primaries[1].trajectory->surface().triangles.size())
@@ -192,10 +197,10 @@ TEST(Scene, Joint_bodies_keep_their_parts_apart_and_what_stands_still_as_it_is) 
     for (const Triangle& t : slice.triangles)
       for (const int v : t) EXPECT_LT(at(v), slice.vertices.size());
   }
-  EXPECT_EQ(all, at(group.poses->collider().vertex_count()));
+  EXPECT_EQ(all, at(group.setup.poses->collider().vertex_count()));
   // Runs of the whole collider, told of its slices.
   const int ground = slices[1].vertices[2];
-  const std::vector<AbsentRuns> told = sliced({"sheet", {{0, 2}, {ground, 1}}}, slices, static_cast<int>(all));
+  const std::vector<AbsentRuns> told = sliced({"sheet", {{0, 2}, {ground, 1}}}, slices);
   ASSERT_EQ(told.size(), 2u);
   EXPECT_EQ(told[0].runs, (std::vector<std::array<int, 2>>{{0, 2}}));
   EXPECT_EQ(told[1].collider, "floor");

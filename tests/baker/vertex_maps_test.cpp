@@ -1,10 +1,10 @@
 // Maps from the shot file to the solver: where values come from, what happens to them on the way, and what is said when
 // they do not fit.
-#include "baker/vertex_maps.h"
+#include "baker/systems/cloth/vertex_maps.h"
 
 #include "baker/core/file.h"
+#include "baker/systems/cloth/cloth_maps.h"
 #include "io/shot/mesh_file.h"
-#include "io/shot/shot_maps.h"
 #include "solvers/energies/fabric.h"
 #include "tests/baker/fake_bake.h"
 

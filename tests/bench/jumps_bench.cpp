@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "baker/plan.h"
+#include "baker/systems/cloth/cloth_group.h"
 #include "tests/support/collider_jumps.h"
 
 namespace ft {
@@ -20,8 +20,10 @@ int print_jumps(const char* file, double rate, double least) {
   if (!plan) return fmt::print("{}\n", plan.error().text()), 2;
   const Shot& shot = plan->shot();
   const double until = (shot.last_frame - shot.first_frame) / shot.fps;
-  for (const GroupPlan& group : plan->groups) {
-    if (!group.setup.primary) continue;
+  for (const auto& any : plan->groups) {
+    const auto* cloths = dynamic_cast<const ClothGroup*>(any.get());
+    if (!cloths || !cloths->setup.primary) continue;
+    const ClothGroup& group = *cloths;
     double longest = 0;
     const auto jumps = test::collider_jumps(*group.setup.primary, group.setup.feasible, 0, until, rate, least);
     for (const test::ColliderJump& jump : jumps) {

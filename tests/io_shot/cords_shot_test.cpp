@@ -55,8 +55,8 @@ class CordsShot : public ShotFile {
 TEST_F(CordsShot, A_ball_and_a_net_are_read_with_their_defaults) {
   const auto shot = parse(k_basketball);
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  ASSERT_EQ(shot->cords.size(), 1u);
-  const CordsSpec& net = shot->cords[0];
+  ASSERT_EQ(specs_of<CordsSpec>(shot->secondaries).size(), 1u);
+  const CordsSpec& net = cords_of(shot, 0);
   EXPECT_EQ(net.on, "ball") << "the only primary";
   EXPECT_EQ(net.columns, 12);
   EXPECT_EQ(net.points, 2) << "of a net's side";
@@ -76,7 +76,7 @@ TEST_F(CordsShot, One_shot_serves_all_three_couplings_and_says_what_it_does_not_
   for (const char* coupling : {"one-way", "hybrid", "two-way"}) {
     const auto shot = parse(k_basketball, {std::string("cords.net.coupling=") + coupling});
     ASSERT_TRUE(shot.ok()) << shot.error().text();
-    EXPECT_EQ(shot->cords[0].coupling, coupling);
+    EXPECT_EQ(cords_of(shot, 0).coupling, coupling);
     EXPECT_TRUE(texts.insert(canonical(*shot)).second);
     const std::string note =
         "standin \"air\" is not used: cords \"net\" has coupling = \"" + std::string(coupling) + "\"";
@@ -89,7 +89,7 @@ TEST_F(CordsShot, Cloth_may_be_hybrid_beside_cords_that_are_one_way) {
   text += "for = \"cape\"\n[cloth.cape]\nmesh = \"dress.obj\"\ncoupling = \"hybrid\"\n";
   const auto shot = parse(text, {"cords.net.coupling=one-way"});
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  EXPECT_EQ(shot->cloths[0].coupling, "hybrid");
+  EXPECT_EQ(cloth_of(shot, 0).coupling, "hybrid");
   EXPECT_NE(canonical(*shot).find("cloth.cape.coupling = \"hybrid\"\n"), std::string::npos);
   EXPECT_TRUE(shot->notes.empty());
 }
@@ -164,7 +164,7 @@ TEST_F(CordsShot, Hybrid_needs_a_stand_in_of_its_own) {
       "shot.toml:16:12: cords \"net\": coupling = \"hybrid\" needs what the primary yields to: a [standin.NAME] "
       "with for = \"net\"");
   expect_fault({{"damping = 3.9", "damping = 3.9\nfor = \"nett\""}},
-               "shot.toml:25:7: standin \"air\": for = \"nett\" names no cloth or cords (did you mean \"net\"?)");
+               "shot.toml:25:7: standin \"air\": for = \"nett\" names no secondary (did you mean \"net\"?)");
   expect_fault({{"", "[cloth.cape]\nmesh = \"dress.obj\"\n"}},
                "shot.toml:18:1: standin \"air\": for is missing; it says what it stands for (one of: cape, net)");
 }
@@ -178,7 +178,7 @@ TEST_F(CordsShot, A_stand_in_may_be_on_a_primary_for_what_is_not_baked) {
   EXPECT_EQ(shot->standins[0].on, "diver") << "the only primary";
   EXPECT_NE(canonical(*shot).find("primary.diver.comeback = \"window\"\n"), std::string::npos);
   expect_fault({{"damping = 3.9", "damping = 3.9\non = \"ball\"\nfor = \"net\""}},
-               "shot.toml:25:1: standin \"air\": has both for and on; on is for what no cloth or cords are there for");
+               "shot.toml:25:1: standin \"air\": has both for and on; on is for what no secondary is there for");
   expect_fault({{"damping = 3.9", "damping = 3.9\non = \"bal\""}},
                "shot.toml:25:6: standin \"air\": on = \"bal\" names no primary (did you mean \"ball\"?)");
   expect_fault({{"damping = 3.9", "damping = 3.9\non = \"ball\""}},
@@ -222,9 +222,9 @@ TEST_F(CordsShot, A_rope_is_held_at_its_start_unless_it_says_otherwise) {
   text.replace(text.find("shape = \"net\""), 13, "shape = \"rope\"\nto = [0, 9, 0]");
   const auto rope = parse(text);
   ASSERT_TRUE(rope.ok()) << rope.error().text();
-  EXPECT_EQ(rope->cords[0].held, "start");
-  EXPECT_EQ(rope->cords[0].points, 32);
-  EXPECT_EQ(parse(text, {"cords.net.held=both"})->cords[0].held, "both");
+  EXPECT_EQ(cords_of(rope, 0).held, "start");
+  EXPECT_EQ(cords_of(rope, 0).points, 32);
+  EXPECT_EQ(cords_of(parse(text, {"cords.net.held=both"}), 0).held, "both");
 }
 
 TEST_F(CordsShot, Cut_or_damaged_anywhere_is_a_shot_or_faults) {
@@ -270,7 +270,7 @@ TEST_F(CordsShot, Overrides_reach_every_new_section_and_name_slips) {
   const auto shot = parse(k_basketball, {"primary.ball.spin=[0,0,6.28]", "cords.net.rows=8", "standin.air.damping=5"});
   ASSERT_TRUE(shot.ok()) << shot.error().text();
   EXPECT_EQ(shot->primaries[0].spin.z(), 6.28);
-  EXPECT_EQ(shot->cords[0].rows, 8);
+  EXPECT_EQ(cords_of(shot, 0).rows, 8);
   EXPECT_EQ(shot->standins[0].damping, 5);
   EXPECT_EQ(faults_when({}, {"cords.ned.rows=8"}),
             std::vector<std::string>{"--set cords.ned.rows=8: there is no cords \"ned\" (did you mean \"net\"?)"});

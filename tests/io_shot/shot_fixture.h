@@ -7,17 +7,29 @@
 #include <vector>
 
 #include "baker/core/file.h"
+#include "baker/inputs.h"
+#include "baker/systems/cloth/cloth_keys.h"
+#include "baker/systems/cords/cords_keys.h"
 #include "io/shot/shot.h"
 #include "tests/support/assets.h"
 
 namespace ft {
 
 inline ShotVocabulary words() {
-  ShotVocabulary v;
-  v.fabrics = {"jersey", "cotton", "denim", "silk", "wool", "ripstop"};
-  v.fabric_keys = {{"mass_per_area", 0.02, 2, "kg/m2"}, {"shear", 0.1, 1e6, "N/m"}, {"bend_warp", 0, 0.1, "N m"}};
-  v.cache_formats = {"abc", "pc2", "mdd"};
+  ShotVocabulary v = shot_vocabulary();
+  v.lists["@formats"] = {"abc", "pc2", "mdd"};
   return v;
+}
+
+/// A shot's cloths, and its cords, in the order of the file.
+inline const ClothSpec& cloth_of(const Result<Shot>& shot, std::size_t index) {
+  return *specs_of<ClothSpec>(shot->secondaries).at(index);
+}
+inline std::size_t cloth_count(const Result<Shot>& shot) {
+  return specs_of<ClothSpec>(shot->secondaries).size();
+}
+inline const CordsSpec& cords_of(const Result<Shot>& shot, std::size_t index) {
+  return *specs_of<CordsSpec>(shot->secondaries).at(index);
 }
 
 inline const char* const k_good = R"([shot]

@@ -13,14 +13,14 @@ TEST_F(ShotFile, Overrides_are_read_by_the_same_table) {
                      "primary.mannequin.clip=12", "cloth.cape.self_collision=false", "cloth.dress.mass_per_area=0.3",
                      "cloth.dress.bend_warp=1e-5", "cache.formats=mdd", "cloth.cape.pins=[{within=0.01}]"});
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  EXPECT_EQ(shot->cloths[0].fabric, "denim");
+  EXPECT_EQ(cloth_of(shot, 0).fabric, "denim");
   EXPECT_EQ(shot->wind.velocity, Vec3(1, 0, 2));
   EXPECT_EQ(shot->last_frame, 20);
   EXPECT_EQ(shot->primaries[0].clip, "12");
-  EXPECT_FALSE(shot->cloths[1].self_collision);
-  EXPECT_EQ(shot->cloths[0].fabric_overrides.size(), 2u);
+  EXPECT_FALSE(cloth_of(shot, 1).self_collision);
+  EXPECT_EQ(cloth_of(shot, 0).fabric_overrides.size(), 2u);
   EXPECT_EQ(shot->cache_formats, std::vector<std::string>{"mdd"});
-  EXPECT_EQ(shot->cloths[1].pins.size(), 2u) << "pin and pins add up";
+  EXPECT_EQ(cloth_of(shot, 1).pins.size(), 2u) << "pin and pins add up";
 }
 
 TEST_F(ShotFile, Faulty_overrides_name_themselves_as_their_place) {
@@ -70,7 +70,7 @@ TEST_F(ShotFile, Every_key_of_the_table_can_be_set_and_changes_the_canonical_tex
         value = "[\"mdd\"]";
       else if (key.choices == "@fabrics")
         value = "silk";
-      else if (key.choices == "@primaries" || key.name == "coupling")
+      else if (key.choices == "@name of a primary" || key.name == "coupling")
         continue;  // need a second primary, a stand-in: tested elsewhere
       else if (!key.choices.empty())
         value = split_words(key.choices).back();

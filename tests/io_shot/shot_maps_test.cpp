@@ -1,8 +1,7 @@
 // Maps in the shot file and the files of numbers behind them.
-#include "io/shot/shot_maps.h"
-
 #include <cmath>
 
+#include "baker/systems/cloth/cloth_maps.h"
 #include "io/shot/shot_keys.h"
 #include "io/shot/vertex_values.h"
 #include "tests/io_shot/shot_fixture.h"
@@ -22,7 +21,7 @@ TEST_F(ShotFile, Maps_are_read_in_a_list_or_as_sections) {
                "[[cloth.dress.maps]]\nof = \"bend\"\nfile = \"cape.csv\"\ncolumn = \"b\"\nlow = 1\nhigh = 20");
   const auto shot = parse(text);
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  const ClothSpec &dress = shot->cloths[0], &cape = shot->cloths[1];
+  const ClothSpec &dress = cloth_of(shot, 0), &cape = cloth_of(shot, 1);
   ASSERT_EQ(cape.maps.size(), 2u);
   EXPECT_EQ(cape.maps[0].of, "thickness");
   EXPECT_EQ(cape.maps[0].from, "red");
@@ -83,7 +82,7 @@ TEST_F(ShotFile, Faults_of_maps_name_place_range_and_what_was_meant) {
 TEST_F(ShotFile, Pins_say_from_when_until_when_and_how_gently_they_hold) {
   const auto shot = parse(k_good, {"cloth.cape.pins=[{within=0.01, from=1010, until=1050.5, fade=12}]"});
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  const PinSpec& pin = shot->cloths[1].pins.back();
+  const PinSpec& pin = cloth_of(shot, 1).pins.back();
   EXPECT_EQ(pin.from, 1010);
   EXPECT_EQ(pin.until, 1050.5);
   EXPECT_EQ(pin.fade, 12);
@@ -104,7 +103,7 @@ TEST_F(ShotFile, Pins_hold_to_a_cloth_of_the_same_primary_and_open_like_a_zip) {
   const auto shot =
       parse(k_good, {"cloth.cape.pins=[{within=0.01, to=\"dress\", until=1050, fade=24, opens=[0, -1, 0]}]"});
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  const PinSpec& pin = shot->cloths[1].pins.back();
+  const PinSpec& pin = cloth_of(shot, 1).pins.back();
   EXPECT_EQ(pin.to, "dress");
   EXPECT_EQ(pin.opens, Vec3(0, -1, 0));
   EXPECT_NE(canonical(*shot).find("until = 1050, fade = 24, to = \"dress\", opens = [0, -1, 0] }"), std::string::npos)

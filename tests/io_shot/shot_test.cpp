@@ -12,8 +12,8 @@ TEST_F(ShotFile, Good_file_gives_what_it_says) {
   ASSERT_EQ(shot->primaries.size(), 1u);
   EXPECT_EQ(shot->primaries[0].file, folder_ / "mannequin.glb");
   EXPECT_EQ(shot->primaries[0].clip, "Rumba");
-  ASSERT_EQ(shot->cloths.size(), 2u);
-  const ClothSpec& dress = shot->cloths[0];
+  ASSERT_EQ(cloth_count(shot), 2u);
+  const ClothSpec& dress = cloth_of(shot, 0);
   EXPECT_EQ(dress.name, "dress");
   EXPECT_EQ(dress.mesh, folder_ / "dress.obj");
   ASSERT_EQ(dress.fabric_overrides.size(), 1u);
@@ -28,9 +28,9 @@ TEST_F(ShotFile, Good_file_gives_what_it_says) {
   EXPECT_EQ(dress.pins[2].select, PinSpec::Select::k_vertices);
   EXPECT_EQ(dress.pins[2].vertices.size(), 201u);
   EXPECT_EQ(dress.pins[3].vertices, (std::vector<int>{1, 2, 3}));
-  EXPECT_EQ(shot->cloths[1].on, "mannequin") << "the only primary";
-  ASSERT_EQ(shot->cloths[1].pins.size(), 1u);
-  EXPECT_EQ(shot->cloths[1].pins[0].group, "neck");
+  EXPECT_EQ(cloth_of(shot, 1).on, "mannequin") << "the only primary";
+  ASSERT_EQ(cloth_of(shot, 1).pins.size(), 1u);
+  EXPECT_EQ(cloth_of(shot, 1).pins[0].group, "neck");
 }
 
 TEST_F(ShotFile, Cloths_keep_the_order_of_the_file) {
@@ -39,9 +39,9 @@ TEST_F(ShotFile, Cloths_keep_the_order_of_the_file) {
     text += std::string("[cloth.") + name + "]\nmesh = \"dress.obj\"\n";
   const auto shot = parse(text);
   ASSERT_TRUE(shot.ok()) << shot.error().text();
-  EXPECT_EQ(shot->cloths[0].name, "zebra");
-  EXPECT_EQ(shot->cloths[1].name, "apple");
-  EXPECT_EQ(shot->cloths[2].name, "mango");
+  EXPECT_EQ(cloth_of(shot, 0).name, "zebra");
+  EXPECT_EQ(cloth_of(shot, 1).name, "apple");
+  EXPECT_EQ(cloth_of(shot, 2).name, "mango");
 }
 
 TEST_F(ShotFile, Every_fault_is_reported_at_once_with_place_range_and_guess) {

@@ -1,0 +1,10 @@
+// [cloth.NAME] for the shot file's reader.
+#pragma once
+
+#include "io/shot/secondary.h"
+
+namespace ft {
+
+const SecondarySection& cloth_section();
+
+}  // namespace ft

@@ -1,0 +1,21 @@
+// All cords of one primary, which is their prop: one system in lock step. Cloth and cords do not feel each other.
+#pragma once
+
+#include "baker/plan.h"
+#include "solvers/lockstep/lockstep_solver.h"
+
+namespace ft {
+
+class CordsGroup final : public SystemGroup {
+ public:
+  using SystemGroup::SystemGroup;
+
+  LockstepSetup setup;
+
+  std::string_view role() const override { return "cords"; }
+  Result<std::unique_ptr<Solver>> make_solver() override { return make_lockstep_solver(setup); }
+  std::vector<std::string> lines(const BakePlan& plan) const override;
+  bool can_be_two_way() const override { return true; }
+};
+
+}  // namespace ft

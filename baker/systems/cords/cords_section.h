@@ -1,0 +1,10 @@
+// [cords.NAME] for the shot file's reader.
+#pragma once
+
+#include "io/shot/secondary.h"
+
+namespace ft {
+
+const SecondarySection& cords_section();
+
+}  // namespace ft
