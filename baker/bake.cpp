@@ -185,13 +185,21 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   auto files = write_hybrid_files(*plan, folder.path, manifest.notes);
   if (!files) return failed(files.error());
   manifest.files = std::move(*files);
+  for (const auto& group : plan->groups) {
+    auto beside = group->files(*plan, manifest.notes);
+    if (!beside) return failed(beside.error());
+    for (const WrittenFile& file : *beside) {
+      if (const Status s = write_file_durably(folder.path / file.name, file.bytes); !s) return failed(s.error());
+      manifest.files.push_back({file.name, file.bytes.size(), hash_bytes(file.bytes).hex()});
+    }
+  }
   if (!*checkpoint)
     if (const Status removed = remove_left_behind(folder, standing.before, caches.systems(), manifest.files); !removed)
       return failed(removed.error());
   WalkResult result =
       walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), room, progress);
   Status status = result.status;
-  if (status) status = judge(result.manifest, {plan->shot().gate_p99_strain, plan->shot().gate_crossings});
+  if (status) status = judge(result.manifest, gates_of(plan->shot()));
   BakeResult out;
   if (!status) out = failed(status.error());
   progress.end({out.exit_code, status ? closing(result.manifest, folder) : status.error().text(),
@@ -240,9 +248,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   }
   if (standing.kind == Standing::Kind::k_up_to_date && !options.force) {
     BakeResult out;
-    if (const Status judged = judge(standing.before, {inputs->shot.gate_p99_strain, inputs->shot.gate_crossings});
-        !judged)
-      out = failed(judged.error());
+    if (const Status judged = judge(standing.before, gates_of(inputs->shot)); !judged) out = failed(judged.error());
     out.lines.push_back(describe(standing, folder));
     return out;
   }

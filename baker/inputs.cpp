@@ -51,7 +51,7 @@ Status add_file(BakeInputs& inputs, const std::string& role, const std::filesyst
 /// and changes nothing of it.
 bool shapes_the_bake(const std::string& key) {
   if (key.starts_with("gate.")) return false;
-  for (const char* end : {".file", ".mesh", ".animation", ".topology"})
+  for (const char* end : {".file", ".mesh", ".animation", ".topology", ".weights"})
     if (key.ends_with(end)) return false;
   return true;
 }
@@ -73,6 +73,8 @@ ShotVocabulary shot_vocabulary() {
     words.sections.push_back(&kind->section());
     for (auto& [name, list] : kind->section().lists()) words.lists.emplace(std::move(name), std::move(list));
   }
+  for (const std::span<const Metric> metrics : {frame_metrics(), declared_metrics()})
+    for (const Metric& metric : metrics) words.lists["@metrics"].emplace_back(metric.key);
   for (const CacheFormat& format : cache_formats()) words.lists["@formats"].emplace_back(format.name);
   return words;
 }

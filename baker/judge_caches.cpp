@@ -1,6 +1,7 @@
 #include "baker/judge_caches.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "baker/report_json.h"
@@ -46,7 +47,11 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
       if (!report) return report.error();
       all = all ? merge(*all, *report) : *report;
     }
-    if (all) out.frames.push_back(std::move(*all));
+    if (!all) {  // nothing there can be judged
+      all.emplace().frame = frame;
+      all->smallest_gap = std::numeric_limits<double>::infinity();
+    }
+    out.frames.push_back(std::move(*all));
   }
   return out;
 }

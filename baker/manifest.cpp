@@ -7,6 +7,7 @@
 
 #include "baker/core/file.h"
 #include "baker/report_json.h"
+#include "baker/systems/system.h"
 #include "io/shot/shot.h"
 
 namespace ft {
@@ -200,6 +201,27 @@ std::vector<std::string> stale_reasons(const Manifest& before, const Manifest& n
   return out;
 }
 
+Gates gates_of(const Shot& shot) {
+  return {shot.gate_p99_strain, shot.gate_crossings, shot.gate_most};
+}
+
+namespace {
+
+Status judge_metrics(const FrameReport& frame, const Gates& gates, const std::string& where) {
+  for (const auto& [key, limit] : gates.most)
+    for (const std::span<const Metric> metrics : {frame_metrics(), declared_metrics()})
+      for (const Metric& metric : metrics)
+        if (metric.key == key && value_of(frame, metric) > limit)
+          return Error{ErrorKind::k_quality,
+                       fmt::format("quality gate: {} = {:.4g} is above {:.4g}{}{}", key, value_of(frame, metric), limit,
+                                   metric.unit.empty() ? "" : " ", metric.unit),
+                       where,
+                       {}};
+  return {};
+}
+
+}  // namespace
+
 Status judge(const Manifest& manifest, const Gates& gates) {
   for (const FrameReport& frame : manifest.frames) {
     const std::string where = fmt::format("frame {}", frame.frame);
@@ -215,6 +237,7 @@ Status judge(const Manifest& manifest, const Gates& gates) {
       return Error{ErrorKind::k_quality,
                    fmt::format("quality gate: p99 strain {:.4g} is above {:.4g}", frame.strain_p99, gates.p99_strain),
                    where, "a stiffer fabric or more newton_iterations stretches less"};
+    if (const Status within = judge_metrics(frame, gates, where); !within) return within;
   }
   return {};
 }

@@ -9,6 +9,7 @@
 
 #include "baker/core/hash.h"
 #include "baker/core/result.h"
+#include "io/shot/shot.h"
 #include "solvers/solver.h"
 
 namespace ft {
@@ -80,7 +81,9 @@ std::vector<std::string> stale_reasons(const Manifest& before, const Manifest& n
 struct Gates {
   double p99_strain = 0;  ///< 1; 0: off
   bool crossings = false;
+  std::vector<std::pair<std::string, double>> most{};  ///< of metrics
 };
+Gates gates_of(const Shot& shot);
 /// Error k_quality or k_diverged with the first frame that fails.
 Status judge(const Manifest& manifest, const Gates& gates);
 

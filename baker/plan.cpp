@@ -41,7 +41,9 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.duration = (shot.last_frame - shot.first_frame) / shot.fps;
   request.first_frame = shot.first_frame;
   request.cache_folder = cache;
-  request.keep_character = is_hybrid(shot, spec.name);
+  const auto asks = [&](const auto& s) { return s->on == spec.name && s->section->needs_character(); };
+  request.keep_character =
+      is_hybrid(shot, spec.name) || std::any_of(shot.secondaries.begin(), shot.secondaries.end(), asks);
   return request;
 }
 
@@ -92,13 +94,13 @@ void note_pass(const HybridPass& pass, const std::string& primary, std::vector<s
 }
 
 /// Where `position` and `rotation` have it.
-Status place_character(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported) {
+Status place_character(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported, Eigen::Isometry3d& place) {
   if (spec.position == Vec3::Zero() && spec.rotation_deg == Vec3::Zero()) return {};
   if (is_hybrid(shot, spec.name))
     return usage_error("a character that yields to stand-ins cannot have position or rotation",
                        shot.file.filename().string() + ": primary \"" + spec.name + "\"",
                        "move it in the program that it comes from");
-  const Eigen::Isometry3d place = Eigen::Translation3d(spec.position) * rotation_of_degrees(spec.rotation_deg);
+  place = Eigen::Translation3d(spec.position) * rotation_of_degrees(spec.rotation_deg);
   imported.trajectory = std::make_unique<PlacedTrajectory>(std::move(imported.trajectory), place);
   return {};
 }
@@ -112,15 +114,17 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   for (const std::string& note : imported->info.notes) notes.push_back("primary \"" + spec.name + "\": " + note);
   if (const Status checked = check_primary(shot, spec, *imported->trajectory, imported->info, notes); !checked)
     return checked.error();
-  if (const Status placed = place_character(shot, spec, *imported); !placed) return placed.error();
   PrimaryPlan out;
+  if (const Status placed = place_character(shot, spec, *imported, out.place); !placed) return placed.error();
   out.name = spec.name;
   out.scan = scan_of(shot, spec, *imported->trajectory);
   for (std::string& note : teleport_notes(out.scan, spec.name)) notes.push_back(std::move(note));
   out.mass = primary_mass(spec, *imported->trajectory);
   out.trajectory = std::move(imported->trajectory);
   out.info = std::move(imported->info);
-  if (imported->character && has_joints(*imported->character)) {
+  out.character = imported->character;
+  out.request = request;
+  if (is_hybrid(shot, spec.name) && imported->character && has_joints(*imported->character)) {
     auto yielded = yield_character(shot, spec, request, imported->character, *out.trajectory, out.mass.kilograms);
     if (!yielded) return yielded.error();
     note_pass(yielded->pass, spec.name, notes);

@@ -15,6 +15,7 @@
 #include "baker/systems/system.h"
 #include "baker/yielding_character.h"
 #include "io/import/import.h"
+#include "io/import/placed_character.h"
 #include "io/import/teleport_scan.h"
 
 namespace ft {
@@ -29,6 +30,11 @@ struct PrimaryPlan {
   RigidTrack track;                                   ///< of a prop: where `trajectory` has it
   std::shared_ptr<const HybridPass> hybrid;           ///< null without one; `trajectory` has it
   std::shared_ptr<const YieldingCharacter> yielding;  ///< of a character with a hybrid pass
+  /// What a secondary needs that changes joints: the character as it was imported, how, and where it is placed. Null
+  /// where none asks for it, and of props and geometry caches.
+  std::shared_ptr<const PlacedCharacter> character;
+  ImportRequest request;
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
 };
 
 struct BakePlan {

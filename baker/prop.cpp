@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "baker/core/equimomental.h"
 #include "baker/core/shapes.h"
-#include "solvers/lockstep/equimomental.h"
 #include "solvers/standins/rigid_flight.h"
 
 namespace ft {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "baker/systems/system.h"
+
 namespace ft {
 namespace {
 
@@ -11,32 +13,6 @@ constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing,     Inciden
                                          Incident::Kind::k_released,     Incident::Kind::k_strain,
                                          Incident::Kind::k_start_inside, Incident::Kind::k_rewind,
                                          Incident::Kind::k_unsettled,    Incident::Kind::k_open_seam};
-
-/// The one list of a report's fields: visit(name, member).
-template <class Report, class Visit>
-void for_each_field(Report& r, Visit&& visit) {
-  visit("frame", r.frame);
-  visit("substeps", r.substeps);
-  visit("newton_iterations", r.newton_iterations);
-  visit("linear_iterations", r.linear_iterations);
-  visit("rewinds", r.rewinds);
-  visit("crossings_body", r.crossings_body);
-  visit("crossings_self", r.crossings_self);
-  visit("crossings_drawn", r.crossings_drawn);
-  visit("smallest_gap", r.smallest_gap);
-  visit("deepest_drawn", r.deepest_drawn);
-  visit("inside_body", r.inside_body);
-  visit("open_stitches", r.open_stitches);
-  visit("widest_seam", r.widest_seam);
-  visit("strain_p99", r.strain_p99);
-  visit("strain_max", r.strain_max);
-  visit("strain_mean", r.strain_mean);
-  visit("kinetic_energy", r.kinetic_energy);
-  visit("absent_vertices", r.absent_vertices);
-  visit("crossings_absent", r.crossings_absent);
-  visit("released_vertices", r.released_vertices);
-  visit("finite", r.finite);
-}
 
 template <class Profile, class Visit>
 void for_each_time(Profile& p, Visit&& visit) {
@@ -192,7 +168,15 @@ Json to_json(const AbsentRuns& absent) {
 
 Json to_json(const FrameReport& report) {
   Json out = Json::object();
-  for_each_field(report, [&](const char* name, const auto& value) { out[name] = value_of(value); });
+  out["frame"] = report.frame;
+  for (const Metric& metric : frame_metrics())
+    std::visit(
+        [&](auto member) {
+          if constexpr (!std::is_same_v<decltype(member), std::monostate>)
+            out[std::string(metric.key)] = value_of(report.*member);
+        },
+        metric.member);
+  for (const auto& [key, value] : report.own) out[key] = value_of(value);
   if (!report.forces.empty()) {
     Json list = Json::array();
     for (const InteractionForce& f : report.forces) list.push_back(to_json(f));
@@ -221,7 +205,16 @@ Result<FrameReport> frame_report_from_json(const Json& json) {
   FrameReport out;
   try {
     if (!json.is_object()) return input_error("a frame's report is not an object");
-    for_each_field(out, [&](const char* name, auto& value) { take_field(json, name, value); });
+    take_field(json, "frame", out.frame);
+    for (const Metric& metric : frame_metrics())
+      std::visit(
+          [&](auto member) {
+            if constexpr (!std::is_same_v<decltype(member), std::monostate>)
+              take_field(json, metric.key.data(), out.*member);
+          },
+          metric.member);
+    for (const Metric& metric : declared_metrics())
+      if (json.contains(metric.key)) take_field(json, metric.key.data(), out.own[std::string(metric.key)]);
     if (const auto list = json.find("forces"); list != json.end()) {
       if (!list->is_array()) throw Faulty{"forces"};
       for (const Json& f : *list) out.forces.push_back(force_from(f));
@@ -264,33 +257,7 @@ std::string to_text(const Json& json) {
 }
 
 FrameReport merge(const FrameReport& a, const FrameReport& b) {
-  FrameReport out = a;
-  CHECK(a.frame == b.frame);
-  out.substeps = std::max(a.substeps, b.substeps);
-  out.newton_iterations += b.newton_iterations;
-  out.linear_iterations += b.linear_iterations;
-  out.rewinds += b.rewinds;
-  out.crossings_body += b.crossings_body;
-  out.crossings_self += b.crossings_self;
-  out.crossings_drawn += b.crossings_drawn;
-  out.smallest_gap = std::min(a.smallest_gap, b.smallest_gap);
-  out.deepest_drawn = std::max(a.deepest_drawn, b.deepest_drawn);
-  out.inside_body += b.inside_body;
-  out.open_stitches += b.open_stitches;
-  out.widest_seam = std::max(a.widest_seam, b.widest_seam);
-  out.strain_p99 = std::max(a.strain_p99, b.strain_p99);
-  out.strain_max = std::max(a.strain_max, b.strain_max);
-  out.strain_mean = std::max(a.strain_mean, b.strain_mean);
-  out.kinetic_energy += b.kinetic_energy;
-  out.absent_vertices = std::max(a.absent_vertices, b.absent_vertices);
-  out.crossings_absent += b.crossings_absent;
-  out.released_vertices += b.released_vertices;
-  out.finite = a.finite && b.finite;
-  out.forces.insert(out.forces.end(), b.forces.begin(), b.forces.end());
-  out.absent.insert(out.absent.end(), b.absent.begin(), b.absent.end());
-  out.incidents.insert(out.incidents.end(), b.incidents.begin(), b.incidents.end());
-  out.profile += b.profile;
-  return out;
+  return merge(a, b, declared_metrics());
 }
 
 }  // namespace ft

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/core/result.h"
-#include "solvers/solver.h"
+#include "solvers/frame_metrics.h"
 
 namespace ft {
 
@@ -30,7 +30,7 @@ Result<Json> parse_json(const std::string& text, const std::string& where);
 /// well.
 std::string to_text(const Json& json);
 
-/// Worst of several systems in one frame: counts add up, depths and strains take the largest, gaps the smallest.
+/// Several systems in one frame, as their metrics say: counts add up, depths and strains take the largest.
 FrameReport merge(const FrameReport& a, const FrameReport& b);
 
 }  // namespace ft

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -90,9 +92,10 @@ struct FrameReport {
   /// although no overlap of the body was known to be there.
   int released_vertices = 0;
   bool finite = true;
-  std::vector<InteractionForce> forces;  ///< one of each garment
-  std::vector<AbsentRuns> absent;        ///< of the systems that do not meet all of the collider
-  std::vector<Incident> incidents;       ///< worst first, at most 16 a frame
+  std::map<std::string, double, std::less<>> own;  ///< metrics that only some kinds have, see frame_metrics.h
+  std::vector<InteractionForce> forces;            ///< one of each garment
+  std::vector<AbsentRuns> absent;                  ///< of the systems that do not meet all of the collider
+  std::vector<Incident> incidents;                 ///< worst first, at most 16 a frame
   FrameProfile profile;
 };
 

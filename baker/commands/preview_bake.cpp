@@ -136,6 +136,7 @@ Json describe(const Clip& clip) {
   for (const Triangle& t : clip.track.triangles)
     for (const int v : t) corners.push_back(static_cast<std::uint32_t>(v));
   Json out{{"name", clip.system.name}, {"role", clip.system.role}, {"vertices", clip.track.rest.vertex_count()}};
+  if (const SystemKind* kind = find_system_kind(clip.system.role)) out["sheet"] = kind->is_sheet();
   out["low"] = {clip.box.lo[0], clip.box.lo[1], clip.box.lo[2]};
   out["step"] = {step[0], step[1], step[2]};
   out["triangles"] = base64_of(corners);
@@ -203,7 +204,8 @@ Json frame_rows(const Manifest& manifest, const BakeFolder& folder, int frames) 
 /// Whether a primary is a rigid prop: it has a shape, or cords, which no other may have.
 bool has_prop(const Manifest& manifest) {
   for (const ManifestSystem& system : manifest.systems)
-    if (system.role == "cords") return true;
+    if (const SystemKind* kind = find_system_kind(system.role); kind && kind->section().needs_rigid_primary())
+      return true;
   return std::any_of(manifest.settings.begin(), manifest.settings.end(), [](const auto& setting) {
     return setting.first.starts_with("primary.") && setting.first.ends_with(".shape") && setting.second != "\"\"";
   });
@@ -257,6 +259,9 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   if (!paths) return paths.error();
   bake["paths"] = std::move(*paths);
   bake["frames"] = frame_rows(*manifest, folder, frames);
+  bake["metrics"] = Json::array();
+  for (const Metric& metric : declared_metrics())
+    bake["metrics"].push_back({{"key", metric.key}, {"unit", metric.unit}});
   bake["incidents"] = Json::array();
   for (const FrameReport& frame : manifest->frames)
     for (const Incident& i : frame.incidents)
@@ -268,6 +273,11 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
     if (const Status done = quantise(clip, frames); !done) return done.error();
     Json system = describe(clip);
     if (!is_secondary(clip.system.role)) system["absent"] = absent_rows(*manifest, clip.system, frames);
+    const auto replaces = [&](const ManifestSystem& s) {
+      const SystemKind* kind = find_system_kind(s.role);
+      return kind && kind->shows_body() && s.primary == clip.system.primary;
+    };
+    if (clip.system.role == "body") system["hidden"] = std::ranges::any_of(manifest->systems, replaces);
     if (clip.system.role == "body" && stands(*manifest, clip.system.name)) system["stands"] = true;
     bake["systems"].push_back(std::move(system));
   }

@@ -89,7 +89,7 @@
     resize();
   }
 
-  const secondary = (s) => s.role === 'cloth' || s.role === 'cords';
+  const secondary = (s) => s.role !== 'body' && s.role !== 'collider';
   function meshes(systems) {
     const group = new THREE.Group();
     let garment = 0;
@@ -100,13 +100,13 @@
       geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
       s.plain = secondary(s) ? palette[garment++ % palette.length] : 0xc4beb4;
       const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
-        side: s.role === 'cloth' ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
+        side: s.sheet ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
         wireframe: secondary(s) && $('wireframe').checked });
       s.mesh = new THREE.Mesh(geometry, material);
       s.mesh.castShadow = !s.stands;
       s.mesh.receiveShadow = true;
       s.mesh.frustumCulled = false;
-      s.mesh.visible = s.role !== 'collider';
+      s.mesh.visible = s.role !== 'collider' && !s.hidden;
       group.add(s.mesh);
     }
     return group;
@@ -214,7 +214,7 @@
         paint(s);
       }
       const middle = bounds().getCenter(new THREE.Vector3());
-      if (centre && $('follow').checked) {
+      if (centre && $('follow_camera').checked) {
         const move = middle.clone().sub(centre);
         camera.position.add(move);
         controls.target.add(move);
@@ -267,13 +267,15 @@
     plots = [
       plot('strain', ' %', [{ name: 'p99', values: column('strain_p99', 100) }, { name: 'max', values: column('strain_max', 100) }]),
       plot('smallest gap', ' mm', [{ name: '', values: column('smallest_gap', 1000) }]),
-      plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'cloth', values: column('crossings_self', 1) }], true)];
+      plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'among themselves', values: column('crossings_self', 1) }], true)];
     const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map((f) => f.system)))];
     for (const [title, unit, of] of names.length === 0 ? [] : [['force', ' N', (f) => f.force], ['torque', ' N m', (f) => f.torque]])
       plots.push(plot(title, unit, names.map((name) => ({ name: names.length > 1 ? name : '', values: bake.frames.map((row) => {
         const force = (row.forces ?? []).find((f) => f.system === name);
         return force ? Math.hypot(...of(force)) : null;
       }) }))));
+    for (const { key, unit } of bake.metrics)
+      if (bake.frames.some((row) => key in row)) plots.push(plot(key.replaceAll('_', ' '), unit === '' ? '' : ' ' + unit, [{ name: '', values: column(key, 1) }]));
     plots.push(plot('time', ' ms', [{ name: '', values: column('milliseconds', 1) }]));
     plots = plots.filter((p) => p !== null);
   }
@@ -286,10 +288,10 @@
     $('systems').replaceChildren(...bake.systems.map((s) => {
       const tick = element('input'), colour = element('i');
       tick.type = 'checkbox';
-      tick.checked = s.mesh ? s.mesh.visible : s.role !== 'collider';
+      tick.checked = s.mesh ? s.mesh.visible : s.role !== 'collider' && !s.hidden;
       tick.addEventListener('change', () => { if (s.mesh) s.mesh.visible = tick.checked; draw(); });
       colour.style.background = '#' + (s.plain || 0x888888).toString(16).padStart(6, '0');
-      return element('label', tick, colour, s.name + (s.role === 'cloth' ? '' : ' (' + s.role + ')'), element('span', s.vertices + ' vertices'));
+      return element('label', tick, colour, s.name + (s.sheet ? '' : ' (' + s.role + ')'), element('span', s.vertices + ' vertices'));
     }));
     if (bake.systems.some((s) => s.absent)) {
       const colour = element('i');

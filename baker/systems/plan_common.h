@@ -1,11 +1,11 @@
-// What all groups of a plan have in common, cloth or cords.
+// What all groups of a plan have in common, whatever their kind.
 #pragma once
 
 #include "io/shot/shot.h"
 
 namespace ft {
 
-/// Frames, forces and integrator of the shot into a ClothSetup or LockstepSetup.
+/// Frames, forces and integrator of the shot into the setup of a solver.
 template <class Setup>
 void take_from_shot(const Shot& shot, Setup& setup) {
   setup.first_frame = shot.first_frame;

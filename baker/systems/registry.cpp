@@ -2,6 +2,7 @@
 
 #include "baker/systems/cloth/cloth_kind.h"
 #include "baker/systems/cords/cords_kind.h"
+#include "baker/systems/follow/follow_kind.h"
 #include "baker/systems/system.h"
 
 namespace ft {
@@ -10,8 +11,18 @@ std::span<const SystemKind* const> system_kinds() {
   static const SystemKind* const kinds[] = {
       cloth_kind(),
       cords_kind(),
+      follow_kind(),
   };
   return kinds;
+}
+
+std::span<const Metric> declared_metrics() {
+  static const std::vector<Metric> all = [] {
+    std::vector<Metric> out;
+    for (const SystemKind* kind : system_kinds()) out.insert(out.end(), kind->metrics().begin(), kind->metrics().end());
+    return out;
+  }();
+  return all;
 }
 
 const SystemKind* find_system_kind(std::string_view name) {

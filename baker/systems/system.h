@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "baker/cache_track.h"
+#include "baker/core/bytes.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/mesh.h"
 #include "baker/core/result.h"
 #include "baker/systems/collider_slice.h"
 #include "io/shot/file_numbers.h"
 #include "io/shot/shot.h"
+#include "solvers/frame_metrics.h"
 #include "solvers/solver.h"
 
 namespace ft {
@@ -34,6 +36,12 @@ struct SystemOutput {
   double pattern_scale = 0;          ///< of what is cut from a flat pattern: m per unit of its uvs; else 0
   double weld = 0;                   ///< what is nearer than this was joined [m]; 0: nothing
   FileNumbers in_file;               ///< of the simulated mesh
+};
+
+/// A file beside the caches.
+struct WrittenFile {
+  std::string name;
+  Bytes bytes;
 };
 
 /// Secondaries of one kind that are solved together, or a primary alone whose motion is cached.
@@ -58,6 +66,10 @@ class SystemGroup {
   /// slices have; a second one of the same primary is called after the group's own, too.
   virtual std::vector<ColliderSlice> slices(const BakePlan& /*plan*/, std::span<const std::string> /*taken*/) const {
     return {};
+  }
+  /// What it writes beside its caches, before the first frame.
+  virtual Result<std::vector<WrittenFile>> files(const BakePlan& /*plan*/, std::vector<std::string>& /*notes*/) const {
+    return std::vector<WrittenFile>();
   }
   /// Whether a primary could be moved by it.
   virtual bool can_be_two_way() const { return false; }
@@ -108,12 +120,18 @@ class SystemKind {
   /// The lengths from which strain is measured, in the mesh of a cached system; none: its mesh's edges say nothing of
   /// it.
   virtual std::optional<RestEdges> rest_edges(const CacheTrack& /*track*/) const { return std::nullopt; }
+  /// What it measures in each frame beside frame_metrics().
+  virtual std::span<const Metric> metrics() const { return {}; }
+  /// Whether its meshes are the body of the primary as it moves with it: seen in the place of the body as drawn.
+  virtual bool shows_body() const { return false; }
   /// Whether its meshes are sheets, which are seen from both sides.
   virtual bool is_sheet() const { return false; }
 };
 
 /// All kinds, in the order in which their systems stand in plans and manifests.
 std::span<const SystemKind* const> system_kinds();
+/// The metrics of all kinds, beside frame_metrics().
+std::span<const Metric> declared_metrics();
 /// Null: no kind has that name.
 const SystemKind* find_system_kind(std::string_view name);
 

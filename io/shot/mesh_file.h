@@ -1,6 +1,6 @@
 // Garment meshes from OBJ, in the file's own vertex order (assimp would split shared vertices). Every fault is named,
 // all at once. For the conductor and for topologies of geometry caches. Caution: positions come in the file's unit and
-// axes; the caller applies ClothSpec::unit_scale, up and offset.
+// axes; the caller applies unit_scale, up and offset of the shot file.
 #pragma once
 
 #include <filesystem>

@@ -61,6 +61,8 @@ class SecondarySection {
   virtual std::string_view whom() const = 0;
   /// Whether its primary has to be one rigid body.
   virtual bool needs_rigid_primary() const { return false; }
+  /// Whether it needs the joints of its primary, where that has some.
+  virtual bool needs_character() const { return false; }
   /// Why a primary cannot feel it two-way; empty: it can.
   virtual std::string_view why_not_two_way() const = 0;
 };

@@ -131,9 +131,11 @@ struct Shot {
   WindSpec wind;
   SolverSpec solver;
   std::vector<std::string> cache_formats = {"abc", "pc2"};
-  bool cache_collider = true;      ///< the feasible collider, beside the cloth
-  double gate_p99_strain = 0;      ///< quality gate: exit code 4 above it; 0 off
-  bool gate_crossings = false;     ///< exit code 4 when any frame has crossings
+  bool cache_collider = true;   ///< the feasible collider, beside the cloth
+  double gate_p99_strain = 0;   ///< quality gate: exit code 4 above it; 0 off
+  bool gate_crossings = false;  ///< exit code 4 when any frame has crossings
+  /// Exit code 4 when a metric of any frame is above its limit.
+  std::vector<std::pair<std::string, double>> gate_most;
   std::vector<std::string> notes;  ///< what is allowed and may be a mistake: a stand-in that is not used
 };
 

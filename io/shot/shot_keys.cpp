@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/shot/key_reader.h"
 #include "io/shot/key_text.h"
 #include "io/shot/secondary.h"
 #include "io/shot/shot_judge.h"
@@ -16,6 +17,27 @@ void read_frames_key(const KeyReader&, const ValueReader& reader, const Value& v
 }
 std::string frames_key_text(const Shot& shot, const std::filesystem::path&) {
   return toml_text(frames_text({shot.first_frame, shot.last_frame}));
+}
+
+void read_most_key(const KeyReader& keys, const ValueReader& reader, const Value& value, const Allowed&, Shot& shot) {
+  if (value.kind != Value::Kind::k_table)
+    return reader.fault(value, "needs a table like { kinetic_energy = 5 }, not " + describe(value));
+  const auto known = keys.vocabulary().lists.find("@metrics");
+  for (const Member& member : value.members) {
+    const bool is_known = known == keys.vocabulary().lists.end() ||
+                          std::find(known->second.begin(), known->second.end(), member.key) != known->second.end();
+    if (!is_known)
+      keys.faults().add(member.place, with_hint(reader.owner + ", most: there is no metric " + in_quotes(member.key),
+                                                suggestion(member.key, known->second)));
+    const auto limit = ValueReader{keys.faults(), reader.owner + ", most", member.key}.number(member.value, {});
+    if (limit && is_known) shot.gate_most.emplace_back(member.key, *limit);
+  }
+}
+std::string most_key_text(const Shot& shot, const std::filesystem::path&) {
+  std::string out;
+  for (const auto& [key, limit] : shot.gate_most)
+    out.append(out.empty() ? "{ " : ", ").append(key).append(" = ").append(number_text(limit));
+  return out.empty() ? out : out.append(" }");
 }
 
 void read_teleports_key(const KeyReader&, const ValueReader& reader, const Value& value, const Allowed& allowed,
@@ -131,6 +153,10 @@ std::span<const ShotKey<Shot>> gate_keys() {
        "Exit code 4 when the 99th percentile of strain is above it; 0 is off"},
       {"crossings", &Shot::gate_crossings, 0, 0, "", "", false, "no_crossings",
        "Exit code 4 when any frame has crossings"},
+      {"most", OwnGrammar<Shot>{"table of numbers", read_most_key, most_key_text}, 0, 0, "", "", false, "limits",
+       "Exit code 4 when a metric of any frame is above its limit: `{ kinetic_energy = 5 }`; the frames of the "
+       "manifest "
+       "have all metrics"},
   };
   return keys;
 }

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "baker/core/equimomental.h"
 #include "baker/core/types.h"
 #include "solvers/lockstep/cord_elements.h"
-#include "solvers/lockstep/equimomental.h"
 #include "solvers/lockstep/lockstep_solver.h"
 
 namespace ft {

@@ -24,5 +24,10 @@ std::vector<ValidationCase> validate_hanging_chain();
 // friction.cpp
 std::vector<ValidationCase> validate_incline();
 std::vector<ValidationCase> validate_incline_inner_edge();
+// couplings.cpp
+std::vector<ValidationCase> validate_rope();
+std::vector<ValidationCase> validate_prop_flight();
+std::vector<ValidationCase> validate_mat();
+std::vector<ValidationCase> validate_follow();
 
 }  // namespace ft

@@ -28,6 +28,10 @@ constexpr ValidationScene k_scenes[] = {
     {"incline", "Cloth on an incline sticks and slides by Coulomb's law", true, validate_incline},
     {"incline_inner_edge", "Sliding over an edge between two triangles of a flat slab is not slowed", false,
      validate_incline_inner_edge},
+    {"rope", "A rope hangs as a catenary, and its ends hold its weight", true, validate_rope},
+    {"prop_flight", "A thrown box flies and spins as a free body", false, validate_prop_flight},
+    {"mat", "Who stands on a mat in a hybrid pass sinks by m g / k", false, validate_mat},
+    {"follow", "What follows on a spring is the damped oscillator, whatever the step", false, validate_follow},
 };
 
 }  // namespace

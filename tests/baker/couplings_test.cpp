@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "baker/core/equimomental.h"
 #include "baker/plan.h"
 #include "baker/prop.h"
-#include "solvers/lockstep/equimomental.h"
 
 namespace ft {
 namespace {

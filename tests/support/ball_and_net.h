@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "baker/core/equimomental.h"
 #include "baker/core/shapes.h"
 #include "solvers/cords/generators.h"
-#include "solvers/lockstep/equimomental.h"
 #include "solvers/lockstep/lockstep_solver.h"
 
 namespace ft::test {

@@ -1,4 +1,4 @@
-#include "solvers/lockstep/equimomental.h"
+#include "baker/core/equimomental.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -1,0 +1,160 @@
+#include "baker/systems/follow/follow_group.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "baker/placed_trajectory.h"
+#include "baker/systems/follow/follow_points.h"
+#include "io/export/motion_files.h"
+#include "io/shot/shot_values.h"
+#include "io/shot/vertex_values.h"
+#include "io/shot/words.h"
+
+namespace ft {
+namespace {
+
+class FollowSolver final : public Solver {
+ public:
+  FollowSolver(Mesh mesh, std::shared_ptr<const Trajectory> motion, const FollowGroup& group)
+      : mesh_(std::move(mesh)),
+        motion_(std::move(motion)),
+        lag_(group.lag),
+        turn_(group.turn),
+        first_frame_(group.first_frame),
+        preroll_(group.preroll),
+        fps_(group.fps) {}
+
+  int system_count() const override { return 1; }
+  const Mesh& system_mesh(int) const override { return mesh_; }
+  void system_positions(const State& state, int, std::span<Vec3> positions) const override {
+    motion_->sample(state.time, positions);
+  }
+  std::span<const Triangle> collider_triangles() const override { return {}; }
+  void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
+  State initial_state() const override {
+    State state;
+    state.frame = first_frame_ - preroll_;
+    state.time = -preroll_ / fps_;
+    return state;
+  }
+  FrameReport advance_frame(State& state) const override {
+    ++state.frame;
+    state.time = (state.frame - first_frame_) / fps_;
+    FrameReport report;
+    report.frame = state.frame;
+    report.smallest_gap = std::numeric_limits<double>::infinity();  // it meets nothing
+    const int index = state.frame - first_frame_;
+    if (index >= 0 && at(index) < lag_.size()) report.own["follow_lag"] = lag_[at(index)];
+    if (index >= 0 && at(index) < turn_.size()) report.own["follow_turn"] = turn_[at(index)];
+    return report;
+  }
+
+ private:
+  Mesh mesh_;
+  std::shared_ptr<const Trajectory> motion_;
+  std::vector<double> lag_, turn_;
+  int first_frame_, preroll_;
+  double fps_;
+};
+
+Error at_place(Error error, const Shot& shot, const FollowSpec& spec) {
+  error.where = shot.file.filename().string() + ": " + spec.owner() + (error.where.empty() ? "" : ": " + error.where);
+  return error;
+}
+
+Status plan_joints(const FollowSpec& spec, const PrimaryPlan& primary, const FollowTiming& timing, FollowGroup& group) {
+  if (!primary.character)
+    return usage_error("\"" + primary.name + "\" has no joints", {},
+                       "write weights, a number for every vertex, in the place of bones");
+  const PlacedCharacter& placed = *primary.character;
+  if (placed.clip < 0)
+    return usage_error("\"" + primary.name + "\" plays no clip: there is no motion to follow", {},
+                       "name one of its clips, or the file with its animation");
+  if (primary.hybrid)
+    return usage_error("\"" + primary.name + "\" yields to stand-ins, and its joints cannot follow as well so far", {},
+                       "bake the hybrid pass first, and follow in a shot with its adjusted GLB");
+  const auto joints = joints_like(spec.bones, placed.character);
+  if (!joints) return joints.error();
+  FollowedBones followed = follow_bones(placed, primary.place, *joints, spec, timing, primary.scan.teleports);
+  for (const int joint : *joints) group.joints.push_back(placed.character.nodes[at(joint)].name);
+  PlacedCharacter moved = placed;
+  if (Status s = apply_changes(moved.character, moved.clip, followed.channels); !s) return s;
+  auto played = play(std::move(moved), primary.request);
+  if (!played) return played.error();
+  group.motion = std::make_shared<PlacedTrajectory>(std::move(played->trajectory), primary.place);
+  group.channels = std::move(followed.channels);
+  group.lag = std::move(followed.lag);
+  group.turn = std::move(followed.turn);
+  return {};
+}
+
+Status plan_vertices(const FollowSpec& spec, const PrimaryPlan& primary, const FollowTiming& timing,
+                     FollowGroup& group) {
+  auto weights =
+      vertex_column(spec.weights, spec.column, primary.trajectory->surface().vertex_count(), 0, 1, "of a vertex");
+  if (!weights) return weights.error();
+  group.weighted = at(std::count_if(weights->begin(), weights->end(), [](double w) { return w > 0; }));
+  if (group.weighted == 0) return usage_error("all weights are 0: nothing would follow", spec.weights.string());
+  const auto motion =
+      std::make_shared<FollowedPoints>(primary.trajectory, std::move(*weights), spec, timing, primary.scan.teleports);
+  for (int frame = 0; frame < timing.frame_count; ++frame) group.lag.push_back(motion->lag(frame / timing.fps));
+  group.motion = motion;
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowSpec& spec, std::size_t p,
+                                                 const BakePlan& plan) {
+  const PrimaryPlan& primary = plan.primaries[p];
+  auto group = std::make_unique<FollowGroup>(p);
+  group->name = spec.name;
+  group->first_frame = shot.first_frame;
+  group->preroll = shot.preroll;
+  group->fps = shot.fps;
+  const FollowTiming timing{shot.fps, shot.first_frame, shot.last_frame - shot.first_frame + 1,
+                            shot.preroll / shot.fps};
+  const Status planned =
+      spec.weights.empty() ? plan_joints(spec, primary, timing, *group) : plan_vertices(spec, primary, timing, *group);
+  if (!planned) return at_place(planned.error(), shot, spec);
+  SystemOutput output;
+  output.primary = p;
+  output.mesh = std::make_shared<const Mesh>(
+      make_triangle_mesh(spec.name, bind_pose_of(*primary.trajectory), primary.trajectory->surface().triangles));
+  group->outputs.push_back(std::move(output));
+  return group;
+}
+
+Result<std::unique_ptr<Solver>> FollowGroup::make_solver() {
+  return std::unique_ptr<Solver>(std::make_unique<FollowSolver>(*outputs.at(0).mesh, motion, *this));
+}
+
+std::vector<std::string> FollowGroup::lines(const BakePlan& plan) const {
+  const double most = lag.empty() ? 0 : *std::max_element(lag.begin(), lag.end());
+  const double widest = turn.empty() ? 0 : *std::max_element(turn.begin(), turn.end());
+  const std::string what = joints.empty() ? fmt::format("{} vertices", weighted)
+                                          : fmt::format("{} joints ({})", joints.size(), joined(joints));
+  return {fmt::format(
+      "follow \"{}\" on \"{}\": {}, up to {:.3g} mm behind{}", name, plan.primaries[primary].name, what, 1e3 * most,
+      joints.empty() ? "" : fmt::format(", turned by up to {:.3g} degrees", widest * 180 / std::numbers::pi))};
+}
+
+Result<std::vector<WrittenFile>> FollowGroup::files(const BakePlan& plan, std::vector<std::string>& notes) const {
+  std::vector<WrittenFile> out;
+  if (joints.empty()) return out;
+  const PrimaryPlan& whose = plan.primaries[primary];
+  const Playback& playback = whose.character->playback;
+  auto made = export_motion(whose.request, *whose.character, channels,
+                            {playback.start, playback.speed / fps, static_cast<int>(lag.size())});
+  if (!made) return made.error();
+  for (const std::string& note : made->notes) notes.push_back("follow \"" + name + "\": " + note);
+  const auto text = std::as_bytes(std::span(made->bvh));
+  out.push_back({name + "_follow.glb", std::move(made->glb)});
+  out.push_back({name + "_follow.bvh", Bytes(text.begin(), text.end())});
+  return out;
+}
+
+}  // namespace ft

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Small scenes whose caches are pinned: the same bytes as on record, for this compiler, C library and instruction set. Where
+# there is no record the test is skipped and prints the lines to be added to data/pinned/hashes.txt. A change of the solvers
+# that is meant to change results replaces the lines.
+#   pinned.sh PROGRAM COMPILER
+set -euo pipefail
+program=$1
+key="$2 $(getconf GNU_LIBC_VERSION | tr ' ' '-')"
+data=$(cd "$(dirname "${BASH_SOURCE[0]}")/data" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+for shot in small_shot/shot pinned/net pinned/scene; do
+  name=$(basename "${shot/small_shot\/shot/skirt}")
+  frames=()
+  [ "$name" != skirt ] || frames=(--frames 1-6)
+  "$program" bake "$data/$shot.toml" --out "$scratch/$name" --progress none "${frames[@]}"
+  for cache in "$scratch/$name"/*.pc2; do
+    echo "$key $name $(basename "$cache" .pc2) $(md5sum <"$cache" | cut -d' ' -f1)"
+  done
+done >"$scratch/now.txt"
+if ! grep -q "^$key " "$data/pinned/hashes.txt" 2>/dev/null; then
+  echo "no hashes are on record for: $key"
+  cat "$scratch/now.txt"
+  exit 77
+fi
+if ! diff <(grep "^$key " "$data/pinned/hashes.txt") "$scratch/now.txt"; then
+  echo "caches differ from those on record (<): if that is meant, put the new lines (>) into data/pinned/hashes.txt"
+  exit 1
+fi
+echo "$(wc -l <"$scratch/now.txt") caches are as on record for $key"
