@@ -217,10 +217,10 @@ std::uint64_t CacheSet::expected_bytes() const {
   std::uint64_t sum = 0;
   const auto frames = static_cast<std::uint64_t>(std::max(0, plan_.written_count()));
   for (const ManifestSystem& system : systems_) {
-    const auto vertices = static_cast<std::uint64_t>(system.vertex_count);
-    // 12 bytes a position; as much again for velocities where the format has them.
+    const FrameContent content{.velocities = is_secondary(system.role)};
+    const FrameCounts counts{.elements = static_cast<std::uint64_t>(system.vertex_count)};
     for (const ManifestCache& cache : system.caches)
-      sum += vertices * frames * (cache.format == "pc2" || !is_secondary(system.role) ? 12 : 24);
+      sum += frames * find_cache_format(cache.format)->bytes_per_frame(content, counts);
   }
   return sum;
 }

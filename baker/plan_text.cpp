@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "io/cache/cache.h"
+
 namespace ft {
 namespace {
 
@@ -13,7 +15,8 @@ std::uint64_t cache_bytes(const BakePlan& plan) {
   for (const auto& group : plan.groups) {
     for (const SystemOutput& output : group->outputs)
       for (const std::string& format : plan.shot().cache_formats)
-        sum += frames * static_cast<std::uint64_t>(output.mesh->vertex_count()) * (format == "pc2" ? 12 : 24);
+        sum += frames * find_cache_format(format)->bytes_per_frame(
+                            {}, {.elements = static_cast<std::uint64_t>(output.mesh->vertex_count())});
     // Body as drawn, and the collider: about as many vertices again before refinement.
     if (plan.shot().cache_collider)
       sum += 2 * 12 * frames *

@@ -1,16 +1,16 @@
-// Archive to cache: the first PolyMesh of an archive of any origin, checked so that nothing in it can be out of range
-// later.
+// Archive to cache: the first output in an archive of any origin, and what all shapes have: positions, velocities,
+// times, transforms, provenance.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "io/cache/alembic_mesh.h"
+#include "io/cache/alembic_view.h"
 
 namespace ft::alembic {
 namespace {
 
 struct Found {
-  const Object* mesh = nullptr;
+  const Object* object = nullptr;
   std::vector<Property> transforms;
 };
 
@@ -20,17 +20,15 @@ const Property* property_of(const Object& object, std::string_view name) {
   return nullptr;
 }
 
-bool find_first(const Object& object, Found& found) {
-  const bool mesh = object.metadata.find("schema=AbcGeom_PolyMesh_v1") != std::string::npos &&
-                    property_of(object, ".geom") != nullptr;
-  if (mesh) {
-    found.mesh = &object;
+bool find_first(const Object& object, std::string_view schema, Found& found) {
+  if (object.metadata.find(schema) != std::string::npos && property_of(object, ".geom") != nullptr) {
+    found.object = &object;
     return true;
   }
   const Property* transform = property_of(object, ".xform");
   if (transform != nullptr) found.transforms.push_back(*transform);
   for (const Object& child : object.children)
-    if (find_first(child, found)) return true;
+    if (find_first(child, schema, found)) return true;
   if (transform != nullptr) found.transforms.pop_back();
   return false;
 }
@@ -41,40 +39,39 @@ std::uint64_t element_count(const Property& p, const Sample& s) {
   return s.size < 16 || element == 0 ? 0 : (s.size - 16) / element;
 }
 
-bool is_array(const Property* p, Pod pod, int extent) {
-  return p != nullptr && p->kind == PropertyKind::k_array && p->pod == pod && p->extent == extent &&
-         !p->samples.empty();
-}
-
-template <class T>
-Result<std::vector<T>> values_of(const InputFile& file, const Sample& sample) {
-  const auto raw = read_values(file, sample);
-  if (!raw) return raw.error();
-  ByteReader in(raw.value());
-  return in.read_array<T>(raw.value().size() / sizeof(T));
-}
+struct Schema {
+  std::string_view name;
+  OutputShape shape;
+  Status (*view)(const InputFile&, const Property&, ShapeView&);
+};
+constexpr Schema k_schemas[] = {{"schema=AbcGeom_PolyMesh_v1", OutputShape::k_mesh, view_mesh},
+                                {"schema=AbcGeom_Curve_v2", OutputShape::k_curves, view_curves},
+                                {"schema=AbcGeom_Points_v1", OutputShape::k_points, view_points}};
 
 class Reader {
  public:
   Reader(const InputFile& file, const Archive& archive) : file_(file), archive_(archive) {}
 
-  Result<MeshView> run() {
+  Result<ShapeView> run() {
     Found found;
-    if (!find_first(archive_.top, found)) return fault("holds no polygon mesh");
-    const Property& geom = *property_of(*found.mesh, ".geom");
-    view_.info.system = found.mesh->name;
+    const Schema* schema = std::begin(k_schemas);
+    while (schema != std::end(k_schemas) && !find_first(archive_.top, schema->name, found)) ++schema;
+    if (schema == std::end(k_schemas)) return fault("holds no polygon mesh, no curves and no points");
+    const Property& geom = *property_of(*found.object, ".geom");
+    view_.info.system = found.object->name;
+    view_.info.content = {.shape = schema->shape, .velocities = false};
     auto transforms = TransformChain::read(file_, archive_, found.transforms);
     if (!transforms) return transforms.error();
     view_.transforms = std::move(*transforms);
     Status status = read_animation(geom);
-    if (status) status = read_topology(geom);
-    if (status) status = read_uvs(geom);
+    if (status) status = schema->view(file_, geom, view_);
     if (status) status = read_provenance(geom);
     if (!status) return status.error();
     read_times();
     const Eigen::Affine3d to_world = view_.transforms.at(sample_time(view_.times, 0));
     if (!view_.transforms.identity())
-      for (Vec3& p : view_.info.mesh.positions) p = to_world * p;
+      for (std::vector<Vec3>* points : {&view_.info.mesh.positions, &view_.info.curves.rest})
+        for (Vec3& p : *points) p = to_world * p;
     return std::move(view_);
   }
 
@@ -84,9 +81,9 @@ class Reader {
   Status read_animation(const Property& geom) {
     const Property* p = geom.find("P");
     if (p == nullptr || p->kind != PropertyKind::k_array || p->pod != Pod::k_f32 || p->extent != 3)
-      return fault("has a mesh without positions");
+      return fault("has " + std::string(shape_name(view_.info.content.shape)) + " without positions");
     if (p->sample_count > std::numeric_limits<int>::max()) return fault("is damaged: too many frames");
-    view_.positions = *p;
+    view_.channels[k_positions] = *p;
     view_.info.frame_count = static_cast<int>(p->sample_count);
     const Property* params = geom.find(".arbGeomParams");
     const Property* rest = params == nullptr ? nullptr : params->find("Pref");
@@ -99,7 +96,7 @@ class Reader {
       return fault("is damaged: a part of a position");
     view_.info.vertex_count = static_cast<int>(count);
     for (const Sample& s : p->samples)
-      if (s.size != sample.size) return fault("has a mesh whose topology changes");
+      if (s.size != sample.size) view_.info.content.changes = true;
     const auto values = values_of<float>(file_, sample);
     if (!values) return values.error();
     for (std::size_t i = 0; i + 2 < values.value().size(); i += 3) {
@@ -109,75 +106,11 @@ class Reader {
     }
     const Property* v = geom.find(".velocities");
     // Under animated transforms the velocities of the file leave out how the transforms move.
-    if (!is_array(v, Pod::k_f32, 3) || v->sample_count != p->sample_count || !view_.transforms.constant()) return {};
-    for (const Sample& s : v->samples)
-      if (s.size != sample.size) return fault("is damaged: velocities do not match positions");
-    view_.velocities = *v;
-    view_.info.has_velocity = true;
-    return {};
-  }
-
-  Status read_topology(const Property& geom) {
-    const Property* sizes = geom.find(".faceCounts");
-    const Property* corners = geom.find(".faceIndices");
-    if (!is_array(sizes, Pod::k_i32, 1) || !is_array(corners, Pod::k_i32, 1)) return fault("has a mesh without faces");
-    if (!sizes->constant() || !corners->constant()) return fault("has a mesh whose topology changes");
-    auto face_sizes = values_of<int>(file_, sizes->samples.front());
-    if (!face_sizes) return face_sizes.error();
-    auto face_vertices = values_of<int>(file_, corners->samples.front());
-    if (!face_vertices) return face_vertices.error();
-    std::uint64_t total = 0;
-    for (const int n : *face_sizes) {
-      if (n < 3) return fault("has a face with " + std::to_string(n) + " corners");
-      total += static_cast<std::uint64_t>(n);
-    }
-    if (total != face_vertices->size()) return fault("is damaged: face sizes do not add up");
-    for (const int v : *face_vertices)
-      if (v < 0 || v >= view_.info.vertex_count) return fault("is damaged: a face uses vertex " + std::to_string(v));
-    Mesh& mesh = view_.info.mesh;
-    mesh.name = view_.info.system;
-    mesh.face_sizes = std::move(*face_sizes);
-    mesh.face_vertices = std::move(*face_vertices);
-    reverse_faces(mesh.face_sizes, mesh.face_vertices);
-    return {};
-  }
-
-  /// UVs per corner or per vertex, indexed or not; others are left out.
-  Status read_uvs(const Property& geom) {
-    const Property* uv = geom.find("uv");
-    if (uv == nullptr) return {};
-    const bool indexed = uv->kind == PropertyKind::k_compound;
-    const Property* values = indexed ? uv->find(".vals") : uv;
-    const Property* indices = indexed ? uv->find(".indices") : nullptr;
-    if (!is_array(values, Pod::k_f32, 2) || (indexed && !is_array(indices, Pod::k_u32, 1))) return {};
-    const auto floats = values_of<float>(file_, values->samples.front());
-    if (!floats) return floats.error();
-    std::vector<int> corners;
-    if (indexed) {
-      auto read = values_of<int>(file_, indices->samples.front());
-      if (!read) return read.error();
-      corners = std::move(*read);
-    } else {
-      for (std::size_t i = 0; i < floats.value().size() / 2; ++i) corners.push_back(static_cast<int>(i));
-    }
-    Mesh& mesh = view_.info.mesh;
-    if (corners.size() == mesh.face_vertices.size()) {
-      reverse_faces(mesh.face_sizes, corners);
-    } else if (corners.size() == static_cast<std::size_t>(view_.info.vertex_count)) {
-      std::vector<int> of_vertex = std::exchange(corners, {});
-      for (const int v : mesh.face_vertices) corners.push_back(of_vertex[static_cast<std::size_t>(v)]);
-    } else {
-      return {};
-    }
-    for (const int i : corners)
-      if (i < 0 || static_cast<std::size_t>(i) >= floats.value().size() / 2)
-        return fault("is damaged: a face uses a missing uv");
-    for (std::size_t i = 0; i + 1 < floats.value().size(); i += 2) {
-      const Vec2 value(floats.value()[i], floats.value()[i + 1]);
-      if (!value.allFinite()) return fault("is damaged: uvs that are not finite");
-      mesh.uvs.push_back(value);
-    }
-    mesh.face_uvs = std::move(corners);
+    if (!view_.transforms.constant() || !adopt_channel(view_, k_velocities, v, Pod::k_f32, 3)) return {};
+    if (!view_.info.content.changes)
+      for (const Sample& s : v->samples)
+        if (s.size != sample.size) return fault("is damaged: velocities do not match positions");
+    view_.info.has_velocity = view_.info.content.velocities = true;
     return {};
   }
 
@@ -197,11 +130,11 @@ class Reader {
   }
 
   void read_times() {
-    const TimeSampling& t = view_.times = archive_.time_samplings[view_.positions.time_sampling];
+    const TimeSampling& t = view_.times = archive_.time_samplings[view_.channels[k_positions].time_sampling];
     double step = t.time_per_cycle / static_cast<double>(t.times.size());
     if (t.times.size() > 1)
       step = t.times[1] - t.times[0];  // unevenly spaced times have no frame rate; this is the best guess
-    view_.info.has_fps = t.times.size() == 1 && view_.positions.time_sampling != 0;
+    view_.info.has_fps = t.times.size() == 1 && view_.channels[k_positions].time_sampling != 0;
     double fps = step > 0 ? 1 / step : 24;
     for (const double rate : {std::round(fps), std::round(fps * 1.001) / 1.001})  // undo the rounding of 1/fps
       if (rate > 0 && std::abs(rate - fps) < 1e-12 * fps) fps = rate;
@@ -212,12 +145,36 @@ class Reader {
 
   const InputFile& file_;
   const Archive& archive_;
-  MeshView view_;
+  ShapeView view_;
 };
 
 }  // namespace
 
-Result<MeshView> find_mesh(const InputFile& file, const Archive& archive) {
+bool is_array(const Property* p, Pod pod, int extent) {
+  return p != nullptr && p->kind == PropertyKind::k_array && p->pod == pod && p->extent == extent &&
+         !p->samples.empty();
+}
+
+bool adopt_channel(ShapeView& view, Channel channel, const Property* p, Pod pod, int extent) {
+  if (!is_array(p, pod, extent) || p->sample_count != view.channels[k_positions].sample_count) return false;
+  view.channels[channel] = *p;
+  return true;
+}
+
+Result<std::vector<std::string>> strings_of(const InputFile& file, const Sample& sample) {
+  const auto text = values_of<char>(file, sample);
+  if (!text) return text.error();
+  std::vector<std::string> out;
+  std::string one;
+  for (const char c : text.value())
+    if (c == '\0')
+      out.push_back(std::exchange(one, {}));
+    else
+      one.push_back(c);
+  return out;
+}
+
+Result<ShapeView> find_shape(const InputFile& file, const Archive& archive) {
   return Reader(file, archive).run();
 }
 

@@ -14,7 +14,7 @@
 #include <array>
 
 #include "baker/core/file.h"
-#include "io/cache/alembic_mesh.h"
+#include "io/cache/alembic_view.h"
 #include "io/cache/formats.h"
 
 namespace ft {
@@ -37,12 +37,25 @@ std::uint64_t node_end(const Sample& s) {
   return (s.data & ~ogawa::k_data_bit) + sizeof(std::uint64_t) + s.size;
 }
 
+/// Least and greatest coordinates; of nothing, zeros.
+std::array<double, 6> box_of(std::span<const Vec3f> points) {
+  std::array<double, 6> box{};
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double x = points[i][static_cast<Eigen::Index>(c)];
+      box[c] = i == 0 ? x : std::min(box[c], x);
+      box[c + 3] = i == 0 ? x : std::max(box[c + 3], x);
+    }
+  return box;
+}
+
 class AlembicWriter final : public CacheWriter {
  public:
-  AlembicWriter(const CacheInfo& info, std::filesystem::path path)
-      : tree_(info), path_(std::move(path)), vertex_count_(info.mesh.positions.size()) {
-    names_.system = info.system;
-    names_.first_frame = info.first_frame;
+  AlembicWriter(const CacheInfo& info, std::filesystem::path path) : tree_(info), path_(std::move(path)) {
+    info_.system = info.system;
+    info_.content = info.content;
+    info_.first_frame = info.first_frame;
+    info_.vertex_count = constant_element_count(info);
     region_.base = ogawa::k_header_size + tree_.static_bytes().size();
     region_.capacity = info.frame_count > 0 ? static_cast<std::uint32_t>(info.frame_count) : k_default_capacity;
     region_.slot_size = tree_.tail_bound(region_.capacity);
@@ -63,15 +76,14 @@ class AlembicWriter final : public CacheWriter {
 
   int frame_count() const override { return static_cast<int>(frames_.count()); }
 
-  Status write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
+  Status write_frame(const CacheFrame& frame) override {
     if (broken_) return output_error("an earlier frame could not be written", path_.string());
-    const auto points = frame_floats(positions, vertex_count_, names_, frame_count(), "position");
-    if (!points) return points.error();
-    const bool with_velocities = frame_count() == 0 ? !velocities.empty() : !frames_.velocities.empty();
-    const auto speeds =
-        frame_floats(velocities, with_velocities ? vertex_count_ : 0, names_, frame_count(), "velocity");
-    if (!speeds) return speeds.error();
-    const Status status = append_frame(points.value(), speeds.value(), with_velocities);
+    const FrameContent& content = info_.content;
+    bool velocities = content.velocities;
+    if (content.shape == OutputShape::k_mesh && !content.changes)
+      velocities = frame_count() == 0 ? !frame.velocities.empty() : !frames_.of[k_velocities].empty();
+    if (Status sound = check_frame(frame, info_, frame_count(), velocities); !sound) return sound;
+    const Status status = append_frame(frame, velocities);
     broken_ = !status;
     return status;
   }
@@ -97,31 +109,43 @@ class AlembicWriter final : public CacheWriter {
   }
 
   /// The sample of new values; those of the frame before serve again when nothing changed.
-  template <class T>
-  Sample add(ogawa::Builder& out, const std::vector<Sample>& before, std::span<const T> values) {
-    const auto raw = std::as_bytes(values);
+  void add(ogawa::Builder& out, Channel channel, std::span<const std::byte> raw) {
+    std::vector<Sample>& all = frames_.of[channel];
     Sample s;
-    if (raw.empty()) return s;
-    s.key = murmur3(raw);
-    s.size = raw.size() + 16;
-    if (!before.empty() && before.back().same_values(s)) return before.back();
-    s.data = out.data(sample_payload(raw));
-    return s;
+    if (!raw.empty()) {
+      s.key = murmur3(raw);
+      s.size = raw.size() + 16;
+      if (!all.empty() && all.back().same_values(s))
+        s = all.back();
+      else
+        s.data = out.data(sample_payload(raw));
+    }
+    all.push_back(s);
   }
 
-  Status append_frame(const std::vector<float>& points, const std::vector<float>& speeds, bool with_velocities) {
+  Status append_frame(const CacheFrame& frame, bool velocities) {
     make_room();
-    std::array<double, 6> box{};
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double x = points[i];
-      box[i % 3] = i < 3 ? x : std::min(box[i % 3], x);
-      box[i % 3 + 3] = i < 3 ? x : std::max(box[i % 3 + 3], x);
-    }
+    const FrameContent& content = info_.content;
     ogawa::Builder out(end_);
-    const Sample position = add(out, frames_.positions, std::span<const float>(points));
-    if (with_velocities) frames_.velocities.push_back(add(out, frames_.velocities, std::span<const float>(speeds)));
-    frames_.bounds.push_back(add(out, frames_.bounds, std::span<const double>(box)));
-    frames_.positions.push_back(position);
+    add(out, k_positions, std::as_bytes(frame.positions));
+    if (velocities) add(out, k_velocities, std::as_bytes(frame.velocities));
+    if (content.shape == OutputShape::k_mesh && content.changes) {
+      std::vector<int> corners(frame.face_vertices.begin(), frame.face_vertices.end());
+      reverse_faces(frame.face_sizes, corners);
+      add(out, k_face_sizes, std::as_bytes(frame.face_sizes));
+      add(out, k_face_corners, std::as_bytes(std::span(corners)));
+    }
+    if (content.shape == OutputShape::k_points) {
+      add(out, k_ids, std::as_bytes(frame.ids));
+      if (content.widths) add(out, k_widths, std::as_bytes(frame.widths));
+    }
+    if (content.shape == OutputShape::k_instances) {
+      add(out, k_orientations, std::as_bytes(frame.orientations));
+      if (content.angular_velocities) add(out, k_angular_velocities, std::as_bytes(frame.angular_velocities));
+      if (content.scales) add(out, k_scales, std::as_bytes(frame.scales));
+    }
+    const std::array<double, 6> box = box_of(frame.positions);
+    add(out, k_bounds, std::as_bytes(std::span(box)));
     const std::uint64_t place = end_;
     end_ = out.end();
     const Bytes data = out.take();
@@ -148,10 +172,9 @@ class AlembicWriter final : public CacheWriter {
   Status adopt(const Archive& archive, std::uint32_t keep_frames);
   Status restore_slots(ogawa::Reference live_root);
 
-  MeshTree tree_;
+  ArchiveTree tree_;
   std::filesystem::path path_;
-  std::size_t vertex_count_;
-  CacheInfo names_;               // system and first frame, for messages
+  CacheInfo info_;                // without rest data; for checks and messages
   std::vector<OutputFile> file_;  // none or one
   FrameSamples frames_;
   Region region_;
@@ -177,33 +200,31 @@ Status AlembicWriter::continue_after(std::uint32_t keep_frames) {
 
 /// Takes over the first frames of a file, walking through the layout as if they were written once more.
 Status AlembicWriter::adopt(const Archive& archive, std::uint32_t keep_frames) {
-  const Property* geom = archive.top.children.empty() || archive.top.children[0].properties.empty()
-                             ? nullptr
-                             : &archive.top.children[0].properties[0];
-  const Property* positions = geom == nullptr ? nullptr : geom->find("P");
-  const Property* bounds = geom == nullptr ? nullptr : geom->find(".selfBnds");
+  auto channels = tree_.channels_in(archive);
+  const Property *positions = channels[k_positions], *bounds = channels[k_bounds];
   if (positions == nullptr || bounds == nullptr) return cannot_continue(path_, "it was written by another program");
   if (positions->sample_count < keep_frames || bounds->sample_count != positions->sample_count)
     return cannot_continue(
         path_, "it has " + std::to_string(positions->sample_count) + " frames of " + std::to_string(keep_frames));
-  const Property* velocities = geom->find(".velocities");
-  if (velocities != nullptr && velocities->sample_count != positions->sample_count)
-    return cannot_continue(path_, "its velocities do not match its positions");
+  for (const Property* p : channels)
+    if (p != nullptr && p->sample_count != positions->sample_count)
+      return cannot_continue(path_, "its " + p->name + " does not match its positions");
   bool sound = true;
-  const auto take = [&](std::vector<Sample>& taken, const Property* property, std::uint32_t index) {
-    if (property == nullptr) return;
-    const Sample& s = property->samples[property->slot_of(index)];
-    const bool again = !taken.empty() && taken.back().data == s.data;
-    sound = sound && (again || s.size == 0 || s.data == (end_ | ogawa::k_data_bit));
-    if (!again && s.size > 0) end_ = node_end(s);
-    taken.push_back(s);
-  };
+  const FrameContent& content = info_.content;
+  const bool constant = content.shape != OutputShape::k_points && !content.changes;
+  const auto count = static_cast<std::size_t>(info_.vertex_count);
   for (std::uint32_t i = 0; i < keep_frames && sound; ++i) {
     make_room();
-    take(frames_.positions, positions, i);
-    take(frames_.velocities, velocities, i);
-    take(frames_.bounds, bounds, i);
-    if (frames_.positions.back().size != (vertex_count_ == 0 ? 0 : 12 * vertex_count_ + 16)) sound = false;
+    for (std::size_t c = 0; c < k_channel_count && sound; ++c) {
+      if (channels[c] == nullptr) continue;
+      std::vector<Sample>& taken = frames_.of[c];
+      const Sample& s = channels[c]->samples[channels[c]->slot_of(i)];
+      const bool again = !taken.empty() && taken.back().data == s.data;
+      sound = again || s.size == 0 || s.data == (end_ | ogawa::k_data_bit);
+      if (!again && s.size > 0) end_ = node_end(s);
+      taken.push_back(s);
+    }
+    if (sound && constant && frames_.of[k_positions].back().size != (count == 0 ? 0 : 12 * count + 16)) sound = false;
   }
   return sound ? Status{} : cannot_continue(path_, "its frames are not where this program puts them");
 }
@@ -237,8 +258,32 @@ Status AlembicWriter::restore_slots(ogawa::Reference live_root) {
 
 }  // namespace
 
+Status alembic_accepts(const FrameContent& content) {
+  switch (content.shape) {
+    case OutputShape::k_mesh:
+    case OutputShape::k_points: return {};
+    case OutputShape::k_curves:
+    case OutputShape::k_instances:
+      if (!content.changes) return {};
+      return usage_error("Alembic files of ours hold no " + std::string(shape_name(content.shape)) +
+                         " whose number changes");
+    case OutputShape::k_grid: break;
+  }
+  return usage_error("Alembic cannot hold " + std::string(shape_name(content.shape)));
+}
+
+std::uint64_t alembic_bytes_per_frame(const FrameContent& c, const FrameCounts& counts) {
+  std::uint64_t each = 12 + (c.velocities ? 12 : 0);  // float32, x y z
+  if (c.shape == OutputShape::k_points) each += 8 + (c.widths ? 4 : 0);
+  if (c.shape == OutputShape::k_instances) each += 16 + (c.angular_velocities ? 12 : 0) + (c.scales ? 12 : 0);
+  const bool faces = c.shape == OutputShape::k_mesh && c.changes;
+  return each * counts.elements + (faces ? 4 * (counts.faces + counts.corners) : 0);
+}
+
 Result<std::unique_ptr<CacheWriter>> open_alembic_writer(const std::filesystem::path& path, const CacheInfo& info,
                                                          int keep_frames) {
+  if (Status taken = alembic_accepts(info.content); !taken) return taken.error();
+  if (Status sound = check_rest(info); !sound) return sound.error();
   auto writer = std::make_unique<AlembicWriter>(info, path);
   const Status status =
       keep_frames == 0 ? writer->start_new() : writer->continue_after(static_cast<std::uint32_t>(keep_frames));

@@ -9,15 +9,17 @@ namespace ft {
 Result<std::unique_ptr<CacheWriter>> open_alembic_writer(const std::filesystem::path& path, const CacheInfo& info,
                                                          int keep_frames);
 Result<std::unique_ptr<CacheReader>> open_alembic_reader(const std::filesystem::path& path);
+Status alembic_accepts(const FrameContent& content);
+std::uint64_t alembic_bytes_per_frame(const FrameContent& content, const FrameCounts& counts);
 
 Result<std::unique_ptr<CacheWriter>> open_pc2_writer(const std::filesystem::path& path, const CacheInfo& info,
                                                      int keep_frames);
 Result<std::unique_ptr<CacheReader>> open_pc2_reader(const std::filesystem::path& path);
+Status pc2_accepts(const FrameContent& content);
+std::uint64_t pc2_bytes_per_frame(const FrameContent& content, const FrameCounts& counts);
 
-/// One frame as floats, x y z in turn; refused when the count is wrong or a number is not finite in float.
-/// what: "position" or "velocity", for the message.
-Result<std::vector<float>> frame_floats(std::span<const Vec3> values, std::size_t expected_count, const CacheInfo& info,
-                                        int frame_index, std::string_view what);
+/// Elements of a frame where their number is constant: vertices at rest, instances.
+int constant_element_count(const CacheInfo& info);
 
 /// Raw little-endian floats to points; false when one is not finite.
 bool points_from_bytes(std::span<const std::byte> raw, std::vector<Vec3f>& points);

@@ -1,5 +1,7 @@
 // PointCache2: 32 bytes of header, then float32 x y z per vertex and frame. For Blender's Mesh Cache modifier, 3ds Max
-// and whatever else takes points without topology. A frame counts when the header says so: its floats are written and
+// and whatever else takes points without topology. It takes what is a constant number of positions: meshes that do not
+// change, and the vertices of curves in turn, which come back as points. Points are refused, for their number changes
+// and ids say who is who; instances, for they turn. A frame counts when the header says so: its floats are written and
 // synced first, the number of samples after them, so that the file is whole at every moment and its bytes depend on
 // nothing but the frames. Careful: the format stores no frame rate, no velocity and no checksum; a flipped bit in a
 // coordinate cannot be seen.
@@ -55,20 +57,19 @@ Result<Header> read_header(const InputFile& file) {
 
 class Pc2Writer final : public CacheWriter {
  public:
-  Pc2Writer(OutputFile file, const Header& header, const CacheInfo& info)
-      : file_(std::move(file)), header_(header), system_(info.system), first_frame_(info.first_frame) {}
+  Pc2Writer(OutputFile file, const Header& header, const CacheInfo& info) : file_(std::move(file)), header_(header) {
+    info_.system = info.system;
+    info_.content = info.content;
+    info_.first_frame = info.first_frame;
+    info_.vertex_count = header.point_count;
+  }
 
   int frame_count() const override { return header_.sample_count; }
 
-  Status write_frame(std::span<const Vec3> positions, std::span<const Vec3>) override {
+  Status write_frame(const CacheFrame& frame) override {
     if (broken_) return output_error("an earlier frame could not be written", file_.path().string());
-    CacheInfo info;
-    info.system = system_;
-    info.first_frame = first_frame_;
-    const auto floats =
-        frame_floats(positions, static_cast<std::size_t>(header_.point_count), info, frame_count(), "position");
-    if (!floats) return floats.error();
-    Status status = file_.write_at(header_.end(header_.sample_count), std::as_bytes(std::span(floats.value())));
+    if (Status sound = check_frame(frame, info_, frame_count(), !frame.velocities.empty()); !sound) return sound;
+    Status status = file_.write_at(header_.end(header_.sample_count), std::as_bytes(frame.positions));
     if (status) status = file_.sync();
     if (status) status = set_sample_count(header_.sample_count + 1);
     broken_ = !status;
@@ -98,8 +99,7 @@ class Pc2Writer final : public CacheWriter {
 
   OutputFile file_;
   Header header_;
-  std::string system_;
-  int first_frame_;
+  CacheInfo info_;  // without rest data; for checks and messages
   bool broken_ = false;
 };
 
@@ -110,7 +110,7 @@ class Pc2Reader final : public CacheReader {
     info_.first_frame = static_cast<int>(std::lround(header.start_frame));
     info_.frame_count = header.sample_count;
     info_.vertex_count = header.point_count;
-    info_.has_topology = info_.has_fps = false;
+    info_.has_topology = info_.has_fps = info_.content.velocities = false;
   }
 
   const CacheInfo& info() const override { return info_; }
@@ -143,12 +143,29 @@ class Pc2Reader final : public CacheReader {
 
 }  // namespace
 
+Status pc2_accepts(const FrameContent& content) {
+  const auto refusal = [](std::string what) {
+    return usage_error("PC2 cannot hold " + std::move(what), {}, "it holds a constant number of positions; take abc");
+  };
+  switch (content.shape) {
+    case OutputShape::k_mesh: return content.changes ? Status(refusal("a mesh whose faces change")) : Status();
+    case OutputShape::k_curves: return {};
+    default: return refusal(std::string(shape_name(content.shape)));
+  }
+}
+
+std::uint64_t pc2_bytes_per_frame(const FrameContent&, const FrameCounts& counts) {
+  return 12 * counts.elements;
+}
+
 Result<std::unique_ptr<CacheWriter>> open_pc2_writer(const std::filesystem::path& path, const CacheInfo& info,
                                                      int keep_frames) {
+  if (Status taken = pc2_accepts(info.content); !taken) return taken.error();
+  if (Status sound = check_rest(info); !sound) return sound.error();
   Header header{};
   std::memcpy(header.magic, k_magic, sizeof k_magic);
   header.version = 1;
-  header.point_count = info.mesh.vertex_count();
+  header.point_count = constant_element_count(info);
   header.start_frame = static_cast<float>(info.first_frame);
   header.frames_per_sample = 1;
   if (keep_frames == 0) {

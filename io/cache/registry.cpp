@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 
 #include "io/cache/formats.h"
 #include "io/cache/input_file.h"
@@ -12,9 +11,10 @@ namespace ft {
 namespace {
 
 const std::array k_formats = {
-    CacheFormat{"abc", ".abc", "Alembic (Ogawa), mesh with velocities", open_alembic_writer, open_alembic_reader,
-                "Ogawa"},
-    CacheFormat{"pc2", ".pc2", "PointCache2, points only", open_pc2_writer, open_pc2_reader, "POINTCACHE2"},
+    CacheFormat{"abc", ".abc", "Alembic (Ogawa), mesh with velocities", alembic_accepts, alembic_bytes_per_frame,
+                open_alembic_writer, open_alembic_reader, "Ogawa"},
+    CacheFormat{"pc2", ".pc2", "PointCache2, points only", pc2_accepts, pc2_bytes_per_frame, open_pc2_writer,
+                open_pc2_reader, "POINTCACHE2"},
 };
 
 }  // namespace
@@ -30,6 +30,16 @@ const CacheFormat* find_cache_format(std::string_view name) {
 }
 
 Result<std::unique_ptr<CacheReader>> open_cache(const std::filesystem::path& path) {
+  auto reader = open_cache_of_any_shape(path);
+  if (!reader) return reader;
+  const FrameContent& content = (*reader)->info().content;
+  if (content.shape != OutputShape::k_mesh)
+    return input_error("holds " + std::string(shape_name(content.shape)) + " and no polygon mesh", path.string());
+  if (content.changes) return input_error("has a mesh whose topology changes", path.string());
+  return reader;
+}
+
+Result<std::unique_ptr<CacheReader>> open_cache_of_any_shape(const std::filesystem::path& path) {
   auto file = InputFile::open(path);
   if (!file) return file.error();
   for (const CacheFormat& f : k_formats) {
@@ -46,29 +56,40 @@ Result<std::unique_ptr<CacheReader>> open_cache(const std::filesystem::path& pat
   return input_error("is not a cache", path.string(), "formats that can be read: " + names);
 }
 
+Status CacheWriter::write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  FrameData frame;
+  for (const Vec3& p : positions) frame.positions.push_back(p.cast<float>());
+  for (const Vec3& v : velocities) frame.velocities.push_back(v.cast<float>());
+  return write_frame(frame.view());
+}
+
 Status CacheReader::read_velocities(int, std::vector<Vec3f>&) {
   return input_error("this cache format holds no velocities");
 }
 
-Result<std::vector<float>> frame_floats(std::span<const Vec3> values, std::size_t expected_count, const CacheInfo& info,
-                                        int frame_index, std::string_view what) {
-  const std::string where = "frame " + std::to_string(info.first_frame + frame_index) + ", " + info.system;
-  if (values.size() != expected_count)
-    return Error{ErrorKind::k_bug,
-                 std::to_string(values.size()) + " values for " + std::to_string(expected_count) + " vertices",
-                 where,
-                 {}};
-  std::vector<float> out;
-  out.reserve(3 * values.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    for (int c = 0; c < 3; ++c) {
-      const float x = static_cast<float>(values[i][c]);
-      if (!std::isfinite(x))
-        return Error{
-            ErrorKind::k_diverged, std::string(what) + " is not finite", where + ", vertex " + std::to_string(i), {}};
-      out.push_back(x);
-    }
-  return out;
+Status CacheReader::read(int index, FrameData& frame) {
+  frame = {};
+  const Status status = read_frame(index, frame.positions);
+  return status && info().has_velocity ? read_velocities(index, frame.velocities) : status;
+}
+
+std::string_view shape_name(OutputShape shape) {
+  switch (shape) {
+    case OutputShape::k_mesh: return "a mesh";
+    case OutputShape::k_curves: return "curves";
+    case OutputShape::k_points: return "points";
+    case OutputShape::k_instances: return "instances";
+    case OutputShape::k_grid: return "a grid";
+  }
+  return "?";
+}
+
+int constant_element_count(const CacheInfo& info) {
+  switch (info.content.shape) {
+    case OutputShape::k_curves: return static_cast<int>(info.curves.rest.size());
+    case OutputShape::k_instances: return static_cast<int>(info.instances.ids.size());
+    default: return info.mesh.vertex_count();
+  }
 }
 
 bool points_from_bytes(std::span<const std::byte> raw, std::vector<Vec3f>& points) {

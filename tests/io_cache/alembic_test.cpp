@@ -4,7 +4,7 @@
 
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
-#include "io/cache/alembic_mesh.h"
+#include "io/cache/alembic_view.h"
 #include "tests/support/assets.h"
 #include "tests/support/cache_samples.h"
 
