@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Small scenes whose caches are pinned: the same bytes as on record, for this compiler, C library and instruction set. Where
+# Small scenes whose caches are pinned: the same bytes as on record, for this compiler, C library and kind of processor. Where
 # there is no record the test is skipped and prints the lines to be added to data/pinned/hashes.txt. A change of the solvers
 # that is meant to change results replaces the lines.
 #   pinned.sh PROGRAM COMPILER
 set -euo pipefail
 program=$1
-key="$2 $(getconf GNU_LIBC_VERSION | tr ' ' '-')"
+processor=$(grep -m1 -o '^vendor_id.*' /proc/cpuinfo | tr -d ' \t' | cut -d: -f2 || true)
+grep -qm1 ' avx512f' /proc/cpuinfo && processor+=-avx512
+key="$2 $(getconf GNU_LIBC_VERSION | tr ' ' '-') ${processor:-unknown}"
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")/data" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

@@ -273,11 +273,15 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
     if (const Status done = quantise(clip, frames); !done) return done.error();
     Json system = describe(clip);
     if (!is_secondary(clip.system.role)) system["absent"] = absent_rows(*manifest, clip.system, frames);
+    // The body as drawn, where a secondary shows it as it is then; of several of them the last.
+    const auto own = std::ranges::find(manifest->systems, clip.system.name, &ManifestSystem::name);
     const auto replaces = [&](const ManifestSystem& s) {
       const SystemKind* kind = find_system_kind(s.role);
       return kind && kind->shows_body() && s.primary == clip.system.primary;
     };
-    if (clip.system.role == "body") system["hidden"] = std::ranges::any_of(manifest->systems, replaces);
+    if (clip.system.role == "body" || replaces(clip.system))
+      system["hidden"] = clip.system.role == "body" ? std::ranges::any_of(manifest->systems, replaces)
+                                                    : std::any_of(own + 1, manifest->systems.end(), replaces);
     if (clip.system.role == "body" && stands(*manifest, clip.system.name)) system["stands"] = true;
     bake["systems"].push_back(std::move(system));
   }

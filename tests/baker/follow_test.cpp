@@ -125,7 +125,7 @@ class FollowedTail : public testing::Test {
     std::ofstream(scratch_ / "sheet.obj") << "v 0 0.4 0.6\nv 0.1 0.4 0.6\nv 0 0.5 0.6\nf 1 2 3\n";
     std::ofstream(scratch_ / "shot.toml")
         << "[shot]\nframes = \"1-" << frames << "\"\nfps = " << fps << "\npreroll = 0\n[primary.cat]\nfile = \"" << file
-        << "\"\nclip_start = 0.5\nunit_scale = 0.01\nup = \"y\"\n"
+        << "\"\nclip_start = 0.5\nbody = \"capsules\"\nunit_scale = 0.01\nup = \"y\"\n"
         << follow;
     BakeOptions options;
     options.shot_file = scratch_ / "shot.toml";
@@ -141,7 +141,9 @@ class FollowedTail : public testing::Test {
       if (system.name == system_name) {
         const auto track = open_track(options.folder, system, *manifest);
         EXPECT_TRUE(track) << track.error().text();
-        if (track) EXPECT_TRUE(track->read(frame, x));
+        if (track) {
+          EXPECT_TRUE(track->read(frame, x));
+        }
       }
     return x;
   }
@@ -182,6 +184,12 @@ TEST_F(FollowedTail, The_files_that_are_written_play_what_was_baked) {
   // With an amount of 0 it is the animation of the file.
   const auto played = bake("25", 20, 12, "adjusted.bvh", "[follow.again]\nbones = [\"tail_*\"]\namount = 0\n", "again");
   EXPECT_LT(farthest(played, baked), 2e-4);
+}
+
+TEST_F(FollowedTail, Sections_on_one_primary_add_up) {
+  const std::string two = "[follow.first]\nbones = [\"tail_*\"]\n[follow.second]\nbones = [\"Head\"]\namount = 0\n";
+  const auto tail = bake("25", 20, 12), both = bake("25", 20, 12, "cat.bvh", two, "second");
+  EXPECT_LT(farthest(tail, both), 1e-5);
 }
 
 TEST_F(FollowedTail, A_pattern_that_names_no_joint_says_which_was_meant) {

@@ -65,24 +65,34 @@ Error at_place(Error error, const Shot& shot, const FollowSpec& spec) {
   return error;
 }
 
-Status plan_joints(const FollowSpec& spec, const PrimaryPlan& primary, const FollowTiming& timing, FollowGroup& group) {
+Status plan_joints(const FollowSpec& spec, const PrimaryPlan& primary, const FollowTiming& timing,
+                   const FollowGroup* before, FollowGroup& group) {
   if (!primary.character)
     return usage_error("\"" + primary.name + "\" has no joints", {},
                        "write weights, a number for every vertex, in the place of bones");
-  const PlacedCharacter& placed = *primary.character;
+  PlacedCharacter placed = *primary.character;
   if (placed.clip < 0)
     return usage_error("\"" + primary.name + "\" plays no clip: there is no motion to follow", {},
                        "name one of its clips, or the file with its animation");
   if (primary.hybrid)
     return usage_error("\"" + primary.name + "\" yields to stand-ins, and its joints cannot follow as well so far", {},
                        "bake the hybrid pass first, and follow in a shot with its adjusted GLB");
+  if (before && before->joints.empty())
+    return usage_error("joints have to follow before vertices do", {},
+                       "write it in front of [follow." + before->name + "]");
+  if (before)
+    if (Status s = apply_changes(placed.character, placed.clip, before->channels); !s) return s;
   const auto joints = joints_like(spec.bones, placed.character);
   if (!joints) return joints.error();
   FollowedBones followed = follow_bones(placed, primary.place, *joints, spec, timing, primary.scan.teleports);
   for (const int joint : *joints) group.joints.push_back(placed.character.nodes[at(joint)].name);
-  PlacedCharacter moved = placed;
-  if (Status s = apply_changes(moved.character, moved.clip, followed.channels); !s) return s;
-  auto played = play(std::move(moved), primary.request);
+  if (before)
+    for (const ChangedChannel& channel : before->channels)
+      if (std::none_of(followed.channels.begin(), followed.channels.end(),
+                       [&](const ChangedChannel& own) { return own.node == channel.node && own.path == channel.path; }))
+        followed.channels.push_back(channel);
+  if (Status s = apply_changes(placed.character, placed.clip, followed.channels); !s) return s;
+  auto played = play(std::move(placed), primary.request);
   if (!played) return played.error();
   group.motion = std::make_shared<PlacedTrajectory>(std::move(played->trajectory), primary.place);
   group.channels = std::move(followed.channels);
@@ -92,14 +102,14 @@ Status plan_joints(const FollowSpec& spec, const PrimaryPlan& primary, const Fol
 }
 
 Status plan_vertices(const FollowSpec& spec, const PrimaryPlan& primary, const FollowTiming& timing,
-                     FollowGroup& group) {
+                     const FollowGroup* before, FollowGroup& group) {
   auto weights =
       vertex_column(spec.weights, spec.column, primary.trajectory->surface().vertex_count(), 0, 1, "of a vertex");
   if (!weights) return weights.error();
   group.weighted = at(std::count_if(weights->begin(), weights->end(), [](double w) { return w > 0; }));
   if (group.weighted == 0) return usage_error("all weights are 0: nothing would follow", spec.weights.string());
-  const auto motion =
-      std::make_shared<FollowedPoints>(primary.trajectory, std::move(*weights), spec, timing, primary.scan.teleports);
+  const auto motion = std::make_shared<FollowedPoints>(before ? before->motion : primary.trajectory,
+                                                       std::move(*weights), spec, timing, primary.scan.teleports);
   for (int frame = 0; frame < timing.frame_count; ++frame) group.lag.push_back(motion->lag(frame / timing.fps));
   group.motion = motion;
   return {};
@@ -108,7 +118,7 @@ Status plan_vertices(const FollowSpec& spec, const PrimaryPlan& primary, const F
 }  // namespace
 
 Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowSpec& spec, std::size_t p,
-                                                 const BakePlan& plan) {
+                                                 const BakePlan& plan, const FollowGroup* before) {
   const PrimaryPlan& primary = plan.primaries[p];
   auto group = std::make_unique<FollowGroup>(p);
   group->name = spec.name;
@@ -117,8 +127,8 @@ Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowS
   group->fps = shot.fps;
   const FollowTiming timing{shot.fps, shot.first_frame, shot.last_frame - shot.first_frame + 1,
                             shot.preroll / shot.fps};
-  const Status planned =
-      spec.weights.empty() ? plan_joints(spec, primary, timing, *group) : plan_vertices(spec, primary, timing, *group);
+  const Status planned = spec.weights.empty() ? plan_joints(spec, primary, timing, before, *group)
+                                              : plan_vertices(spec, primary, timing, before, *group);
   if (!planned) return at_place(planned.error(), shot, spec);
   SystemOutput output;
   output.primary = p;

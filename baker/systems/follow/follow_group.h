@@ -16,7 +16,7 @@ class FollowGroup final : public SystemGroup {
   std::vector<double> lag;               ///< of each frame of the shot [m]
   std::vector<double> turn;              ///< of each frame [rad]; of joints
   std::vector<std::string> joints;       ///< their names; of vertices none
-  std::vector<ChangedChannel> channels;  ///< of the joints
+  std::vector<ChangedChannel> channels;  ///< of the joints, and of those of the sections before it
   std::size_t weighted = 0;              ///< vertices that follow
   int first_frame = 1, preroll = 0;
   double fps = 24;
@@ -27,8 +27,9 @@ class FollowGroup final : public SystemGroup {
   Result<std::vector<WrittenFile>> files(const BakePlan& plan, std::vector<std::string>& notes) const override;
 };
 
-/// The section's own group. Errors say where.
+/// The section's own group; it goes on from the last one of the same primary (null: there is none), so that what
+/// follows adds up. Errors say where.
 Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowSpec& spec, std::size_t primary,
-                                                 const BakePlan& plan);
+                                                 const BakePlan& plan, const FollowGroup* before);
 
 }  // namespace ft

@@ -11,11 +11,13 @@ class FollowKind final : public SystemKind {
   const SecondarySection& section() const override { return follow_section(); }
   Result<SystemGroups> plan(const Shot& shot, BakePlan& plan) const override {
     SystemGroups out;
+    std::vector<const FollowGroup*> last(plan.primaries.size(), nullptr);
     for (const FollowSpec* spec : specs_of<FollowSpec>(shot.secondaries))
       for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
         if (plan.primaries[p].name != spec->on) continue;
-        auto group = plan_follow(shot, *spec, p, plan);
+        auto group = plan_follow(shot, *spec, p, plan, last[p]);
         if (!group) return group.error();
+        last[p] = group->get();
         out.push_back(std::move(*group));
       }
     return out;
