@@ -4,55 +4,21 @@
 // "stitch v a b t" sews vertex v to the point (1 - t) a + t b, "stitch v w" a vertex to a vertex. These count vertices
 // from 0.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <unordered_map>
 
 #include "baker/core/file.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/obj_words.h"
+#include "io/shot/vertex_colours.h"
 #include "io/shot/words.h"
 
 namespace ft {
 namespace {
 
 constexpr std::uint64_t k_max_obj_bytes = std::uint64_t{1} << 30;
-constexpr double k_largest_byte = 255;
-/// A colour above it is no 1 that was rounded.
-constexpr double k_most_above_one = 1.01;
-constexpr double k_most_of_light = 2;      ///< fractions above it are of 0..255, too
 constexpr std::size_t k_shown_faults = 5;  ///< messages printed in full; the rest is counted
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
-
-/// Cuts the next word off the front of `line`; empty at the end.
-std::string_view next_word(std::string_view& line) {
-  std::size_t begin = 0;
-  while (begin < line.size() && is_blank(line[begin])) ++begin;
-  std::size_t end = begin;
-  while (end < line.size() && !is_blank(line[end])) ++end;
-  const std::string_view word = line.substr(begin, end - begin);
-  line.remove_prefix(end);
-  return word;
-}
-
-bool parse_number(std::string_view word, double& out) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), out);
-  if (end != word.data() + word.size() || word.empty()) return false;
-  // Too small or too large for a double: strtod tells which (0 or infinity).
-  if (fault == std::errc::result_out_of_range) out = std::strtod(std::string(word).c_str(), nullptr);
-  return fault == std::errc{} || fault == std::errc::result_out_of_range;
-}
-
-bool parse_index(std::string_view word, long long& out) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), out);
-  return !word.empty() && fault == std::errc{} && end == word.data() + word.size();
-}
 
 class ObjParser {
  public:
@@ -184,11 +150,6 @@ class ObjParser {
     return count;
   }
 
-  static std::string shown(std::string_view word) {
-    std::string out;
-    for (const char c : word.substr(0, 24)) out.push_back(c >= 32 && c < 127 ? c : '?');
-    return word.size() > 24 ? out + "..." : out;
-  }
   static std::string comma(std::string_view word) {
     return word.find(',') != std::string_view::npos ? " (decimal comma? OBJ uses points)" : "";
   }
@@ -204,7 +165,7 @@ class ObjParser {
       colours_.resize(mesh_.positions.size() - 1, Vec3::Zero());
       colours_.emplace_back(x[first], x[first + 1], x[first + 2]);
       const double largest = colours_.back().maxCoeff();
-      if (largest > k_largest_byte)
+      if (largest > k_largest_colour)
         fault("vertex has a colour of " + number_text(largest) + "; colours are from 0 to 1, or from 0 to 255");
       largest_colour_ = std::max(largest_colour_, largest);
     }
@@ -303,21 +264,8 @@ class ObjParser {
                        "the file may be cut or damaged; export it again");
   }
 
-  /// Some tools write colours as 0..1, others as 0..255; one value decides for the whole file. Light that was baked
-  /// into the colours may also lie a little above 1.
-  void scale_colours() {
-    if (!(largest_colour_ > k_most_above_one)) return;
-    const bool whole = std::all_of(colours_.begin(), colours_.end(),
-                                   [](const Vec3& colour) { return colour.array().round().matrix() == colour; });
-    const bool bytes = whole || largest_colour_ > k_most_of_light;
-    if (bytes)
-      for (Vec3& colour : colours_) colour /= k_largest_byte;
-    notes_.push_back("vertex colours go up to " + number_text(largest_colour_) +
-                     (bytes ? ": they are read as 0 to 255" : ": what is above 1 counts as 1"));
-  }
-
   void finish_groups() {
-    scale_colours();
+    if (const std::string note = scale_colours(colours_, largest_colour_); !note.empty()) notes_.push_back(note);
     for (FaceGroup& group : groups_) {
       auto& v = group.vertices;
       std::sort(v.begin(), v.end());
@@ -326,17 +274,9 @@ class ObjParser {
       mesh_.groups.push_back({std::move(group.name), std::move(v), {}});
       mesh_.groups.back().weights.assign(mesh_.groups.back().vertices.size(), 1.0);
     }
-    if (colours_.empty()) return;
-    const char* names[3] = {"red", "green", "blue"};
-    for (int channel = 0; channel < 3; ++channel) {
-      VertexGroup group{names[channel], {}, {}};
-      for (std::size_t i = 0; i < colours_.size(); ++i) {
-        const double weight = std::clamp(colours_[i][channel], 0.0, 1.0);
-        if (weight > 0) group.vertices.push_back(static_cast<int>(i)), group.weights.push_back(weight);
-      }
-      const bool taken = group_of_name_.contains(names[channel]);  // a face group of that name wins
-      if (!group.vertices.empty() && !taken) mesh_.groups.push_back(std::move(group));
-    }
+    for (VertexGroup& group : groups_of_colours(colours_))
+      if (!group_of_name_.contains(group.name))
+        mesh_.groups.push_back(std::move(group));  // a face group of that name wins
   }
 
   std::string_view where_;
