@@ -1,14 +1,10 @@
-#include "solvers/linear/linear_system.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
-#include "solvers/linear/dense_factor.h"
-#include "solvers/linear/extra_rows.h"
-#include "solvers/linear/level.h"
+#include "solvers/linear/linear_system_impl.h"
 
 namespace ft {
 namespace {
@@ -16,62 +12,15 @@ namespace {
 constexpr int k_coarsest_size = 64;  ///< a level of no more vertices has no coarser one
 constexpr std::size_t k_rows = 256;  ///< per block of a loop
 
-/// Where the cycle turns the residual so far that less is left along it than this share of its norm, it is made
-/// symmetric.
-constexpr double k_least_along = 0.1;
-/// And where the residual has grown so many times over the least there was: what is conjugate is lost by then. Solves
-/// of S1, S2 and the sewn dress hardly ever come that far.
+/// A cycle is made symmetric, too, where the residual has grown so many times over the least there was: what is
+/// conjugate is lost by then. Solves of S1, S2 and the sewn dress hardly ever come that far.
 constexpr double k_most_grown = 1.5;
 /// Where a larger residual is enough, the tolerance is so many times as large at most, and no more than this share of
 /// the right side.
 constexpr double k_most_loose = 5;
 constexpr double k_most_left = 0.5;
 
-/// Of what the preconditioner makes of the residual.
-struct Products {
-  double with_residual, with_product;  ///< product: of the matrix and the last direction
-  /// Of the residual, near the energy of the error, never negative: what the coarse correction meets of it, and the
-  /// last smoothing step of the rest.
-  double norm_squared;
-};
-
-/// The same, while they are summed up over vertices.
-struct ProductLanes {
-  using Lanes = Eigen::Array4d;
-  Lanes with_residual = Lanes::Zero(), with_product = Lanes::Zero(), norm_squared = Lanes::Zero();
-  Vec3 sums() const { return {with_residual.sum(), with_product.sum(), norm_squared.sum()}; }
-};
-
 }  // namespace
-
-struct LinearSystem::Impl {
-  LinearSettings settings;
-  std::vector<std::unique_ptr<Level>> levels;
-  DenseFactor coarsest;  ///< of the last level, if it is not the finest
-  std::vector<ExtraBlock> added;
-  std::vector<StiffClusters::Coupling> couplings;  ///< of the terms, in the pattern
-  std::vector<char> held;
-  std::vector<Vec4f> direction;
-  /// Of the matrix and the direction; then M^-1 residual, of which every entry wants that of the product alone.
-  std::vector<Vec4f> product;
-  std::vector<Vec3f> solution, best;  ///< best: where later ones are worse
-  bool symmetric = false;             ///< the finest level smooths before the correction too, or there is no correction
-  float alpha = 0;                    ///< of the last step: the residual has lost so much of product
-
-  Level& fine() { return *levels.front(); }
-  std::vector<Vec4f>& preconditioned() { return product; }
-  void hold(std::span<const char> fixed);
-  void refresh_hierarchy();
-  bool start(std::span<const Vec3> right_side);
-  bool step(double rz);
-  void advance(float beta);
-  void correct(std::size_t depth);
-  Products precondition(double most_norm_squared);
-  void take(std::size_t i, const Vec4f& z, ProductLanes& lanes);
-  void take_smoothed(std::size_t i, const Vec4f& rest, const Vec4f& by_rest, ProductLanes& lanes);
-  Products apply_cycle();
-  Products apply_jacobi();
-};
 
 LinearSystem::LinearSystem(const BlockPattern& pattern, std::span<const Vec3> rest_positions,
                            const LinearSettings& settings)
@@ -171,112 +120,6 @@ void LinearSystem::Impl::refresh_hierarchy() {
     if (d + 1 < levels.size()) estimate_damping(*levels[d]);
   }
   if (levels.size() > 1) coarsest.build(*levels.back());
-}
-
-/// A V(1,1) cycle from this level on, of the finest V(0,1) unless symmetric, but for its last smoothing step. What the
-/// finest smooths before the correction is a third of its products and saves a sixth of the iterations.
-void LinearSystem::Impl::correct(std::size_t depth) {
-  Level& level = *levels[depth];
-  Level& coarse = *levels[depth + 1];
-  const bool from_zero = depth == 0 && !symmetric;
-  if (from_zero) {
-    restrict_to(coarse, level, level.b);
-  } else {
-    smooth_first(level);
-    residual(level);
-    restrict_to(coarse, level, level.r);
-  }
-  if (depth + 2 < levels.size()) {
-    correct(depth + 1);
-    smooth(coarse);
-  } else if (coarsest.exists()) {
-    coarsest.solve(coarse);
-  } else {
-    smooth_first(coarse);
-  }
-  if (from_zero)
-    interpolate(level, coarse);
-  else
-    add_interpolated(level, coarse);
-}
-
-/// z: of M^-1 residual; what it replaces is of the product.
-void LinearSystem::Impl::take(std::size_t i, const Vec4f& z, ProductLanes& lanes) {
-  const Vec4f last = product[i];
-  preconditioned()[i] = z;
-  lanes.with_residual += (fine().b[i].array() * z.array()).cast<double>();
-  lanes.with_product += (last.array() * z.array()).cast<double>();
-}
-
-/// The last smoothing step, which goes on from what the coarse levels made of the residual. rest: what they left of it;
-/// by_rest: the inverse of the diagonal block, or of the cluster's, times that.
-void LinearSystem::Impl::take_smoothed(std::size_t i, const Vec4f& rest, const Vec4f& by_rest, ProductLanes& lanes) {
-  const Vec4f &corrected = fine().x[i], smoothed = fine().damping * by_rest;
-  lanes.norm_squared += (fine().b[i].array() * corrected.array() + rest.array() * smoothed.array()).cast<double>();
-  take(i, corrected + smoothed, lanes);
-}
-
-/// preconditioned() = M^-1 residual, which is the finest level's b. Held rows have a zero inverse, yet interpolation
-/// writes to them.
-Products LinearSystem::Impl::apply_cycle() {
-  if (levels.size() == 1) return apply_jacobi();
-  const Level& level = fine();
-  const StiffClusters& clusters = level.clusters;
-  correct(0);
-  const auto left = [&](std::size_t i) -> Vec4f { return level.b[i] - level.product(i, level.x); };
-  Vec3 sums = parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) {
-    ProductLanes own;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (held[i]) {
-        preconditioned()[i].setZero();
-      } else if (!clusters.has(i)) {
-        const Vec4f rest = left(i);
-        take_smoothed(i, rest, level.inverse[i] * rest, own);
-      }
-    }
-    return own.sums();
-  });
-  sums += parallel_sum(at(clusters.count()), clusters.k_block, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) {
-    ProductLanes own;
-    std::array<Vec4f, StiffClusters::k_most_vertices> rest, by_rest;
-    for (int c = static_cast<int>(begin); c < static_cast<int>(end); ++c) {
-      const std::span<const int> members = clusters.members(c);
-      for (std::size_t k = 0; k < members.size(); ++k) rest[k] = left(at(members[k]));
-      clusters.solve(c, rest, by_rest);
-      for (std::size_t k = 0; k < members.size(); ++k) take_smoothed(at(members[k]), rest[k], by_rest[k], own);
-    }
-    return own.sums();
-  });
-  return {sums[0], sums[1], symmetric ? sums[0] : sums[2]};
-}
-
-/// The same without coarse levels.
-Products LinearSystem::Impl::apply_jacobi() {
-  const Level& level = fine();
-  const Vec3 sums = parallel_sum(at(level.size()), k_rows, Vec3(0, 0, 0), [&](std::size_t begin, std::size_t end) {
-    ProductLanes own;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (held[i])
-        preconditioned()[i].setZero();
-      else
-        take(i, level.inverse[i] * level.b[i], own);
-    }
-    return own.sums();
-  });
-  return {sums[0], sums[1], sums[0]};
-}
-
-/// V(0,1) can turn a residual to the wrong side, or make it grow beyond most_norm_squared. For the rest of the solve
-/// the cycle is symmetric then, which cannot; without a product with the last direction the next is its own alone.
-Products LinearSystem::Impl::precondition(double most_norm_squared) {
-  const Products first = apply_cycle();
-  const bool sound = first.with_residual >= k_least_along * first.norm_squared;
-  if (symmetric || (sound && first.norm_squared <= most_norm_squared)) return first;
-  symmetric = true;
-  fine().r.resize(fine().b.size());
-  Products second = apply_cycle();
-  second.with_product = 0;
-  return second;
 }
 
 /// Vectors for a solve from zero. False where a row has no positive diagonal: it is not seen by the preconditioner, and
