@@ -34,6 +34,9 @@ constexpr double k_shortened_settled = 1e-3;
 /// loses momentum [m].
 constexpr double k_negligible = 2e-5;
 constexpr double k_spare = 5e-4;
+/// Where more than this share of the cloth asks for more than so many typical edges, nobody gets more at a time: the
+/// pairs would be all there are.
+constexpr double k_rush = 0.1, k_most_room = 4;
 constexpr double k_ahead = 0.5;  ///< of what was missing, farther on: the next iteration mostly goes the same way
 /// Rounds in which what would touch is kept apart, and then in which it is joined to zones, before the piece is
 /// shortened.
@@ -132,10 +135,18 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
     asked += WorkLimit::of_iteration(pair_count(s.candidates.pairs()), at(model_.vertex_count()));
     if (report.work + asked > in.patience) return;
     const auto clock = std::chrono::steady_clock::now();
+    const auto most_room = [&](std::size_t i) {
+      return k_most_room * model_.typical_edge[at(model_.contact.garment[i])];
+    };
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < missing.size(); ++i) far += missing[i] > most_room(i) ? 1 : 0;
+    const bool rush = static_cast<double>(far) > k_rush * static_cast<double>(missing.size());
     for (std::size_t i = 0; i < missing.size(); ++i) {
       if (!(missing[i] > 0)) continue;
-      const Vec3 ahead = k_ahead * missing[i] * move[i].normalized();  // none of what does not move
-      s.requests.push_back({static_cast<int>(i), x[i], x[i] + move[i] + ahead, k_spare});
+      const Vec3 way = move[i].normalized();  // zero of what does not move
+      const double given = rush ? std::min(missing[i], most_room(i)) : missing[i];
+      const Vec3 to = x[i] + move[i] - (missing[i] - given) * way + k_ahead * given * way;
+      s.requests.push_back({static_cast<int>(i), x[i], to, k_spare});
     }
     s.candidates.give_room(cloth, s.requests, s.piece);
     give_back(s.requests);  // in folds a quarter of the cloth asks

@@ -210,7 +210,7 @@ Vec3 ClothSolver::centre_of_wearer(std::size_t garment) const {
 double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
   const double h = (frame.t1 - frame.t0) / substeps;
   double lost = 0;
-  WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}));
+  WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}), !frame.torn.empty());
   bool hurried = false;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);

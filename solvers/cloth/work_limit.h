@@ -11,7 +11,8 @@ namespace ft {
 
 class WorkLimit {
  public:
-  explicit WorkLimit(int substeps) : left_(k_most_times * k_undisturbed * substeps) {}
+  /// torn: the body is, in this frame; no pains are taken then, for nothing is right.
+  WorkLimit(int substeps, bool torn) : left_((torn ? 1 : k_most_times) * k_undisturbed * substeps) {}
 
   void spend(double work) { left_ -= work; }
   /// Of the substep that comes next, when so many others follow it.

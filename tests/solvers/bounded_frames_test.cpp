@@ -15,10 +15,11 @@ namespace ft {
 namespace {
 
 TEST(WorkLimit, What_is_spent_is_gone_and_what_follows_keeps_its_own) {
-  WorkLimit limit(32);
+  WorkLimit limit(32, false);
   const double all = limit.patience(0);
   EXPECT_GT(all, 200);
   EXPECT_LT(limit.patience(31), all);
+  EXPECT_LT(WorkLimit(32, true).patience(0), all);
   limit.spend(all);
   EXPECT_LE(limit.patience(0), 0);
 }
