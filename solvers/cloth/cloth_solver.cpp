@@ -34,6 +34,10 @@ namespace {
 constexpr int k_rewinds = 3;
 /// Where a shot asks for fewer substeps at most, so many count for what a frame may cost.
 constexpr int k_least_counted = 32;
+/// Where more than this share of the body is torn, nothing in the frame is worth solving for: the cloth is taken along
+/// as it is [1].
+constexpr double k_wreck = 0.4;
+constexpr double k_fastest_wreck = 10;  ///< the speed that it has then, at most [m/s]
 /// A frame in which Newton's method leaves a garment that is buttoned or zipped to others with more force than this
 /// share of its weight, on average, is walked anew with so many times the substeps: cords are stiff and pull one way
 /// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
@@ -112,6 +116,7 @@ class ClothSolver final : public Solver {
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   Vec3 centre_of_wearer(std::size_t garment) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  void take_along(const Frame& frame, ClothMotion& motion, FrameReport& report) const;
   void find_torn(const Teleport* teleport, Frame& frame) const;
   void tell_of_torn(const Frame& frame, const ClothMotion& motion, FrameReport& report) const;
   void tell_of_haste(const ClothMotion& motion, FrameReport& report) const;
@@ -132,6 +137,10 @@ struct ClothSolver::Frame {
   double t0 = 0, t1 = 0;
   std::vector<char> torn;  ///< as TornBody::find()
 
+  bool wrecked() const {
+    return static_cast<double>(std::count(torn.begin(), torn.end(), char{1})) >
+           k_wreck * static_cast<double>(torn.size());
+  }
   /// What is too deep in the body, or torn.
   std::vector<char> not_met(std::span<const char> deep) const {
     std::vector<char> out(deep.begin(), deep.end());
@@ -208,6 +217,7 @@ Vec3 ClothSolver::centre_of_wearer(std::size_t garment) const {
 
 /// Returns the mean of StepResult::lost_weight.
 double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
+  if (frame.wrecked()) return take_along(frame, m, report), 0.0;
   const double h = (frame.t1 - frame.t0) / substeps;
   double lost = 0;
   WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}), !frame.torn.empty());
@@ -273,6 +283,24 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
          std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
+/// The cloth goes where most of the body goes, and meets none of it.
+void ClothSolver::take_along(const Frame& frame, ClothMotion& m, FrameReport& report) const {
+  const double duration = frame.t1 - frame.t0;
+  const Vec3 way = TornBody::common_move(body_.start().feasible, body_.end().feasible);
+  const double speed = way.norm() / duration;
+  const Vec3 v = (speed > k_fastest_wreck ? k_fastest_wreck / speed : 1.0) / duration * way;
+  for (Vec3& x : m.x) x += way;
+  m.x_previous = m.x_older = m.x;
+  std::fill(m.v.begin(), m.v.end(), v);
+  m.v_previous = m.v_older = m.v;
+  m.h_previous = m.h_older = 0;
+  std::fill(m.absent.begin(), m.absent.end(), char{1});
+  report.substeps = 1;
+  AdvanceReport nothing;
+  nothing.on_body.resize(model_->setup.garments.size());
+  add_forces(nothing, duration, report);
+}
+
 void ClothSolver::find_torn(const Teleport* teleport, Frame& frame) const {
   frame.torn = torn_body_.find(body_.start().feasible, body_.end().feasible, [&](int which) {
     std::vector<Vec3> x = model_->collider->refined(which < 0 ? 2 * frame.t0 - frame.t1 : 2 * frame.t1 - frame.t0);
@@ -299,7 +327,8 @@ void ClothSolver::tell_of_torn(const Frame& frame, const ClothMotion& m, FrameRe
   out.place = m.x[nearest];
   out.text = "the body is torn: the cloth does not meet " + std::to_string(count) +
              " vertices of the collider that leap or span a gap in this frame, at " +
-             parts[at(model_->collider->part_of_vertex()[at(first)])].name + " (look at the animation)";
+             parts[at(model_->collider->part_of_vertex()[at(first)])].name +
+             (frame.wrecked() ? "; so much that the cloth is only taken along" : "") + " (look at the animation)";
   report.released_vertices += static_cast<int>(count);
   report.incidents.push_back(std::move(out));
 }

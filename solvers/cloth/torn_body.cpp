@@ -26,10 +26,15 @@ Vec3 median(std::vector<Vec3> values) {
   return out;
 }
 
-/// Displacements against the body's median one.
-std::vector<Vec3> own_moves(std::span<const Vec3> from, std::span<const Vec3> to) {
+std::vector<Vec3> moves(std::span<const Vec3> from, std::span<const Vec3> to) {
   std::vector<Vec3> out(from.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = to[i] - from[i];
+  return out;
+}
+
+/// Displacements against the body's median one.
+std::vector<Vec3> own_moves(std::span<const Vec3> from, std::span<const Vec3> to) {
+  std::vector<Vec3> out = moves(from, to);
   const Vec3 common = median(out);
   for (Vec3& move : out) move -= common;
   return out;
@@ -48,6 +53,10 @@ TornBody::TornBody(std::span<const Vec3> bind, std::span<const Triangle> triangl
   for (const Box& box : boxes) farthest_.push_back(std::max(k_least_leap, box.size().norm()));
 }
 
+Vec3 TornBody::common_move(std::span<const Vec3> start, std::span<const Vec3> end) {
+  return median(moves(start, end));
+}
+
 std::vector<char> TornBody::find(std::span<const Vec3> start, std::span<const Vec3> end,
                                  const Neighbour& neighbour) const {
   std::vector<char> torn(start.size(), 0);
@@ -60,15 +69,15 @@ std::vector<char> TornBody::find(std::span<const Vec3> start, std::span<const Ve
     torn[at(a)] = torn[at(b)] = 1;
     any = true;
   }
-  const std::vector<Vec3> moves = own_moves(start, end);
+  const std::vector<Vec3> own = own_moves(start, end);
   std::vector<std::size_t> far;
-  for (std::size_t i = 0; i < moves.size(); ++i)
-    if (moves[i].norm() > farthest_[at(part_[i])]) far.push_back(i);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (own[i].norm() > farthest_[at(part_[i])]) far.push_back(i);
   if (!far.empty()) {
     const std::vector<Vec3> before = own_moves(neighbour(-1), start), after = own_moves(end, neighbour(1));
     for (const std::size_t i : far) {
       const double least = farthest_[at(part_[i])];
-      if ((moves[i] - before[i]).norm() <= least || (moves[i] - after[i]).norm() <= least) continue;
+      if ((own[i] - before[i]).norm() <= least || (own[i] - after[i]).norm() <= least) continue;
       torn[i] = 1;
       any = true;
     }

@@ -18,6 +18,9 @@ class TornBody {
   /// bind: of the body [m].
   TornBody(std::span<const Vec3> bind, std::span<const Triangle> triangles, std::span<const int> part_of_vertex);
 
+  /// What most of it does, a median, between the frame's ends [m].
+  static Vec3 common_move(std::span<const Vec3> start, std::span<const Vec3> end);
+
   /// Positions of the same vertices at another frame's end: -1 is the frame before the start, 1 that after the end [m].
   using Neighbour = std::function<std::vector<Vec3>(int)>;
   /// Between the frame's ends [m], per vertex: 1 where it is torn, else 0. Empty: nowhere.
