@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
@@ -263,6 +264,9 @@ std::string health(const FrameReport& r) {
   if (r.open_stitches > 0) add(fmt::format("seams open by up to {:.1f} mm", 1e3 * r.widest_seam));
   if (r.released_vertices > 0)
     add(fmt::format("{} vertices of the collider or points of cords let go for lack of room", r.released_vertices));
+  if (std::any_of(r.incidents.begin(), r.incidents.end(),
+                  [](const Incident& i) { return i.kind == Incident::Kind::k_cut_short; }))
+    add("cut short");
   return out.empty() ? "ok" : out;
 }
 

@@ -9,10 +9,10 @@
 namespace ft {
 namespace {
 
-constexpr std::array k_incident_kinds = {Incident::Kind::k_crossing,     Incident::Kind::k_penetration,
-                                         Incident::Kind::k_released,     Incident::Kind::k_strain,
-                                         Incident::Kind::k_start_inside, Incident::Kind::k_rewind,
-                                         Incident::Kind::k_unsettled,    Incident::Kind::k_open_seam};
+constexpr std::array k_incident_kinds = {
+    Incident::Kind::k_crossing,  Incident::Kind::k_penetration,  Incident::Kind::k_released,
+    Incident::Kind::k_strain,    Incident::Kind::k_start_inside, Incident::Kind::k_rewind,
+    Incident::Kind::k_unsettled, Incident::Kind::k_open_seam,    Incident::Kind::k_cut_short};
 
 template <class Profile, class Visit>
 void for_each_time(Profile& p, Visit&& visit) {

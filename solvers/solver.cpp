@@ -32,6 +32,7 @@ const char* name(Incident::Kind kind) {
     case Incident::Kind::k_rewind: return "rewind";
     case Incident::Kind::k_unsettled: return "unsettled";
     case Incident::Kind::k_open_seam: return "open seam";
+    case Incident::Kind::k_cut_short: return "cut short";
   }
   return "unknown";
 }

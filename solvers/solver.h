@@ -25,7 +25,8 @@ struct Incident {
     k_start_inside,
     k_rewind,
     k_unsettled,
-    k_open_seam
+    k_open_seam,
+    k_cut_short
   };
   Kind kind = Kind::k_crossing;
   int frame = 0;

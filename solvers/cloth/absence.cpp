@@ -180,6 +180,13 @@ int Absence::let_go(const ClothModel& model, int garment, std::span<const int> b
   return added;
 }
 
+int Absence::let_go_of_all(int garment, std::vector<char>& absent) const {
+  const std::span<char> all = std::span(absent).subspan(place(garment, 0), body_count_);
+  const auto met = std::count(all.begin(), all.end(), char{0});
+  std::fill(all.begin(), all.end(), char{1});
+  return static_cast<int>(met);
+}
+
 bool Absence::is_absent(const ClothModel& model, const Crossing& c, std::span<const char> absent) const {
   return c.edge_of_first ? is_absent(absent, model.garment_of(c.edge[0]), c.triangle)
                          : is_absent(absent, model.garment_of(c.triangle[0]), c.edge);

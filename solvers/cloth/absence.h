@@ -55,6 +55,8 @@ class Absence {
   /// hole in what a sleeve lies on swallows it.
   int let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, std::span<const Vec3> body,
              std::vector<char>& absent) const;
+  /// All of the collider; returns how many are new.
+  int let_go_of_all(int garment, std::vector<char>& absent) const;
   /// At the end of a frame: what is clear of a garment comes back, what it has got through goes. crossings: of the
   /// cloth (first) with the collider, absent or not.
   void bring_back(const ClothModel& model, std::span<const Crossing> crossings, const CheckedSurface& collider,

@@ -8,6 +8,7 @@
 #include "solvers/cloth/candidates.h"
 #include "solvers/cloth/draw_back.h"
 #include "solvers/cloth/tangles.h"
+#include "solvers/cloth/work_limit.h"
 
 namespace ft {
 namespace {
@@ -33,6 +34,9 @@ constexpr double k_shortened_settled = 1e-3;
 /// loses momentum [m].
 constexpr double k_negligible = 2e-5;
 constexpr double k_spare = 5e-4;
+/// Where more than this share of the cloth asks for more than so many typical edges, nobody gets more at a time: the
+/// pairs would be all there are.
+constexpr double k_rush = 0.1, k_most_room = 4;
 constexpr double k_ahead = 0.5;  ///< of what was missing, farther on: the next iteration mostly goes the same way
 /// Rounds in which what would touch is kept apart, and then in which it is joined to zones, before the piece is
 /// shortened.
@@ -41,6 +45,12 @@ constexpr int k_joining_rounds = 4;
 /// And when it cannot be shortened any more, as long as cloth meets cloth: what moves as one cannot meet itself, so
 /// that every round leaves fewer zones.
 constexpr int k_last_rounds = 200;
+/// When patience is over and so many times something was let go in the substep, the body goes as a whole.
+constexpr int k_most_releases = 8;
+
+std::size_t pair_count(const PairList& pairs) {
+  return pairs.vertex_face.size() + pairs.edge_edge.size();
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -116,14 +126,27 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   step.friction_share = in.friction_share;
   step.pairs = &s.candidates.pairs();
   step.newton_iterations = model_.setup.newton_iterations;
+  step.no_more = report.impatient;
   if (shortened) step.settled_strain = k_shortened_settled;
   step.enough_room = k_negligible;
+  double asked = 0;
   step.more_room = [&](std::span<const double> missing, std::span<const Vec3> x, std::span<const Vec3> move) {
+    // Each larger ball brings pairs, and beyond what the substep may cost there is none.
+    asked += WorkLimit::of_iteration(pair_count(s.candidates.pairs()), at(model_.vertex_count()));
+    if (report.work + asked > in.patience) return;
     const auto clock = std::chrono::steady_clock::now();
+    const auto most_room = [&](std::size_t i) {
+      return k_most_room * model_.typical_edge[at(model_.contact.garment[i])];
+    };
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < missing.size(); ++i) far += missing[i] > most_room(i) ? 1 : 0;
+    const bool rush = static_cast<double>(far) > k_rush * static_cast<double>(missing.size());
     for (std::size_t i = 0; i < missing.size(); ++i) {
       if (!(missing[i] > 0)) continue;
-      const Vec3 ahead = k_ahead * missing[i] * move[i].normalized();  // none of what does not move
-      s.requests.push_back({static_cast<int>(i), x[i], x[i] + move[i] + ahead, k_spare});
+      const Vec3 way = move[i].normalized();  // zero of what does not move
+      const double given = rush ? std::min(missing[i], most_room(i)) : missing[i];
+      const Vec3 to = x[i] + move[i] - (missing[i] - given) * way + k_ahead * given * way;
+      s.requests.push_back({static_cast<int>(i), x[i], to, k_spare});
     }
     s.candidates.give_room(cloth, s.requests, s.piece);
     give_back(s.requests);  // in folds a quarter of the cloth asks
@@ -144,6 +167,8 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   give_back(s.piece.carry, cloth.x);  // piece.start has the places
   const StepResult result = s.step.solve(step, s.end, cloth.v_older);
   report.newton_iterations += result.newton_iterations;
+  report.work +=
+      result.newton_iterations * WorkLimit::of_iteration(pair_count(s.candidates.pairs()), at(model_.vertex_count()));
   report.lost_weight += h / in.h * result.lost_weight;
   report.linear_iterations += result.linear_iterations;
   report.seconds_assembly += result.seconds_assembly;
@@ -178,7 +203,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   report.smallest_gap = std::numeric_limits<double>::infinity();
   report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
-  int short_pieces = 0;
+  int short_pieces = 0, releases = 0;
   std::vector<double> starts;  // of the pieces, as done
   const auto gains = [&] {
     return starts.size() < k_patience || done - starts[starts.size() - k_patience] >= k_least_gain;
@@ -204,19 +229,26 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       }
     });
     s.tangles.look(h, cloth);
-    double free = plan(cloth, h);
+    const auto search = [&] {
+      const double share_free = plan(cloth, h);
+      report.work += WorkLimit::of_search(pair_count(s.candidates.pairs()), nc);
+      return share_free;
+    };
+    double free = search();
     const auto carried = [&] {
       std::vector<Vec3> x(nc);
       for (std::size_t i = 0; i < nc; ++i) x[i] = cloth.x[i] + piece.all[i].cast<double>();
       return x;
     };
-    while (!s.tangles.way_out().empty() && !s.tangles.close_growing(carried()).empty()) free = plan(cloth, h);
+    while (!s.tangles.way_out().empty() && !s.tangles.close_growing(carried()).empty()) free = search();
+    report.impatient = report.work > in.patience;
     report.seconds_candidates += seconds_since(clock);
     if (free < 1) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
       const double length = shorter * (1 - done) * in.h;
       const bool is_short = length < in.shortest;
-      if (gains() && (!is_short || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short))) {
+      if (!report.impatient && gains() &&
+          (!is_short || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short))) {
         if (is_short) ++short_pieces;
         share = shorter;
         continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
@@ -227,7 +259,8 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       report.seconds_candidates += seconds_since(joining);
       // No room: what blocks is let go until it is clear of the cloth again. Should cloth still block cloth then,
       // these pairs pass this once, and the certificate says so.
-      if (free < 1 && s.candidates.release_blocked(cloth, piece) > 0) {
+      const bool whole = report.impatient && ++releases > k_most_releases;
+      if (free < 1 && s.candidates.release_blocked(cloth, piece, whole) > 0) {
         find_skin_holds();  // at once: what is pressed springs through
         share = 1;
         continue;  // search again without them

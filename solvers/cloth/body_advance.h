@@ -3,6 +3,7 @@
 // what blocks the cloth is let go, the smaller one of several parts (absence.h), so that the walk never stops.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,11 +23,16 @@ struct SubstepInput {
   double h = 0;                            ///< s
   double time_t0 = 0;                      ///< s
   double shortest = 0;  ///< pieces shorter than this [s] make the walk release, but for some, see k_last_shortest
+  /// What it may cost (work_limit.h) before what blocks is let go at once and Newton's method does no more than it
+  /// has to.
+  double patience = std::numeric_limits<double>::infinity();
 };
 
 /// What the pieces of a substep add up to.
 struct AdvanceReport {
   int pieces = 0, newton_iterations = 0, linear_iterations = 0;
+  double work = 0;         ///< see work_limit.h
+  bool impatient = false;  ///< SubstepInput::patience was over
   double lost_weight = 0;  ///< mean of StepResult::lost_weight over the substep
   double smallest_gap = 0;
   bool finite = true;

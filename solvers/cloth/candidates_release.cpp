@@ -35,7 +35,7 @@ std::vector<int> Candidates::pinched_through() const {
   return through;
 }
 
-int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece) {
+int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece, bool whole) {
   join_zones(piece);
   const std::vector<int> through = pinched_through();
   const int n = model_.vertex_count();
@@ -59,7 +59,10 @@ int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece) {
   const auto let_go = [&] {
     int freed = 0;
     for (int g = 0; g < static_cast<int>(goes.size()); ++g)
-      if (!goes[at(g)].empty()) freed += model_.absence.let_go(model_, g, goes[at(g)], body, cloth.absent);
+      if (!goes[at(g)].empty() && whole)
+        freed += model_.absence.let_go_of_all(g, cloth.absent);
+      else if (!goes[at(g)].empty())
+        freed += model_.absence.let_go(model_, g, goes[at(g)], body, cloth.absent);
     return freed;
   };
   for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge}) take_blocking(false, *blocked);

@@ -210,7 +210,8 @@ void Certificate::describe(double time, std::span<const Vec3> drawn, const Cloth
   describe_seams(model_, time, m, report);
   // What the promise is about goes first, then by depth.
   const auto weight = [](const Incident& i) {
-    return i.kind == Incident::Kind::k_crossing ? 2 : i.kind == Incident::Kind::k_released ? 1 : 0;
+    using enum Incident::Kind;
+    return i.kind == k_crossing ? 2 : i.kind == k_released || i.kind == k_cut_short ? 1 : 0;
   };
   std::stable_sort(report.incidents.begin(), report.incidents.end(), [&](const Incident& a, const Incident& b) {
     return weight(a) != weight(b) ? weight(a) > weight(b) : a.depth > b.depth;

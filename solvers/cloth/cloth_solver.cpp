@@ -25,11 +25,19 @@
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/substep_count.h"
 #include "solvers/cloth/tangles.h"
+#include "solvers/cloth/torn_body.h"
+#include "solvers/cloth/work_limit.h"
 
 namespace ft {
 namespace {
 
 constexpr int k_rewinds = 3;
+/// Where a shot asks for fewer substeps at most, so many count for what a frame may cost.
+constexpr int k_least_counted = 32;
+/// Where more than this share of the body is torn, nothing in the frame is worth solving for: the cloth is taken along
+/// as it is [1].
+constexpr double k_wreck = 0.4;
+constexpr double k_fastest_wreck = 10;  ///< the speed that it has then, at most [m/s]
 /// A frame in which Newton's method leaves a garment that is buttoned or zipped to others with more force than this
 /// share of its weight, on average, is walked anew with so many times the substeps: cords are stiff and pull one way
 /// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
@@ -53,6 +61,11 @@ class ClothSolver final : public Solver {
     mark_tangled(*model_, own_crossings(*model_, crossings_within(model_->start, model_->triangles)),
                  tangled_at_start_);
     if (!any_tangled(tangled_at_start_)) give_back(tangled_at_start_);
+    if (model_->collider) {
+      std::vector<Vec3> bind(at(model_->collider->vertex_count()));
+      model_->collider->refined_bind(bind);
+      torn_body_ = TornBody(bind, model_->collider->triangles(), model_->collider->part_of_vertex());
+    }
     if (std::ranges::equal(model_->start, model_->contact.rest)) give_back(model_->start);
   }
 
@@ -99,13 +112,18 @@ class ClothSolver final : public Solver {
 
  private:
   struct Frame;
-  FrameReport advance(const Frame& frame, State& state) const;
+  FrameReport advance(Frame frame, State& state) const;
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   Vec3 centre_of_wearer(std::size_t garment) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  void take_along(const Frame& frame, ClothMotion& motion, FrameReport& report) const;
+  void find_torn(const Teleport* teleport, Frame& frame) const;
+  void tell_of_torn(const Frame& frame, const ClothMotion& motion, FrameReport& report) const;
+  void tell_of_haste(const ClothMotion& motion, FrameReport& report) const;
   bool hold_jumps(double time_t0, double time_t1) const;
 
   std::unique_ptr<ClothModel> model_;
+  TornBody torn_body_;
   std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
   // Scratch only: forgotten between frames, one frame at a time.
   mutable BodyAdvance advance_;
@@ -117,6 +135,18 @@ class ClothSolver final : public Solver {
 struct ClothSolver::Frame {
   int number = 0;  ///< of its end
   double t0 = 0, t1 = 0;
+  std::vector<char> torn;  ///< as TornBody::find()
+
+  bool wrecked() const {
+    return static_cast<double>(std::count(torn.begin(), torn.end(), char{1})) >
+           k_wreck * static_cast<double>(torn.size());
+  }
+  /// What is too deep in the body, or torn.
+  std::vector<char> not_met(std::span<const char> deep) const {
+    std::vector<char> out(deep.begin(), deep.end());
+    for (std::size_t b = 0; b < torn.size(); ++b) out[b] = static_cast<char>(out[b] | torn[b]);
+    return out;
+  }
 };
 
 State ClothSolver::initial_state() const {
@@ -187,11 +217,14 @@ Vec3 ClothSolver::centre_of_wearer(std::size_t garment) const {
 
 /// Returns the mean of StepResult::lost_weight.
 double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
+  if (frame.wrecked()) return take_along(frame, m, report), 0.0;
   const double h = (frame.t1 - frame.t0) / substeps;
   double lost = 0;
+  WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}), !frame.torn.empty());
+  bool hurried = false;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
-  std::vector<char> deep = body_.start().absent;
+  std::vector<char> deep = frame.not_met(body_.start().absent), deep_next;
   for (int k = 0; k < substeps; ++k) {
     const double t0 = frame.t0 + k * h;
     const auto clock = std::chrono::steady_clock::now();
@@ -201,20 +234,26 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     SubstepInput in;
     in.body_t0 = body;
     in.body_t1 = next.feasible;
-    in.deep_t1 = next.absent;
+    deep_next = frame.not_met(next.absent);
+    in.deep_t1 = deep_next;
     in.pins_t0 = pins;
     in.pins_t1 = pins_next;
     in.h = h;
     in.time_t0 = t0;
     in.shortest = (frame.t1 - frame.t0) / 512;
-    if (!m.absent.empty()) model_->absence.take_out(deep, next.absent, m.absent);
+    if (!m.absent.empty()) model_->absence.take_out(deep, deep_next, m.absent);
     if (!model_->sewn_until.empty()) {
       push.assign(m.x.size(), Vec3::Zero());
       if (ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
     }
     if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
+    // What is faster than the steps that there are can follow meets more with a power of its speed.
+    if ((hurried || substeps >= model_->setup.max_substeps) && slow_down(*model_, h, m)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
+    in.patience = limit.patience(substeps - 1 - k);
     const AdvanceReport step = advance_.substep(in, m);
+    limit.spend(step.work);
+    hurried = hurried || step.impatient;
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;
     report.linear_iterations += step.linear_iterations;
@@ -227,9 +266,10 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     report.profile.linear += step.seconds_linear;
     report.profile.narrow += step.seconds_contact;
     body = next.feasible;
-    deep = next.absent;
+    deep.swap(deep_next);
     pins.swap(pins_next);
   }
+  if (hurried) tell_of_haste(m, report);
   return lost;
 }
 
@@ -241,6 +281,79 @@ bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
   const auto& attachments = model_->attachments;
   return std::any_of(model_->pins.begin(), model_->pins.end(), jumps) ||
          std::any_of(attachments.begin(), attachments.end(), jumps);
+}
+
+/// The cloth goes where most of the body goes, and meets none of it.
+void ClothSolver::take_along(const Frame& frame, ClothMotion& m, FrameReport& report) const {
+  const double duration = frame.t1 - frame.t0;
+  const Vec3 way = TornBody::common_move(body_.start().feasible, body_.end().feasible);
+  const double speed = way.norm() / duration;
+  const Vec3 v = (speed > k_fastest_wreck ? k_fastest_wreck / speed : 1.0) / duration * way;
+  for (Vec3& x : m.x) x += way;
+  m.x_previous = m.x_older = m.x;
+  std::fill(m.v.begin(), m.v.end(), v);
+  m.v_previous = m.v_older = m.v;
+  m.h_previous = m.h_older = 0;
+  std::fill(m.absent.begin(), m.absent.end(), char{1});
+  report.substeps = 1;
+  AdvanceReport nothing;
+  nothing.on_body.resize(model_->setup.garments.size());
+  add_forces(nothing, duration, report);
+}
+
+void ClothSolver::find_torn(const Teleport* teleport, Frame& frame) const {
+  frame.torn = torn_body_.find(body_.start().feasible, body_.end().feasible, [&](int which) {
+    std::vector<Vec3> x = model_->collider->refined(which < 0 ? 2 * frame.t0 - frame.t1 : 2 * frame.t1 - frame.t0);
+    if (which < 0 && teleport) carry(*teleport, std::span(x));
+    return x;
+  });
+}
+
+/// What of the body was not met because it is torn, at the first garment's vertex that is nearest.
+void ClothSolver::tell_of_torn(const Frame& frame, const ClothMotion& m, FrameReport& report) const {
+  const auto first = std::find(frame.torn.begin(), frame.torn.end(), char{1}) - frame.torn.begin();
+  const auto count = std::count(frame.torn.begin(), frame.torn.end(), char{1});
+  const Vec3& place = body_.end().feasible[at(first)];
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < m.x.size(); ++i)
+    if ((m.x[i] - place).squaredNorm() < (m.x[nearest] - place).squaredNorm()) nearest = i;
+  const int vertex = static_cast<int>(nearest), garment = model_->garment_of(vertex);
+  const auto& parts = model_->collider->trajectory().surface().parts;
+  Incident out;
+  out.kind = Incident::Kind::k_released;
+  out.frame = report.frame;
+  out.system = model_->setup.garments[at(garment)].name;
+  out.vertex = vertex - model_->first_vertex[at(garment)];
+  out.place = m.x[nearest];
+  out.text = "the body is torn: the cloth does not meet " + std::to_string(count) +
+             " vertices of the collider that leap or span a gap in this frame, at " +
+             parts[at(model_->collider->part_of_vertex()[at(first)])].name +
+             (frame.wrecked() ? "; so much that the cloth is only taken along" : "") + " (look at the animation)";
+  report.released_vertices += static_cast<int>(count);
+  report.incidents.push_back(std::move(out));
+}
+
+/// A frame that was cut short, at the cloth that is stretched most.
+void ClothSolver::tell_of_haste(const ClothMotion& m, FrameReport& report) const {
+  const RestEdges& rest = model_->rest_edges;
+  double most = 0;
+  int vertex = 0;
+  for (std::size_t e = 0; e < rest.edges.size(); ++e) {
+    const auto [a, b] = rest.edges[e];
+    const double stretch = (m.x[at(a)] - m.x[at(b)]).norm() / rest.lengths[e];
+    if (stretch > most) most = stretch, vertex = a;
+  }
+  const int garment = model_->garment_of(vertex);
+  Incident out;
+  out.kind = Incident::Kind::k_cut_short;
+  out.frame = report.frame;
+  out.system = model_->setup.garments[at(garment)].name;
+  out.vertex = vertex - model_->first_vertex[at(garment)];
+  out.place = m.x[at(vertex)];
+  out.text =
+      "cut short: the frame took many times as long as frames usually do; what blocks the cloth is let go at once "
+      "(look at the animation there)";
+  report.incidents.push_back(std::move(out));
 }
 
 FrameReport ClothSolver::advance_frame(State& state) const {
@@ -283,7 +396,7 @@ FrameReport ClothSolver::settle_frame(State& state) const {
   return report;
 }
 
-FrameReport ClothSolver::advance(const Frame& frame, State& state) const {
+FrameReport ClothSolver::advance(Frame frame, State& state) const {
   const auto clock = std::chrono::steady_clock::now();
   const ClothSetup& setup = model_->setup;
   const auto body_clock = std::chrono::steady_clock::now();
@@ -291,12 +404,13 @@ FrameReport ClothSolver::advance(const Frame& frame, State& state) const {
   const bool goes_on = frame.number != state.frame;
   const Teleport* teleport = goes_on ? teleport_into(setup.teleports, frame.number) : nullptr;
   if (teleport) body_.cut(*teleport);
+  if (model_->collider) find_torn(teleport, frame);
   FrameReport report, best_report;
   ClothMotion motion = take_motion(state, at(model_->vertex_count())), best;
   if (teleport) carry(*teleport, motion);
   const KeptMotion start(motion);
   const int substeps = substep_count(*model_, motion, frame.t1 - frame.t0, body_.start().feasible, body_.end().feasible,
-                                     body_.start().absent, body_.end().absent);
+                                     frame.not_met(body_.start().absent), frame.not_met(body_.end().absent));
   bool moved = false;
   int fewest = -1;
   FrameProfile spent;
@@ -338,6 +452,7 @@ FrameReport ClothSolver::advance(const Frame& frame, State& state) const {
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
+  if (!frame.torn.empty()) tell_of_torn(frame, motion, report);
   certificate_.describe(frame.t1, body_.end().drawn, motion, report);
   report.profile.certificate += elapsed(certificate);
   store(state, motion);

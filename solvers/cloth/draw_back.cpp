@@ -14,6 +14,8 @@ constexpr double k_stiffness = 1e5, k_most_pull = 300;
 constexpr double k_above_stiffness = 2e6;
 /// In which what is inside loses its speed against the body [s].
 constexpr double k_slowed = 2e-3;
+/// Skin that is faster than anything alive [m/s] takes nothing along: it is where the animation is broken.
+constexpr double k_fastest_skin = 25;
 
 }  // namespace
 
@@ -27,7 +29,7 @@ void DrawBack::follow(const ClothModel& model, const ClothMotion& cloth, const P
   for (const SkinHold& hold : holds) {
     const int v = hold.vertex;
     const double area = model.contact.area[at(v)];
-    if (hold.along >= 0)
+    if (hold.along >= 0 && piece.body_motion[at(hold.along)].norm() <= k_fastest_skin * h)
       slowed_.push_back({v, cloth.x[at(v)] + piece.body_motion[at(hold.along)], model.mass[at(v)] / (k_slowed * h)});
     if (!hold.to_skin) {
       if (hold.normal == Vec3::Zero()) continue;

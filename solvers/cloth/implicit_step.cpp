@@ -195,7 +195,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
     contact.forget_contacts();
   };
   double of_cloth = potential_of_cloth(cloth(all));
-  const int most_iterations = k_most_times * in.newton_iterations;
+  const int most_iterations = in.no_more ? in.newton_iterations : k_most_times * in.newton_iterations;
   bool settled = false;
   s.newton.begin();
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {

@@ -31,6 +31,7 @@ struct StepInput {
   double friction_share = 1;         ///< of all friction [1]
   const PairList* pairs = nullptr;   ///< complete within the slack, but for what pairs_suffice adds
   int newton_iterations = 3;         ///< at least, unless nothing moves; more where the cloth is still strained
+  bool no_more = false;              ///< not even then
   /// Root mean square of what an iteration may still change the edges' lengths by at the end, after it is truncated and
   /// also before unless it is stuck, over their rest lengths [1].
   double settled_strain = 5e-3;

@@ -79,6 +79,13 @@ void MovingCollider::drawn(double time, std::vector<Vec3>& positions) const {
   trajectory().sample(time, positions);
 }
 
+std::vector<Vec3> MovingCollider::refined(double time) const {
+  std::vector<Vec3> pose, out(at(vertex_count()));
+  drawn(time, pose);
+  poses_->collider().refine(pose, out);
+  return out;
+}
+
 CarveReport MovingCollider::feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions,
                                      std::vector<char>* absent) const {
   positions.resize(at(vertex_count()));

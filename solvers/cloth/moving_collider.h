@@ -30,6 +30,8 @@ class MovingCollider {
   /// The bind pose of the collider, before anything gives way.
   void refined_bind(std::span<Vec3> positions) const;
   void drawn(double time, std::vector<Vec3>& positions) const;
+  /// The drawn pose with the collider's vertices, before anything gives way.
+  std::vector<Vec3> refined(double time) const;
   /// Feasible positions, from the drawn ones at the same time. absent: per vertex, where the body is too deep in itself
   /// for cloth to meet it, see FeasibleCollider::evaluate(); null: not asked for.
   CarveReport feasible(double time, std::span<const Vec3> drawn, std::vector<Vec3>& positions,

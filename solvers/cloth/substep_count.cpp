@@ -21,6 +21,9 @@ constexpr double k_most_scatter = 1.25;
 /// it meets more with each contact radius of its way.
 constexpr double k_most_way = 3.5;
 
+/// Of single vertices, before they are slowed down.
+constexpr double k_most_scatter_of_one = 4;
+
 /// How fast the ends of the edges move against each other, by their lengths at rest; both root mean square [1/s], so
 /// that an edge counts as much as the cloth that it is in, and tiny ones hardly.
 double turning(const RestEdges& rest, const ClothMotion& m) {
@@ -112,6 +115,24 @@ double substeps_of_body(const ClothModel& model, const ClothMotion& m, double du
 }
 
 }  // namespace
+
+bool slow_down(const ClothModel& model, double h, ClothMotion& m) {
+  bool any = false;
+  for (std::size_t g = 0; g + 1 < model.first_vertex.size(); ++g) {
+    const auto first = at(model.first_vertex[g]), end = at(model.first_vertex[g + 1]);
+    const double most = k_most_scatter_of_one * model.typical_edge[g] / h;
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = first; i < end; ++i) mean += m.v[i] / static_cast<double>(end - first);
+    for (std::size_t i = first; i < end; ++i) {
+      const Vec3 own = m.v[i] - mean;
+      const double speed = own.norm();
+      if (!(speed > most)) continue;
+      m.v[i] = mean + most / speed * own;
+      any = true;
+    }
+  }
+  return any;
+}
 
 int substep_count(const ClothModel& model, const ClothMotion& motion, double duration, std::span<const Vec3> body_t0,
                   std::span<const Vec3> body_t1, std::span<const char> deep_t0, std::span<const char> deep_t1) {

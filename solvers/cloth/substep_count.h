@@ -16,4 +16,8 @@ int substep_count(const ClothModel& model, const ClothMotion& motion, double dur
                   std::span<const Vec3> body_t1, std::span<const char> deep_t0 = {},
                   std::span<const char> deep_t1 = {});
 
+/// Slows vertices down that would move by far more in a substep [s], against the mean motion of their garment, than
+/// substep_count() is after. Returns whether there were any.
+bool slow_down(const ClothModel& model, double h, ClothMotion& motion);
+
 }  // namespace ft
