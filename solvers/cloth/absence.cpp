@@ -4,69 +4,21 @@
 
 #include "baker/core/parallel.h"
 #include "collision/penetration.h"
+#include "solvers/cloth/absence_nearest.h"
 #include "solvers/cloth/cloth_model.h"
 
 namespace ft {
+
+using namespace absent;
+
 namespace {
 
 /// A garment wears a part that is the nearest in the bind pose to this share of its vertices [1].
 constexpr double k_worn_share = 0.02;
 /// What is let go of a part that is not worn around a place where it blocks cloth [m].
 constexpr double k_limb_reach = 0.08;
-/// What stays away around a place where cloth crosses, or is inside of, what would come back [m].
-constexpr double k_margin = 0.025;
-/// How deep inside cloth is looked for [m].
-constexpr double k_deepest = 0.2;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
-/// Cloth whose nearest skin is no farther than this from where it lay in the bind pose has slid there [m]; farther away
-/// it is on the wrong side. Less for skin of another part.
-constexpr double k_same_side = 0.08, k_same_side_elsewhere = 0.03;
-
-/// A garment is caught where it is stretched by this share [1], so near to what it does not wear, in contact radii; and
-/// where that goes for this share of its edges [1], for single ones of tight clothes are.
-constexpr double k_caught = 0.25, k_caught_reach = 2, k_caught_edges = 0.005;
-
-/// Cloth that was put on lies no farther from the skin [m].
-constexpr double k_on_skin = 0.05;
-
-struct Nearest {
-  int triangle = -1;
-  double distance = 0;  ///< m
-  Vec3 way_out;         ///< unit, from the point to the surface; zero on it
-  bool behind = false;  ///< of the triangle
-};
-
-Nearest nearest(const Vec3& p, std::span<const Vec3> body, std::span<const Triangle> triangles,
-                const TriangleTree& tree, double reach) {
-  TriangleTree::Hit hit;
-  hit.closest.squared_distance = reach * reach;
-  tree.closest(p, body, triangles, hit);
-  Nearest out;
-  out.triangle = hit.triangle;
-  out.way_out.setZero();
-  if (hit.triangle < 0) return out;
-  const Triangle& t = triangles[at(hit.triangle)];
-  const Vec3 way = hit.closest.point - p;
-  out.distance = way.norm();
-  if (out.distance > 0) out.way_out = way / out.distance;
-  out.behind = (body[at(t[1])] - body[at(t[0])]).cross(body[at(t[2])] - body[at(t[0])]).dot(way) > 0;
-  return out;
-}
-
-/// Of the triangles that are wanted.
-template <class Wanted>
-TriangleTree tree_of(std::span<const Vec3> x, std::span<const Triangle> triangles, Wanted&& wanted) {
-  std::vector<int> subset;
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
-    if (wanted(triangles[at(t)])) subset.push_back(t);
-  return TriangleTree(x, triangles, std::move(subset));
-}
-
-Vec3 normal_of(const Triangle& t, std::span<const Vec3> x) {
-  return (x[at(t[1])] - x[at(t[0])]).cross(x[at(t[2])] - x[at(t[0])]).normalized();
-}
-
 }  // namespace
 
 Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->vertex_count())) {
@@ -277,128 +229,6 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
       is = static_cast<char>(planned(g, b, deep) || limb || stays[at(b)] != 0);
     }
   }
-}
-
-void Absence::add_descendants(std::vector<char>& gone) const {
-  bool more = true;
-  while (more) {
-    more = false;
-    for (std::size_t p = 0; p < parents_.size(); ++p)
-      if (gone[p] == 0 && parents_[p] >= 0 && gone[at(parents_[p])] != 0) gone[p] = 1, more = true;
-  }
-}
-
-void Absence::let_go_of_what_caught(const ClothModel& model, const CheckedSurface& collider,
-                                    ClothMotion& motion) const {
-  const auto parts = model.collider->part_of_vertex();
-  std::vector<std::vector<char>> gone(worn_.size(), std::vector<char>(parents_.size(), 0));
-  const RestEdges& rest = model.rest_edges;
-  std::vector<int> edges(worn_.size(), 0), stretched_count(worn_.size(), 0);
-  std::vector<Edge> stretched;
-  for (std::size_t e = 0; e < rest.edges.size(); ++e) {
-    const auto [a, b] = rest.edges[e];
-    const std::size_t g = at(model.garment_of(a));
-    ++edges[g];
-    if ((motion.x[at(a)] - motion.x[at(b)]).norm() < (1 + k_caught) * rest.lengths[e]) continue;
-    ++stretched_count[g];
-    stretched.push_back(rest.edges[e]);
-  }
-  bool any = false;
-  for (const auto& [a, b] : stretched) {
-    const int g = model.garment_of(a);
-    if (stretched_count[at(g)] < k_caught_edges * edges[at(g)]) continue;
-    for (const int v : {a, b}) {
-      const double reach = k_caught_reach * model.contact.radius[at(v)];
-      const Nearest n = nearest(motion.x[at(v)], collider.positions(), collider.triangles(), collider.tree(), reach);
-      if (n.triangle < 0) continue;
-      const Triangle& t = collider.triangles()[at(n.triangle)];
-      const int part = parts[at(t[0])];
-      if (!goes_whole(g, part) || is_absent(motion.absent, g, t)) continue;
-      gone[at(g)][at(part)] = 1;
-      any = true;
-    }
-  }
-  if (!any) return;
-  for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
-    add_descendants(gone[at(g)]);
-    for (int b = 0; b < static_cast<int>(body_count_); ++b)
-      if (gone[at(g)][at(parts[at(b)])] != 0) motion.absent[place(g, b)] = 1;
-  }
-}
-
-std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<const Vec3> body,
-                                          std::span<const char> deep, const ClothMotion& motion) const {
-  std::vector<SkinHold> out;
-  TriangleTree tree;
-  const auto parts = model.collider->part_of_vertex();
-  const auto triangles = model.collider->triangles();
-  for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
-    Box box;
-    std::vector<char> gone(body_count_, 0);
-    for (int b = 0; b < static_cast<int>(body_count_); ++b)
-      if (motion.absent[place(g, b)] != 0 && !planned(g, b, deep)) gone[at(b)] = 1, box.include(body[at(b)]);
-    if (!(box.lo.x() <= box.hi.x())) continue;
-    if (tree.empty()) {
-      tree = tree_;
-      tree.refit(body, triangles);
-    }
-    box.inflate(k_margin);
-    const auto is_gone = [&](const Triangle& t) {
-      return gone[at(t[0])] != 0 || gone[at(t[1])] != 0 || gone[at(t[2])] != 0;
-    };
-    const auto is_planned = [&](const Triangle& t) {
-      return std::any_of(t.begin(), t.end(), [&](int b) { return planned(g, b, deep); });
-    };
-    const int first = model.first_vertex[at(g)], count = model.first_vertex[at(g + 1)] - first;
-    const TriangleTree gone_tree = tree_of(body, triangles, is_gone);
-    std::vector<int> holders;  // what the garment wears and meets
-    for (int b = 0; b < static_cast<int>(body_count_); ++b)
-      if (motion.absent[place(g, b)] == 0 && worn_[at(g)][at(parts[at(b)])] != 0) holders.push_back(b);
-    std::vector<SkinHold> ways(at(count), SkinHold{-1, false, Vec3::Zero(), Vec3::Zero(), -1});
-    parallel_for(at(count), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const std::size_t i = at(first) + k;
-        const Vec3& p = motion.x[i];
-        const Triangle& skin = anchors_[i].triangle;
-        const bool may_return = skin[0] >= 0 && is_gone(skin) && !is_planned(skin);
-        const bool is_near = (p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all();
-        if (!may_return && !is_near) continue;
-        // What does not lie on skin stays with what still holds it, until what has passed it is gone.
-        if (skin[0] < 0) {
-          const Nearest in = nearest(p, body, triangles, gone_tree, k_deepest);
-          if (in.triangle < 0 || !in.behind || !rays_say_inside(p, tree, body, triangles)) continue;
-          double least = k_on_skin * k_on_skin;
-          int holder = -1;
-          for (const int b : holders)
-            if (const double d = (body[at(b)] - p).squaredNorm(); d < least) least = d, holder = b;
-          if (holder >= 0) {
-            ways[k] = {static_cast<int>(i), false, Vec3::Zero(), Vec3::Zero(), holder};
-            continue;
-          }
-        }
-        const Nearest n = nearest(p, body, triangles, tree, k_deepest);
-        if (n.triangle < 0) continue;
-        const Triangle& t = triangles[at(n.triangle)];
-        const Vec3 place = p + n.distance * n.way_out, normal = normal_of(t, body);
-        const bool inside = n.behind && rays_say_inside(p, tree, body, triangles);
-        const auto has_slid_there = [&] {
-          const double way = (place_on_skin(static_cast<int>(i), body) - place).norm();
-          const bool same_part = parts[at(skin[0])] == parts[at(t[0])];
-          return way < (same_part ? k_same_side : k_same_side_elsewhere) && normal.dot(normal_of(skin, body)) > 0;
-        };
-        if (may_return && (inside || !has_slid_there())) {
-          ways[k] = {static_cast<int>(i), true, Vec3::Zero(), Vec3::Zero(), inside ? skin[0] : -1};
-          continue;
-        }
-        if (!is_gone(t) || is_planned(t) || inside != n.behind) continue;
-        const bool worn = worn_[at(g)][at(parts[at(t[0])])] != 0;
-        ways[k] = {static_cast<int>(i), false, place, normal, inside && worn ? t[0] : -1};
-      }
-    });
-    for (const SkinHold& way : ways)
-      if (way.vertex >= 0) out.push_back(way);
-  }
-  return out;
 }
 
 }  // namespace ft

@@ -106,4 +106,13 @@ ClothMotion KeptMotion::motion() const {
   return m;
 }
 
+void take_along_with(const Vec3& way, const Vec3& velocity, ClothMotion& m) {
+  for (Vec3& x : m.x) x += way;
+  m.x_previous = m.x_older = m.x;
+  std::fill(m.v.begin(), m.v.end(), velocity);
+  m.v_previous = m.v_older = m.v;
+  m.h_previous = m.h_older = 0;
+  std::fill(m.absent.begin(), m.absent.end(), char{1});
+}
+
 }  // namespace ft

@@ -46,4 +46,7 @@ class KeptMotion {
   std::vector<char> tangled_;  ///< empty: nothing is
 };
 
+/// The cloth goes along with a body that it does not meet: by a way [m], and at a velocity [m/s] from then on.
+void take_along_with(const Vec3& way, const Vec3& velocity, ClothMotion& motion);
+
 }  // namespace ft

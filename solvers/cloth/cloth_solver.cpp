@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
-#include <string_view>
 
 #include "baker/core/give_back.h"
 #include "baker/core/volume.h"
@@ -20,8 +19,11 @@
 #include "solvers/cloth/certificate.h"
 #include "solvers/cloth/cloth_model.h"
 #include "solvers/cloth/coarse_solver.h"
+#include "solvers/cloth/first_state.h"
+#include "solvers/cloth/frame_incidents.h"
 #include "solvers/cloth/pins.h"
 #include "solvers/cloth/riding_solver.h"
+#include "solvers/cloth/settling.h"
 #include "solvers/cloth/sewing.h"
 #include "solvers/cloth/substep_count.h"
 #include "solvers/cloth/tangles.h"
@@ -43,13 +45,6 @@ constexpr double k_fastest_wreck = 10;  ///< the speed that it has then, at most
 /// only, and what the iterations leave is lost to a garment that swings on them. It fell half as far as it should.
 constexpr double k_most_lost = 0.1;
 constexpr int k_times_lost = 4;
-/// Cloth that starts through cloth has so long to get out of it before the pre-roll, and no longer than this after the
-/// last crossing that was less [s].
-constexpr double k_longest_settling = 2, k_patience = 1;
-/// The block of a state that has settled: frames, crossings that are left, the fewest, and after how many frames those
-/// were reached first.
-constexpr std::string_view k_settling = "settling";
-
 double elapsed(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
 }
@@ -105,9 +100,9 @@ class ClothSolver final : public Solver {
     return {first, first + static_cast<std::ptrdiff_t>(model_->absence.body_count())};
   }
 
-  State initial_state() const override;
+  State initial_state() const override { return first_state(*model_, tangled_at_start_); }
   FrameReport advance_frame(State& state) const override;
-  Settling settling(const State& state) const override;
+  Settling settling(const State& state) const override { return settling_of(model_->setup, state); }
   FrameReport settle_frame(State& state) const override;
 
  private:
@@ -118,9 +113,6 @@ class ClothSolver final : public Solver {
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
   void take_along(const Frame& frame, ClothMotion& motion, FrameReport& report) const;
   void find_torn(const Teleport* teleport, Frame& frame) const;
-  void tell_of_torn(const Frame& frame, const ClothMotion& motion, FrameReport& report) const;
-  void tell_of_haste(const ClothMotion& motion, FrameReport& report) const;
-  bool hold_jumps(double time_t0, double time_t1) const;
 
   std::unique_ptr<ClothModel> model_;
   TornBody torn_body_;
@@ -148,50 +140,6 @@ struct ClothSolver::Frame {
     return out;
   }
 };
-
-State ClothSolver::initial_state() const {
-  State state;
-  const ClothSetup& setup = model_->setup;
-  state.frame = setup.first_frame - setup.preroll_frames;
-  state.time = -setup.preroll_frames / setup.fps;
-  ClothMotion m;
-  const std::span<const Vec3> x = model_->start.empty() ? model_->contact.rest : model_->start;
-  m.x.assign(x.begin(), x.end());
-  m.v.assign(m.x.size(), Vec3::Zero());
-  if (model_->collider) {
-    std::vector<Vec3> drawn, feasible;
-    std::vector<char> deep;
-    model_->collider->drawn(state.time, drawn);
-    model_->collider->feasible(state.time, drawn, feasible, &deep);
-    m.absent = model_->absence.at_start(deep);
-  }
-  m.tangled = tangled_at_start_;
-  m.tangled.resize(m.x.size(), 0);
-  // A history of constant acceleration makes the integrator exact for free fall from the first step on.
-  const double h = 1.0 / (setup.fps * setup.min_substeps);
-  m.x_previous = m.x_older = m.x;
-  m.v_previous = m.v_older = m.v;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    if (model_->unused[i]) continue;
-    m.x_previous[i] += 0.5 * h * h * setup.gravity;
-    m.v_previous[i] -= h * setup.gravity;
-    m.x_older[i] += 2 * h * h * setup.gravity;
-    m.v_older[i] -= 2 * h * setup.gravity;
-  }
-  for (const PinPoint& pin : model_->pins) {
-    if (pin.hold.share(state.time) == 0) continue;
-    m.x_previous[at(pin.vertex)] = m.x_older[at(pin.vertex)] = m.x[at(pin.vertex)];
-    m.v_previous[at(pin.vertex)] = m.v_older[at(pin.vertex)] = m.v[at(pin.vertex)];
-  }
-  // Nor does cloth that is still to be sewn fall.
-  std::vector<Vec3> eased(m.x.size(), Vec3::Zero());
-  if (ease_sewing(*model_, state.time, std::vector<Vec3>(m.x.size(), Vec3::Zero()), eased))
-    for (std::size_t i = 0; i < m.x.size(); ++i)
-      if (eased[i] != Vec3::Zero()) m.x_previous[i] = m.x_older[i] = m.x[i], m.v_previous[i] = m.v_older[i] = m.v[i];
-  m.h_previous = m.h_older = h;
-  store(state, m);
-  return state;
-}
 
 /// Adds what a substep did to the body; torques are about the origin until the frame is over.
 void ClothSolver::add_forces(const AdvanceReport& step, double duration, FrameReport& report) const {
@@ -246,7 +194,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
       push.assign(m.x.size(), Vec3::Zero());
       if (ease_sewing(*model_, t0 + h, m.v, push)) in.push = push;
     }
-    if (hold_jumps(t0, t0 + h)) m.h_previous = 0;
+    if (hold_jumps(*model_, t0, t0 + h)) m.h_previous = 0;
     // What is faster than the steps that there are can follow meets more with a power of its speed.
     if ((hurried || substeps >= model_->setup.max_substeps) && slow_down(*model_, h, m)) m.h_previous = 0;
     in.friction_share = sewing_friction(*model_, t0 + h);
@@ -269,18 +217,8 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     deep.swap(deep_next);
     pins.swap(pins_next);
   }
-  if (hurried) tell_of_haste(m, report);
+  if (hurried) report.incidents.push_back(haste_incident(*model_, m, report.frame));
   return lost;
-}
-
-/// Something lets go or takes hold at once. The integrator is then started anew by a step of implicit Euler: the
-/// history knows nothing of the new force, and cloth that is let go would stay behind free fall by half a substep for
-/// good.
-bool ClothSolver::hold_jumps(double time_t0, double time_t1) const {
-  const auto jumps = [&](const auto& point) { return point.hold.jumps(time_t0, time_t1); };
-  const auto& attachments = model_->attachments;
-  return std::any_of(model_->pins.begin(), model_->pins.end(), jumps) ||
-         std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
 /// The cloth goes where most of the body goes, and meets none of it.
@@ -289,12 +227,7 @@ void ClothSolver::take_along(const Frame& frame, ClothMotion& m, FrameReport& re
   const Vec3 way = TornBody::common_move(body_.start().feasible, body_.end().feasible);
   const double speed = way.norm() / duration;
   const Vec3 v = (speed > k_fastest_wreck ? k_fastest_wreck / speed : 1.0) / duration * way;
-  for (Vec3& x : m.x) x += way;
-  m.x_previous = m.x_older = m.x;
-  std::fill(m.v.begin(), m.v.end(), v);
-  m.v_previous = m.v_older = m.v;
-  m.h_previous = m.h_older = 0;
-  std::fill(m.absent.begin(), m.absent.end(), char{1});
+  take_along_with(way, v, m);
   report.substeps = 1;
   AdvanceReport nothing;
   nothing.on_body.resize(model_->setup.garments.size());
@@ -309,53 +242,6 @@ void ClothSolver::find_torn(const Teleport* teleport, Frame& frame) const {
   });
 }
 
-/// What of the body was not met because it is torn, at the first garment's vertex that is nearest.
-void ClothSolver::tell_of_torn(const Frame& frame, const ClothMotion& m, FrameReport& report) const {
-  const auto first = std::find(frame.torn.begin(), frame.torn.end(), char{1}) - frame.torn.begin();
-  const auto count = std::count(frame.torn.begin(), frame.torn.end(), char{1});
-  const Vec3& place = body_.end().feasible[at(first)];
-  std::size_t nearest = 0;
-  for (std::size_t i = 1; i < m.x.size(); ++i)
-    if ((m.x[i] - place).squaredNorm() < (m.x[nearest] - place).squaredNorm()) nearest = i;
-  const int vertex = static_cast<int>(nearest), garment = model_->garment_of(vertex);
-  const auto& parts = model_->collider->trajectory().surface().parts;
-  Incident out;
-  out.kind = Incident::Kind::k_released;
-  out.frame = report.frame;
-  out.system = model_->setup.garments[at(garment)].name;
-  out.vertex = vertex - model_->first_vertex[at(garment)];
-  out.place = m.x[nearest];
-  out.text = "the body is torn: the cloth does not meet " + std::to_string(count) +
-             " vertices of the collider that leap or span a gap in this frame, at " +
-             parts[at(model_->collider->part_of_vertex()[at(first)])].name +
-             (frame.wrecked() ? "; so much that the cloth is only taken along" : "") + " (look at the animation)";
-  report.released_vertices += static_cast<int>(count);
-  report.incidents.push_back(std::move(out));
-}
-
-/// A frame that was cut short, at the cloth that is stretched most.
-void ClothSolver::tell_of_haste(const ClothMotion& m, FrameReport& report) const {
-  const RestEdges& rest = model_->rest_edges;
-  double most = 0;
-  int vertex = 0;
-  for (std::size_t e = 0; e < rest.edges.size(); ++e) {
-    const auto [a, b] = rest.edges[e];
-    const double stretch = (m.x[at(a)] - m.x[at(b)]).norm() / rest.lengths[e];
-    if (stretch > most) most = stretch, vertex = a;
-  }
-  const int garment = model_->garment_of(vertex);
-  Incident out;
-  out.kind = Incident::Kind::k_cut_short;
-  out.frame = report.frame;
-  out.system = model_->setup.garments[at(garment)].name;
-  out.vertex = vertex - model_->first_vertex[at(garment)];
-  out.place = m.x[at(vertex)];
-  out.text =
-      "cut short: the frame took many times as long as frames usually do; what blocks the cloth is let go at once "
-      "(look at the animation there)";
-  report.incidents.push_back(std::move(out));
-}
-
 FrameReport ClothSolver::advance_frame(State& state) const {
   const std::lock_guard lock(one_at_a_time_);
   const ClothSetup& setup = model_->setup;
@@ -364,20 +250,6 @@ FrameReport ClothSolver::advance_frame(State& state) const {
   frame.t0 = (state.frame - setup.first_frame) / setup.fps;
   frame.t1 = (frame.number - setup.first_frame) / setup.fps;
   return advance(frame, state);
-}
-
-Settling ClothSolver::settling(const State& state) const {
-  const ClothSetup& setup = model_->setup;
-  const std::vector<double>* known = state.find(k_settling);
-  Settling out;
-  if (known) out.frames = static_cast<int>((*known)[0]), out.crossings = static_cast<int>((*known)[1]);
-  if (setup.preroll_frames == 0 || state.frame != setup.first_frame - setup.preroll_frames) return out;
-  const std::vector<double>* tangled = state.find("tangled");
-  CHECK(tangled);
-  out.goes_on = std::any_of(tangled->begin(), tangled->end(), [](double is) { return is != 0; }) &&
-                out.frames < k_longest_settling * setup.fps &&
-                (!known || out.frames - (*known)[3] < k_patience * setup.fps);
-  return out;
 }
 
 /// Before the pre-roll every pose is its first.
@@ -389,10 +261,7 @@ FrameReport ClothSolver::settle_frame(State& state) const {
   frame.t1 = (state.frame - setup.first_frame) / setup.fps;
   frame.t0 = frame.t1 - 1 / setup.fps;
   const FrameReport report = advance(frame, state);
-  const std::vector<double>* known = state.find(k_settling);
-  const double frames = known ? (*known)[0] + 1 : 1, left = report.crossings_self;
-  const bool fewer = !known || left < (*known)[2];
-  state.set(k_settling, {frames, left, fewer ? left : (*known)[2], fewer ? frames : (*known)[3]});
+  count_settled(report.crossings_self, state);
   return report;
 }
 
@@ -452,7 +321,11 @@ FrameReport ClothSolver::advance(Frame frame, State& state) const {
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
-  if (!frame.torn.empty()) tell_of_torn(frame, motion, report);
+  if (!frame.torn.empty()) {
+    report.incidents.push_back(
+        torn_incident(*model_, motion, {frame.torn, frame.wrecked(), body_.end().feasible, report.frame}));
+    report.released_vertices += static_cast<int>(std::count(frame.torn.begin(), frame.torn.end(), char{1}));
+  }
   certificate_.describe(frame.t1, body_.end().drawn, motion, report);
   report.profile.certificate += elapsed(certificate);
   store(state, motion);

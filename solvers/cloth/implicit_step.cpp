@@ -10,6 +10,7 @@
 #include "baker/core/stopwatch.h"
 #include "solvers/cloth/newton_direction.h"
 #include "solvers/cloth/pin_pull.h"
+#include "solvers/cloth/step_measures.h"
 
 namespace ft {
 namespace {
@@ -35,44 +36,6 @@ constexpr int k_most_halvings = 4;
 /// Truncation and lagged friction leave the exact descent direction: a rise by this share is no reason to halve.
 constexpr double k_tolerated_rise = 1e-3;
 constexpr double k_energy_noise = 1e-9;  ///< rounding of the potential [J]
-
-/// Root mean square, over all edges, of the change of length by the length at rest, when their ends move from where
-/// they are [m].
-double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::span<const Vec3> move) {
-  const double squares = parallel_sum(rest.edges.size(), 1024, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto [a, b] = rest.edges[k];
-      const Vec3 edge = from[at(a)] - from[at(b)];
-      const double change = ((edge + move[at(a)] - move[at(b)]).norm() - edge.norm()) / rest.lengths[k];
-      sum += change * change;
-    }
-    return sum;
-  });
-  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
-}
-
-/// Largest displacement of the centre of mass, between two states, of a garment that is not held (per garment, not 0:
-/// held) [m].
-double largest_drift(const ClothModel& model, std::span<const char> held, std::span<const Vec3> from,
-                     std::span<const Vec3> to) {
-  using Moment = Eigen::Vector4d;  // mass times displacement, mass
-  double largest = 0;
-  for (std::size_t g = 0; g < held.size(); ++g) {
-    if (held[g] != 0) continue;
-    const auto first = at(model.first_vertex[g]), count = at(model.first_vertex[g + 1]) - first;
-    const Moment sum = parallel_sum(count, k_block, Moment(0, 0, 0, 0), [&](std::size_t begin, std::size_t end) {
-      Moment own(0, 0, 0, 0);
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        own.head<3>() += model.mass[i] * (to[i] - from[i]);
-        own[3] += model.mass[i];
-      }
-      return own;
-    });
-    if (sum[3] > 0) largest = std::max(largest, sum.head<3>().norm() / sum[3]);
-  }
-  return largest;
-}
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "solvers/cloth/pins.h"
 
+#include <algorithm>
+
 #include "collision/nearest_point.h"
 #include "solvers/cloth/attach.h"
 
@@ -78,6 +80,13 @@ void pin_targets(const ClothModel& model, std::span<const Vec3> drawn, std::span
     const Vec3 &a = drawn[at(pin.triangle[0])], &b = drawn[at(pin.triangle[1])], &c = drawn[at(pin.triangle[2])];
     targets[p] = pin.weight[0] * a + pin.weight[1] * b + pin.weight[2] * c + triangle_frame(a, b, c) * pin.offset;
   }
+}
+
+bool hold_jumps(const ClothModel& model, double time_t0, double time_t1) {
+  const auto jumps = [&](const auto& point) { return point.hold.jumps(time_t0, time_t1); };
+  const auto& attachments = model.attachments;
+  return std::any_of(model.pins.begin(), model.pins.end(), jumps) ||
+         std::any_of(attachments.begin(), attachments.end(), jumps);
 }
 
 }  // namespace ft

@@ -20,4 +20,9 @@ PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std
 /// Where the pins are, from the drawn body's positions.
 void pin_targets(const ClothModel& model, std::span<const Vec3> drawn, std::span<Vec3> targets);
 
+/// Something lets go or takes hold at once between the times [s]. The integrator is then started anew by a step of
+/// implicit Euler: the history knows nothing of the new force, and cloth that is let go would stay behind free fall by
+/// half a substep for good.
+bool hold_jumps(const ClothModel& model, double time_t0, double time_t1);
+
 }  // namespace ft
