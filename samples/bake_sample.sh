@@ -1,7 +1,7 @@
 # How a sample is baked. Sourced by samples/run.sh, which sets $root (with the folders samples/ and out/ in it), $bin, and the
 # functions say and fail.
 #   samples/NAME/needs.txt      files that it reads and that are not ours; without them it is skipped
-#   samples/NAME/garments.sh    makes its garments
+#   samples/NAME/garments.sh    makes its garments, and the set where that is ours, too
 #   samples/NAME/variants.txt   bakes of one shot, to be seen beside each other: VARIANT [bake arguments] on each line
 
 # Lines of variants.txt without comments; nothing for a sample that is one bake.
@@ -35,7 +35,8 @@ run_sample() {
   fi
   if [ -f "$folder/garments.sh" ]; then
     say "Making the garments of sample $name"
-    (cd "$folder" && make_garments=$bin/make_garments bash -euo pipefail garments.sh) || fail "the garments of $name could not be made (see above)"
+    (cd "$folder" && make_garments=$bin/make_garments make_set=$bin/make_set bash -euo pipefail garments.sh) ||
+      fail "the garments of $name could not be made (see above)"
   fi
   mapfile -t folders < <(bake_folders "$name")
   if [ ! -f "$folder/variants.txt" ]; then

@@ -26,7 +26,7 @@ done
 
 # shellcheck disable=SC2086
 install_packages $packages_build $packages_samples
-build release followthrough make_garments
+build release followthrough make_garments make_set
 bin=$root/build/release/bin
 
 summary=()
