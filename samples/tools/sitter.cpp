@@ -34,6 +34,7 @@ std::string sitter_bvh(const SitterSettings& settings, const ChairSettings& chai
   for (int sample = 0; sample / settings.fps <= settings.seconds; ++sample) {
     const double t = sample / settings.fps, back = smooth(0.3, 1.6, t), down = smooth(0.3, 1.9, t);
     Pose pose;
+    pose.elbows = Vec3(0.7, -1, -0.3);
     pose.hips = standing + Vec3(0, down * (sitting.y() - standing.y()), back * sitting.z());
     pose.lean = -40 * k_rad * smooth(0.2, 1.1, t) * (1 - smooth(1.3, 2.3, t));
     plant(figure, pose);

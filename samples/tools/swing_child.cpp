@@ -45,7 +45,7 @@ class Child {
     out.hips.y() += 0.25 * sits * (1 - sits);
 
     out.tilt = sits * angle;
-    out.lean = sits * 5 * k_rad + 15 * k_rad * pump;
+    out.lean = sits * 8 * k_rad + 12 * k_rad * pump;
     const double thigh = out.tilt + sits * 90 * k_rad + 4 * k_rad * pump;
     const double knee = sits * (75 * k_rad + 80 * k_rad * (1 - sits)) - 48 * k_rad * pump;
     for (const std::size_t side : {0, 1}) {
