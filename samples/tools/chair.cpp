@@ -1,5 +1,7 @@
 #include "samples/tools/chair.h"
 
+#include <algorithm>
+
 #include "samples/tools/solids.h"
 
 namespace ft::sets {

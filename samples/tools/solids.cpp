@@ -1,5 +1,6 @@
 #include "samples/tools/solids.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
