@@ -22,7 +22,7 @@ class BodyOnly final : public Solver {
     state.time = -preroll_frames_ / fps_;
     return state;
   }
-  FrameReport advance_frame(State& state) const override {
+  FrameReport advance_frame(State& state) override {
     ++state.frame;
     state.time = (state.frame - first_frame_) / fps_;
     FrameReport report;

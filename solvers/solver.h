@@ -133,9 +133,9 @@ class Solver {
   virtual Settling settling(const State&) const { return {}; }
   /// One frame with the primary as it is at the state's time; the state's frame and time stay. Only while settling()
   /// goes on.
-  virtual FrameReport settle_frame(State&) const { return {}; }
+  virtual FrameReport settle_frame(State&) { return {}; }
   /// From state.frame to state.frame + 1. Always returns with a finite state; what could not be kept is in the report.
-  virtual FrameReport advance_frame(State& state) const = 0;
+  virtual FrameReport advance_frame(State& state) = 0;
 };
 
 }  // namespace ft

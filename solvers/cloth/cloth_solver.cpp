@@ -101,16 +101,16 @@ class ClothSolver final : public Solver {
   }
 
   State initial_state() const override { return first_state(*model_, tangled_at_start_); }
-  FrameReport advance_frame(State& state) const override;
+  FrameReport advance_frame(State& state) override;
   Settling settling(const State& state) const override { return settling_of(model_->setup, state); }
-  FrameReport settle_frame(State& state) const override;
+  FrameReport settle_frame(State& state) override;
 
  private:
   struct Frame;
-  FrameReport advance(Frame frame, State& state) const;
+  FrameReport advance(Frame frame, State& state);
   void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
   Vec3 centre_of_wearer(std::size_t garment) const;
-  double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report) const;
+  double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report);
   void take_along(const Frame& frame, ClothMotion& motion, FrameReport& report) const;
   void find_torn(const Teleport* teleport, Frame& frame) const;
 
@@ -118,9 +118,9 @@ class ClothSolver final : public Solver {
   TornBody torn_body_;
   std::vector<char> tangled_at_start_;  ///< as ClothMotion has it; empty: nothing is
   // Scratch only: forgotten between frames, one frame at a time.
-  mutable BodyAdvance advance_;
-  mutable Certificate certificate_;
-  mutable BodyAhead body_;
+  BodyAdvance advance_;
+  Certificate certificate_;
+  BodyAhead body_;
   mutable std::mutex one_at_a_time_;
 };
 
@@ -164,7 +164,7 @@ Vec3 ClothSolver::centre_of_wearer(std::size_t garment) const {
 }
 
 /// Returns the mean of StepResult::lost_weight.
-double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) const {
+double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) {
   if (frame.wrecked()) return take_along(frame, m, report), 0.0;
   const double h = (frame.t1 - frame.t0) / substeps;
   double lost = 0;
@@ -242,7 +242,7 @@ void ClothSolver::find_torn(const Teleport* teleport, Frame& frame) const {
   });
 }
 
-FrameReport ClothSolver::advance_frame(State& state) const {
+FrameReport ClothSolver::advance_frame(State& state) {
   const std::lock_guard lock(one_at_a_time_);
   const ClothSetup& setup = model_->setup;
   Frame frame;
@@ -253,7 +253,7 @@ FrameReport ClothSolver::advance_frame(State& state) const {
 }
 
 /// Before the pre-roll every pose is its first.
-FrameReport ClothSolver::settle_frame(State& state) const {
+FrameReport ClothSolver::settle_frame(State& state) {
   const std::lock_guard lock(one_at_a_time_);
   const ClothSetup& setup = model_->setup;
   Frame frame;
@@ -265,7 +265,7 @@ FrameReport ClothSolver::settle_frame(State& state) const {
   return report;
 }
 
-FrameReport ClothSolver::advance(Frame frame, State& state) const {
+FrameReport ClothSolver::advance(Frame frame, State& state) {
   const auto clock = std::chrono::steady_clock::now();
   const ClothSetup& setup = model_->setup;
   const auto body_clock = std::chrono::steady_clock::now();

@@ -42,9 +42,9 @@ class CoarseSolver final : public Solver {
     return inner_->collider_absent(state, system);
   }
   State initial_state() const override { return inner_->initial_state(); }
-  FrameReport advance_frame(State& state) const override { return to_given(inner_->advance_frame(state)); }
+  FrameReport advance_frame(State& state) override { return to_given(inner_->advance_frame(state)); }
   Settling settling(const State& state) const override { return inner_->settling(state); }
-  FrameReport settle_frame(State& state) const override { return to_given(inner_->settle_frame(state)); }
+  FrameReport settle_frame(State& state) override { return to_given(inner_->settle_frame(state)); }
 
  private:
   FrameReport to_given(FrameReport report) const {

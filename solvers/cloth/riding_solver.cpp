@@ -47,30 +47,30 @@ class RidingSolver final : public Solver {
     state.set(k_block, std::vector<double>(riders_.group_count(), 0.0));
     return state;
   }
-  FrameReport advance_frame(State& state) const override {
+  FrameReport advance_frame(State& state) override {
     return carry_along(state, [&] { return inner_->advance_frame(state); });
   }
   Settling settling(const State& state) const override { return inner_->settling(state); }
-  FrameReport settle_frame(State& state) const override {
+  FrameReport settle_frame(State& state) override {
     return carry_along(state, [&] { return inner_->settle_frame(state); });
   }
 
  private:
   template <class Advance>
-  FrameReport carry_along(State& state, Advance&& advance) const;
-  void certify(State& state, FrameReport& report) const;
+  FrameReport carry_along(State& state, Advance&& advance);
+  void certify(State& state, FrameReport& report);
   void tell(std::span<const Crossing> crossings, std::span<const Vec3> x, const char* text, FrameReport& report) const;
 
   std::unique_ptr<Solver> inner_;
   AllRiders riders_;
-  mutable CheckedSurface collider_;  // scratch: its box tree is kept from frame to frame
-  mutable std::mutex one_at_a_time_;
+  CheckedSurface collider_;  // scratch: its box tree is kept from frame to frame
+  std::mutex one_at_a_time_;
   bool certified_;
 };
 
 /// What rides, after what moves has gone on by a frame.
 template <class Advance>
-FrameReport RidingSolver::carry_along(State& state, Advance&& advance) const {
+FrameReport RidingSolver::carry_along(State& state, Advance&& advance) {
   const std::lock_guard lock(one_at_a_time_);
   FrameReport report = advance();
   for (Incident& incident : report.incidents) riders_.to_given(incident);
@@ -80,7 +80,7 @@ FrameReport RidingSolver::carry_along(State& state, Advance&& advance) const {
 }
 
 /// Draws in what crosses, then counts what crosses nevertheless.
-void RidingSolver::certify(State& state, FrameReport& report) const {
+void RidingSolver::certify(State& state, FrameReport& report) {
   std::vector<Vec3> x(riders_.vertex_count()), body;
   inner_->collider_positions(state, body);
   collider_.move(body);

@@ -50,7 +50,7 @@ class LockstepSolver final : public Solver {
   }
   bool moves_primary() const override { return model_.has_prop() && model_.setup.prop->two_way; }
   State initial_state() const override;
-  FrameReport advance_frame(State& state) const override;
+  FrameReport advance_frame(State& state) override;
 
  private:
   struct Moving {
@@ -64,11 +64,11 @@ class LockstepSolver final : public Solver {
     double residual = 0;  ///< largest of what they still wanted to move [m]
   };
   void substep(double time, double h, double frame_time, int halvings, Moving& moving, Unsettled& unsettled,
-               FrameReport& report) const;
+               FrameReport& report);
   Incident incident_at(int point, Incident::Kind kind, const Moving& moving, const FrameReport& report) const;
-  bool is_released(double time, double h, const Moving& moving) const;
-  void hold_again(Moving& moving, FrameReport& report) const;
-  void judge(const Moving& moving, FrameReport& report) const;
+  bool is_released(double time, double h, const Moving& moving);
+  void hold_again(Moving& moving, FrameReport& report);
+  void judge(const Moving& moving, FrameReport& report);
   void store(State& state, const Moving& moving) const;
   Moving load(const State& state) const;
   std::array<Vec3, 4> track(double time) const { return model_.frame.place(model_.setup.prop->track(time).pose); }
@@ -77,8 +77,8 @@ class LockstepSolver final : public Solver {
   std::vector<CordTubes> tubes_;
   std::vector<Triangle> prop_triangles_;
   // Scratch only: forgotten between frames, one frame at a time.
-  mutable LockstepStep step_;
-  mutable std::mutex one_at_a_time_;
+  LockstepStep step_;
+  std::mutex one_at_a_time_;
 };
 
 void LockstepSolver::store(State& state, const Moving& m) const {
@@ -128,7 +128,7 @@ State LockstepSolver::initial_state() const {
 }
 
 /// At the start of a substep. A history on the track makes the integrator exact for the flight that follows.
-bool LockstepSolver::is_released(double time, double h, const Moving& m) const {
+bool LockstepSolver::is_released(double time, double h, const Moving& m) {
   const RigidProp& prop = *model_.setup.prop;
   if (!prop.two_way) return false;
   if (time >= prop.release - 1e-9 * h) return true;
@@ -143,7 +143,7 @@ bool LockstepSolver::is_released(double time, double h, const Moving& m) const {
 }
 
 void LockstepSolver::substep(double time, double h, double frame_time, int halvings, Moving& m, Unsettled& unsettled,
-                             FrameReport& report) const {
+                             FrameReport& report) {
   std::array<Vec3, 4> driven;
   bool is_driven = false;
   if (model_.has_prop() && !m.free) {
@@ -220,7 +220,7 @@ Incident LockstepSolver::incident_at(int point, Incident::Kind kind, const Movin
 }
 
 /// What was let through and is out of the prop's reach again, is held back by it again.
-void LockstepSolver::hold_again(Moving& m, FrameReport& report) const {
+void LockstepSolver::hold_again(Moving& m, FrameReport& report) {
   report.released_vertices = static_cast<int>(std::count(m.through.begin(), m.through.end(), 1.0));
   if (report.released_vertices == 0) return;
   Incident incident =
@@ -236,7 +236,7 @@ void LockstepSolver::hold_again(Moving& m, FrameReport& report) const {
     if (meets[v] == 0) m.through[v] = 0;
 }
 
-void LockstepSolver::judge(const Moving& m, FrameReport& report) const {
+void LockstepSolver::judge(const Moving& m, FrameReport& report) {
   const auto crossings = step_.contact().crossings(m.motion.x);
   report.crossings_body = report.crossings_drawn = static_cast<int>(crossings.size());
   std::vector<double> strain;
@@ -258,7 +258,7 @@ void LockstepSolver::judge(const Moving& m, FrameReport& report) const {
   report.incidents.push_back(std::move(incident));
 }
 
-FrameReport LockstepSolver::advance_frame(State& state) const {
+FrameReport LockstepSolver::advance_frame(State& state) {
   const std::lock_guard lock(one_at_a_time_);
   const auto clock = std::chrono::steady_clock::now();
   const LockstepSetup& setup = model_.setup;

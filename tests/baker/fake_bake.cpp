@@ -52,7 +52,7 @@ class FakeSolver final : public Solver {
         for (int k = 0; k < 3; ++k) state.block(std::string("x").append(std::to_string(s))).push_back(p[k]);
     return state;
   }
-  FrameReport advance_frame(State& state) const override {
+  FrameReport advance_frame(State& state) override {
     if (behaviour_.on_frame) behaviour_.on_frame(state.frame + 1);
     ++state.frame;
     state.time = (state.frame - setup_.first_frame) / setup_.fps;

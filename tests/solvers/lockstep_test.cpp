@@ -17,7 +17,7 @@ std::unique_ptr<Solver> made(LockstepSetup setup) {
   return std::move(*solver);
 }
 
-FrameReport advance(const Solver& solver, State& state, int frames) {
+FrameReport advance(Solver& solver, State& state, int frames) {
   FrameReport last;
   for (int f = 0; f < frames; ++f) last = solver.advance_frame(state);
   return last;

@@ -40,7 +40,7 @@ class FollowSolver final : public Solver {
     state.time = -preroll_ / fps_;
     return state;
   }
-  FrameReport advance_frame(State& state) const override {
+  FrameReport advance_frame(State& state) override {
     ++state.frame;
     state.time = (state.frame - first_frame_) / fps_;
     FrameReport report;

@@ -67,7 +67,7 @@ Walked walk(const Scene& scene, const Look& look, const std::function<void(Cloth
   const double mass = cloth_mass(setup);
   auto made = make_cloth_solver(setup);
   CHECK(made.ok());
-  const Solver& solver = **made;
+  Solver& solver = **made;
   State state = solver.initial_state();
   Walked out;
   AllCloth cloth = all_cloth(solver, state);
