@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "baker/located.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/shot_values.h"
 #include "solvers/standins/registry.h"
 
 namespace ft {
@@ -111,29 +113,25 @@ Result<StandInSpec> stand_in_spec(const StandInKeys& k, const Shot& shot) {
 
 Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, DrivenBody body, double longest_step,
                                const Vec3& turn_axes) {
-  const auto located = [&](Error error) {
-    error.where = shot.file.filename().string() + ": primary \"" + spec.name + "\"" +
-                  (error.where.empty() ? "" : ": " + error.where);
-    return error;
-  };
+  const auto at_primary = [&](const Error& error) { return located(error, shot, "primary " + in_quotes(spec.name)); };
   HybridPass out;
   out.names = stood_in_for(shot, spec.name);
   std::vector<std::unique_ptr<StandIn>> stand_ins;
   for (const StandInKeys* keys : stand_ins_of(shot, spec.name)) {
     auto made_of = stand_in_spec(*keys, shot);
-    if (!made_of) return located(made_of.error());
+    if (!made_of) return at_primary(made_of.error());
     auto made = make_stand_in(*made_of);
-    if (!made) return located(made.error());
+    if (!made) return at_primary(made.error());
     stand_ins.push_back(std::move(*made));
     if (!keys->on.empty()) out.names.push_back(keys->name);
   }
   if (!(body.mass.mass > 0))
-    return located(usage_error("a hybrid pass needs the primary's mass", "", "write mass, in kg"));
+    return at_primary(usage_error("a hybrid pass needs the primary's mass", "", "write mass, in kg"));
   out.mass = body.mass.mass;
   out.settings = settings_of(shot, spec);
   out.settings.turn_axes = turn_axes;
   auto deviation = Deviation::make(std::move(body), std::move(stand_ins), out.settings);
-  if (!deviation) return located(deviation.error());
+  if (!deviation) return at_primary(deviation.error());
 
   const int pieces = std::max(1, static_cast<int>(std::ceil(1 / (shot.fps * longest_step) - 1e-9)));
   out.dt = 1 / (shot.fps * pieces);
@@ -145,7 +143,7 @@ Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, Driven
     HybridFrame now{frame + 1, {}, 0, 0, {}};
     for (int piece = 1; piece <= pieces; ++piece) {
       const auto step = deviation->advance(state, (frame - shot.first_frame) / shot.fps + piece * out.dt);
-      if (!step) return located(step.error());
+      if (!step) return at_primary(step.error());
       out.motion.push_back(step->motion);
       out.offsets.push_back(state.offset);
       now.mean += (1.0 / pieces) * step->wrench;

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "baker/driven_body.h"
+#include "baker/located.h"
 #include "baker/primary_mass.h"
+#include "io/shot/shot_values.h"
 
 namespace ft {
 namespace {
@@ -160,15 +162,11 @@ bool has_joints(const PlacedCharacter& placed) {
 Result<YieldedCharacter> yield_character(const Shot& shot, const PrimarySpec& spec, const ImportRequest& request,
                                          std::shared_ptr<const PlacedCharacter> character, const Trajectory& trajectory,
                                          double mass) {
-  const auto located = [&](Error error) {
-    error.where = shot.file.filename().string() + ": primary \"" + spec.name + "\"" +
-                  (error.where.empty() ? "" : ": " + error.where);
-    return error;
-  };
+  const auto at_primary = [&](const Error& error) { return located(error, shot, "primary " + in_quotes(spec.name)); };
   const PlacedCharacter& placed = *character;
   if (placed.clip < 0)
-    return located(usage_error("plays no clip: there is no motion that could yield", {},
-                               "name one of its clips, or the file with its animation"));
+    return at_primary(usage_error("plays no clip: there is no motion that could yield", {},
+                                  "name one of its clips, or the file with its animation"));
   const std::vector<Vec3> bind = bind_pose_of(trajectory);
   const std::vector<const StandInKeys*> stand_ins = stand_ins_of(shot, spec.name);
   const std::vector<Foot> feet = find_feet(placed, bind);
@@ -192,12 +190,12 @@ Result<YieldedCharacter> yield_character(const Shot& shot, const PrimarySpec& sp
   };
   if (spec.limbs == "planted") {
     if (feet.empty())
-      return located(usage_error("limbs = \"planted\", but no legs are found by the names of its joints", {},
-                                 "write limbs = \"rigid\""));
+      return at_primary(usage_error("limbs = \"planted\", but no legs are found by the names of its joints", {},
+                                    "write limbs = \"rigid\""));
     adjustment.limbs = planted_legs(shot, stand_ins, feet, trajectory, out.pass, placed.playback);
   }
   auto motion = adjust_motion(placed.character, placed.clip, placed.placement, adjustment);
-  if (!motion) return located(motion.error());
+  if (!motion) return at_primary(motion.error());
   if (motion->worst_miss > k_miss)
     out.notes.push_back(
         fmt::format("planted feet of \"{}\" are up to {:.3g} mm from their places: its legs do not "
@@ -205,9 +203,9 @@ Result<YieldedCharacter> yield_character(const Shot& shot, const PrimarySpec& sp
                     spec.name, 1e3 * motion->worst_miss));
 
   PlacedCharacter moved = placed;
-  if (Status s = apply_changes(moved.character, moved.clip, motion->channels); !s) return located(s.error());
+  if (Status s = apply_changes(moved.character, moved.clip, motion->channels); !s) return at_primary(s.error());
   auto played = play(std::move(moved), request);
-  if (!played) return located(played.error());
+  if (!played) return at_primary(played.error());
   out.trajectory = std::move(played->trajectory);
   out.character = {request,
                    std::move(character),

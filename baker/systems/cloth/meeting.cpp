@@ -4,8 +4,7 @@
 #include <limits>
 
 #include "baker/core/disjoint_sets.h"
-#include "io/shot/shot_values.h"
-#include "io/shot/words.h"
+#include "io/shot/patterns.h"
 
 namespace ft {
 namespace {
@@ -110,18 +109,12 @@ std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan
 }
 
 Result<std::vector<char>> meets_of(const ClothSpec& cloth, std::span<const PrimaryPlan> primaries) {
-  std::vector<char> out(primaries.size(), 0);
   std::vector<std::string> names;
   for (const PrimaryPlan& primary : primaries) names.push_back(primary.name);
-  for (const std::string& pattern : cloth.meets) {
-    bool any = pattern == "*";
-    for (std::size_t p = 0; p < names.size(); ++p)
-      if (matches(pattern, names[p])) out[p] = 1, any = true;
-    if (any) continue;
-    std::string word = pattern;
-    std::erase_if(word, [](char c) { return c == '*' || c == '?'; });
-    return usage_error("meets = " + in_quotes(printable(pattern)) + " names no primary", {}, suggestion(word, names));
-  }
+  const auto met = indices_like(cloth.meets, names, "meets", "primary");
+  if (!met) return met.error();
+  std::vector<char> out(primaries.size(), 0);
+  for (const int p : *met) out[at(p)] = 1;
   for (std::size_t p = 0; p < names.size(); ++p)
     if (names[p] == cloth.on) out[p] = 1;
   return out;

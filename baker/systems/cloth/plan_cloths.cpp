@@ -5,21 +5,19 @@
 #include <algorithm>
 #include <map>
 
+#include "baker/located.h"
 #include "baker/systems/cloth/pins.h"
 #include "baker/systems/cloth/vertex_maps.h"
 #include "baker/systems/plan_common.h"
 #include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/patterns.h"
 #include "io/shot/shot_values.h"
 #include "io/shot/weld.h"
 #include "io/shot/words.h"
 #include "solvers/cloth/coarse_garment.h"
 
 namespace ft {
-
-std::string cloth_place(const Shot& shot, const ClothSpec& cloth) {
-  return shot.file.filename().string() + ": cloth \"" + cloth.name + "\"";
-}
 
 namespace {
 
@@ -32,31 +30,12 @@ void place_garment(Mesh& mesh, const ClothSpec& spec) {
   }
 }
 
-Error at_place(Error error, std::string where) {
-  error.where = std::move(where);
-  return error;
-}
-
 /// Parts of a primary whose names are what one of the patterns says, ascending. key: "ignore".
 Result<std::vector<int>> parts_like(const std::vector<std::string>& patterns, const std::string& key,
                                     const PrimaryPlan& primary) {
-  const auto& parts = primary.trajectory->surface().parts;
   std::vector<std::string> names;
-  for (const SurfacePart& part : parts) names.push_back(part.name);
-  std::vector<int> out;
-  for (const std::string& pattern : patterns) {
-    const std::size_t before = out.size();
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (matches(pattern, names[i])) out.push_back(static_cast<int>(i));
-    if (out.size() > before) continue;
-    std::string word = pattern;
-    std::erase_if(word, [](char c) { return c == '*' || c == '?'; });
-    return usage_error(key + " = " + in_quotes(printable(pattern)) + " names no part of " + in_quotes(primary.name), {},
-                       suggestion(word, names));
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  for (const SurfacePart& part : primary.trajectory->surface().parts) names.push_back(part.name);
+  return indices_like(patterns, names, key, "part of " + in_quotes(primary.name));
 }
 
 /// ""hand_l", "hand_r" and 3 more".
@@ -78,11 +57,11 @@ Status add_ignored(const Shot& shot, const PrimarySpec& spec, const PrimaryPlan&
                                 primary.name, some_parts(parts, primary)));
   };
   auto of_all = parts_like(spec.ignore, "ignore", primary);
-  if (!of_all) return at_place(of_all.error(), shot.file.filename().string() + ": primary " + in_quotes(spec.name));
+  if (!of_all) return located(of_all.error(), shot, "primary " + in_quotes(spec.name));
   if (!worn.empty()) note("cloth does", *of_all);
   for (std::size_t g = 0; g < worn.size(); ++g) {
     auto own = parts_like(worn[g]->ignores, "ignores", primary);
-    if (!own) return at_place(own.error(), cloth_place(shot, *worn[g]));
+    if (!own) return located(own.error(), shot, worn[g]->owner());
     note("cloth " + in_quotes(worn[g]->name) + " does", *own);
     std::set_union(of_all->begin(), of_all->end(), own->begin(), own->end(),
                    std::back_inserter(group.setup.garments[g].ignores));
@@ -115,13 +94,10 @@ ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
 
 Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, ClothGroup& group,
                    std::vector<std::string>& notes) {
-  const auto located = [&](Error error) {
-    error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
-    return error;
-  };
+  const auto at_cloth = [&](const Error& error) { return located(error, shot, spec.owner()); };
   std::vector<std::string> mesh_notes;
   auto mesh = read_obj(spec.mesh, &mesh_notes);
-  if (!mesh) return located(mesh.error());
+  if (!mesh) return at_cloth(mesh.error());
   ClothGarment garment;
   SystemOutput output;
   garment.name = spec.name;
@@ -138,7 +114,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     output.weld = spec.weld;
   }
   if (const Status checked = check_garment(garment.mesh, output.in_file); !checked) {
-    Error error = located(checked.error());
+    Error error = at_cloth(checked.error());
     if (error.where.find(spec.mesh.filename().string()) == std::string::npos) error.where += ": " + spec.mesh.string();
     return error;
   }
@@ -150,7 +126,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   if (spec.rest == "pattern" || (spec.rest.empty() && !garment.mesh.stitches.empty())) {
     std::vector<std::string> pattern_notes;
     if (const Status cut = check_pattern(garment.mesh, spec.pattern_scale, pattern_notes, output.in_file); !cut)
-      return located(cut.error());
+      return at_cloth(cut.error());
     for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
     garment.pattern_scale = spec.pattern_scale;
   }
@@ -163,14 +139,14 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     notes.push_back(fmt::format("cloth \"{}\" is sewn in the shot's first frames: there is no pre-roll", spec.name));
 
   const Fabric* fabric = find_fabric(spec.fabric);
-  if (!fabric) return located(usage_error("fabric \"" + spec.fabric + "\" does not exist"));
+  if (!fabric) return at_cloth(usage_error("fabric \"" + spec.fabric + "\" does not exist"));
   garment.fabric = *fabric;
   for (const auto& [key, value] : spec.fabric_overrides)
     if (!set_fabric_value(garment.fabric, key, value))
-      return located(usage_error("fabric has no value \"" + key + "\""));
+      return at_cloth(usage_error("fabric has no value \"" + key + "\""));
 
   auto maps = resolve_maps(spec.maps, *output.mesh);
-  if (!maps) return located(maps.error());
+  if (!maps) return at_cloth(maps.error());
   garment.maps =
       output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
   garment.thickness = spec.thickness;
@@ -200,10 +176,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
 Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& primary, ClothGroup& group, std::size_t own,
                 std::vector<std::string>& notes) {
   auto& garments = group.setup.garments;
-  const auto located = [&](Error error) {
-    error.where = cloth_place(shot, spec) + (error.where.empty() ? "" : ": " + error.where);
-    return error;
-  };
+  const auto at_cloth = [&](const Error& error) { return located(error, shot, spec.owner()); };
   const SystemOutput& output = group.outputs[own];
   const auto body = bind_pose_of(*primary.trajectory);
   for (const PinSpec& pin_spec : spec.pins) {
@@ -213,14 +186,14 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
     CHECK(!to_cloth || target != garments.end());  // the shot file was judged
     auto resolved = to_cloth ? resolve_pin(pin_spec, *output.mesh, target->mesh.positions, triangulate(target->mesh))
                              : resolve_pin(pin_spec, *output.mesh, body, primary.trajectory->surface().triangles);
-    if (!resolved) return located(resolved.error());
+    if (!resolved) return at_cloth(resolved.error());
     ClothPin pin = output.joined_of.empty() ? std::move(*resolved) : on_joined(*resolved, output.joined_of);
     pin.hold = hold_span(pin_spec, shot);
     pin.opens = pin_spec.opens;
     pin.to_world = to_world;
     if (to_cloth) {
       pin.to = static_cast<int>(target - garments.begin());
-      if (const Status held = check_footholds(garments, own, pin, notes); !held) return located(held.error());
+      if (const Status held = check_footholds(garments, own, pin, notes); !held) return at_cloth(held.error());
     }
     garments[own].pins.push_back(std::move(pin));
   }

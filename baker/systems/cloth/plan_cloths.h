@@ -9,9 +9,6 @@ namespace ft {
 /// The cloths of one primary, as if they met nothing else; without poses.
 Result<std::unique_ptr<ClothGroup>> cloths_of(const Shot& shot, std::size_t primary, BakePlan& plan);
 
-/// Where an error of a cloth is: "shot.toml: cloth "skirt"".
-std::string cloth_place(const Shot& shot, const ClothSpec& cloth);
-
 /// All cloths of a shot whose primaries are planned, in groups of what may meet, by their first primary. Notes go into
 /// the plan.
 Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, BakePlan& plan);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "baker/located.h"
 #include "baker/systems/cloth/cloth_quality.h"
 #include "baker/systems/cloth/meeting.h"
 #include "baker/systems/cloth/plan_cloths.h"
@@ -30,11 +31,7 @@ Status add_reaches(const Shot& shot, const ClothGroup& group, const BakePlan& pl
     CHECK(found != specs.end());
     const ClothSpec* spec = *found;
     auto meets = meets_of(*spec, plan.primaries);
-    if (!meets) {
-      Error error = meets.error();
-      error.where = cloth_place(shot, *spec);
-      return error;
-    }
+    if (!meets) return located(meets.error(), shot, spec->owner());
     for (std::size_t p = 0; p < plan.primaries.size(); ++p)
       if (p != group.primary &&
           (!why_alone(shot, plan.primaries[p]).empty() || !why_alone(shot, plan.primaries[group.primary]).empty()))

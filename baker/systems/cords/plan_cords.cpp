@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "baker/located.h"
 #include "baker/quality.h"
 #include "baker/systems/plan_common.h"
 #include "io/shot/mesh_file.h"
@@ -104,12 +105,7 @@ Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, co
     const CordsSpec& spec = *one;
     if (spec.on != primary.name) continue;
     auto system = cord_system(spec);
-    if (!system) {
-      Error error = system.error();
-      error.where = shot.file.filename().string() + ": cords \"" + spec.name + "\"" +
-                    (error.where.empty() ? "" : ": " + error.where);
-      return error;
-    }
+    if (!system) return located(system.error(), shot, spec.owner());
     Mesh mesh = CordTubes(system->graph, system->radius, spec.name).mesh();
     mesh.name = spec.name;
     SystemOutput output;
