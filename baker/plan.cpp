@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "baker/body_only.h"
+#include "baker/known_motion.h"
 #include "baker/placed_trajectory.h"
 #include "baker/quality.h"
 
@@ -189,16 +189,11 @@ bool has_secondaries(const BakePlan& plan, std::size_t primary) {
 
 /// Groups of all kinds, by their first primary; behind them primaries that yield and have no secondary.
 Status plan_systems(const Shot& shot, BakePlan& plan) {
-  std::vector<SystemGroups> of_kinds;
   for (const SystemKind* kind : system_kinds()) {
     auto groups = kind->plan(shot, plan);
     if (!groups) return groups.error();
-    of_kinds.push_back(std::move(*groups));
+    for (auto& group : *groups) plan.groups.push_back(std::move(group));
   }
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p)
-    for (SystemGroups& groups : of_kinds)
-      for (auto& group : groups)
-        if (group && group->primary == p) plan.groups.push_back(std::move(group));
   for (std::size_t p = 0; p < plan.primaries.size(); ++p)
     if (plan.primaries[p].hybrid && !has_secondaries(plan, p))
       plan.groups.push_back(std::make_unique<BodyGroup>(p, shot.first_frame, shot.preroll, shot.fps));

@@ -8,8 +8,8 @@
 namespace ft {
 
 struct DampedOscillator {
-  double omega = 2 * 3.141592653589793 * 3;  ///< undamped angular frequency [rad/s], > 0
-  double zeta = 0.3;                         ///< damping ratio [1], >= 0; 1: critical
+  double omega = 1;   ///< undamped angular frequency [rad/s], > 0
+  double zeta = 0.3;  ///< damping ratio [1], >= 0; 1: critical
 
   /// Of a point behind its target.
   struct Lag {

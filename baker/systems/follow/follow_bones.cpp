@@ -5,8 +5,7 @@
 #include <numbers>
 
 #include "io/import/pose.h"
-#include "io/shot/shot_values.h"
-#include "io/shot/words.h"
+#include "io/shot/patterns.h"
 #include "solvers/follow/damped_oscillator.h"
 
 namespace ft {
@@ -45,6 +44,7 @@ struct Follower {
   Vec3 target = Vec3::Zero(), velocity = Vec3::Zero();
   bool started = false;
   double turned = 0;                 ///< now [rad]
+  double behind = 0;                 ///< of the tip, now, from its animated place [m]
   std::vector<Quat> rotations{};     ///< local, of each frame of the shot
   Quat rotation = Quat::Identity();  ///< local, now
 };
@@ -82,7 +82,7 @@ class BoneFollower {
     double lag = 0, turn = 0;
     for (Follower& f : followers_) {
       f.rotations.push_back(f.rotation);
-      lag = std::max(lag, f.lag.position.norm());
+      lag = std::max(lag, f.behind);
       turn = std::max(turn, f.turned);
     }
     out.lag.push_back(lag);
@@ -112,6 +112,7 @@ class BoneFollower {
     if (from.norm() > 0 && to.norm() > 1e-6 * from.norm()) turn = Quat::FromTwoVectors(from, to);
     turn.angle() = std::min(turn.angle(), spec_.max_angle * std::numbers::pi / 180);
     f.turned = turn.angle();
+    f.behind = (turn * from - from).norm();
     // The turn in the world is one before the joint's own rotation, in the space of its parent.
     const NodeTransform local = decompose(locals_[at(f.joint)]);
     const Quat parent = decompose(above).rotation;
@@ -163,30 +164,21 @@ ChangedChannel channel_of(const PlacedCharacter& placed, const Follower& f, cons
 
 }  // namespace
 
+int FollowTiming::steps(double longest) const {
+  return std::max(1, static_cast<int>(std::ceil(1 / (fps * longest) - 1e-9)));
+}
+
 Result<std::vector<int>> joints_like(const std::vector<std::string>& patterns, const Character& character) {
   std::vector<std::string> names;
   for (const CharacterNode& node : character.nodes) names.push_back(node.name);
-  std::vector<int> out;
-  for (const std::string& pattern : patterns) {
-    const std::size_t before = out.size();
-    for (std::size_t n = 0; n < names.size(); ++n)
-      if (matches(pattern, names[n])) out.push_back(static_cast<int>(n));
-    if (out.size() > before) continue;
-    std::string word = pattern;
-    std::erase_if(word, [](char c) { return c == '*' || c == '?'; });
-    return usage_error("bones = " + in_quotes(printable(pattern)) + " names no joint", {}, suggestion(word, names));
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  return indices_like(patterns, names, "bones", "joint");
 }
 
 FollowedBones follow_bones(const PlacedCharacter& placed, const Eigen::Isometry3d& place, std::span<const int> joints,
                            const FollowSpec& spec, const FollowTiming& timing, std::span<const Teleport> teleports) {
   FollowedBones out;
   BoneFollower bones(placed, place, joints, spec);
-  const int steps = std::max(1, static_cast<int>(std::ceil(1 / (timing.fps * k_step) - 1e-9)));
-  const int lead = static_cast<int>(std::ceil(timing.lead * timing.fps - 1e-9));
+  const int steps = timing.steps(k_step), lead = timing.preroll_frames;
   const double dt = 1 / (timing.fps * steps);
   bones.go_to(-lead / timing.fps, 0, nullptr);
   if (lead == 0) bones.record(out);

@@ -16,7 +16,10 @@ namespace ft {
 struct FollowTiming {
   double fps = 24;
   int first_frame = 1, frame_count = 1;  ///< of the shot
-  double lead = 0;                       ///< s before the first frame from which on the lag is followed
+  int preroll_frames = 0;                ///< before that, from which on the lag is followed
+
+  /// Equal steps of a frame that are no longer than `longest` [s].
+  int steps(double longest) const;
 };
 
 struct FollowedBones {

@@ -3,66 +3,51 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <numbers>
 
+#include "baker/known_motion.h"
+#include "baker/located.h"
 #include "baker/placed_trajectory.h"
 #include "baker/systems/follow/follow_points.h"
 #include "io/export/motion_files.h"
-#include "io/shot/shot_values.h"
 #include "io/shot/vertex_values.h"
 #include "io/shot/words.h"
 
 namespace ft {
 namespace {
 
-class FollowSolver final : public Solver {
+class FollowSolver final : public KnownMotionSolver {
  public:
-  FollowSolver(Mesh mesh, std::shared_ptr<const Trajectory> motion, const FollowGroup& group)
-      : mesh_(std::move(mesh)),
-        motion_(std::move(motion)),
+  FollowSolver(Mesh mesh, const FollowGroup& group)
+      : KnownMotionSolver(group.first_frame, group.preroll, group.fps),
+        mesh_(std::move(mesh)),
+        motion_(group.motion),
         lag_(group.lag),
-        turn_(group.turn),
-        first_frame_(group.first_frame),
-        preroll_(group.preroll),
-        fps_(group.fps) {}
+        turn_(group.turn) {}
 
   int system_count() const override { return 1; }
   const Mesh& system_mesh(int) const override { return mesh_; }
   void system_positions(const State& state, int, std::span<Vec3> positions) const override {
     motion_->sample(state.time, positions);
   }
-  std::span<const Triangle> collider_triangles() const override { return {}; }
-  void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
-  State initial_state() const override {
-    State state;
-    state.frame = first_frame_ - preroll_;
-    state.time = -preroll_ / fps_;
-    return state;
-  }
-  FrameReport advance_frame(State& state) override {
-    ++state.frame;
-    state.time = (state.frame - first_frame_) / fps_;
-    FrameReport report;
-    report.frame = state.frame;
-    report.smallest_gap = std::numeric_limits<double>::infinity();  // it meets nothing
-    const int index = state.frame - first_frame_;
-    if (index >= 0 && at(index) < lag_.size()) report.own["follow_lag"] = lag_[at(index)];
-    if (index >= 0 && at(index) < turn_.size()) report.own["follow_turn"] = turn_[at(index)];
-    return report;
+
+ protected:
+  void measure(std::size_t index, FrameReport& report) const override {
+    if (index < lag_.size()) report.own["follow_lag"] = lag_[index];
+    if (index < turn_.size()) report.own["follow_turn"] = turn_[index];
   }
 
  private:
   Mesh mesh_;
   std::shared_ptr<const Trajectory> motion_;
   std::vector<double> lag_, turn_;
-  int first_frame_, preroll_;
-  double fps_;
 };
 
-Error at_place(Error error, const Shot& shot, const FollowSpec& spec) {
-  error.where = shot.file.filename().string() + ": " + spec.owner() + (error.where.empty() ? "" : ": " + error.where);
-  return error;
+/// After which the lag has forgotten how it began, to a twentieth [s].
+double memory(const FollowSpec& spec) {
+  const double omega = 2 * std::numbers::pi * spec.frequency, zeta = spec.damping_ratio;
+  return 3 / (omega * (zeta < 1 ? zeta : zeta - std::sqrt(zeta * zeta - 1)));
 }
 
 Status plan_joints(const FollowSpec& spec, const PrimaryPlan& primary, const FollowTiming& timing,
@@ -118,18 +103,23 @@ Status plan_vertices(const FollowSpec& spec, const PrimaryPlan& primary, const F
 }  // namespace
 
 Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowSpec& spec, std::size_t p,
-                                                 const BakePlan& plan, const FollowGroup* before) {
+                                                 BakePlan& plan, const FollowGroup* before) {
   const PrimaryPlan& primary = plan.primaries[p];
   auto group = std::make_unique<FollowGroup>(p);
   group->name = spec.name;
   group->first_frame = shot.first_frame;
   group->preroll = shot.preroll;
   group->fps = shot.fps;
-  const FollowTiming timing{shot.fps, shot.first_frame, shot.last_frame - shot.first_frame + 1,
-                            shot.preroll / shot.fps};
+  const FollowTiming timing{shot.fps, shot.first_frame, shot.last_frame - shot.first_frame + 1, shot.preroll};
   const Status planned = spec.weights.empty() ? plan_joints(spec, primary, timing, before, *group)
                                               : plan_vertices(spec, primary, timing, before, *group);
-  if (!planned) return at_place(planned.error(), shot, spec);
+  if (!planned) return located(planned.error(), shot, spec.owner());
+  if (const double forgets = memory(spec); forgets > shot.preroll / shot.fps)
+    plan.notes.push_back(fmt::format(
+        "{}: its spring takes {} to forget how it began, and the pre-roll has {:.2g} s: in the first frames the lag "
+        "hangs "
+        "on where the bake begins (preroll under [shot] makes it longer)",
+        spec.owner(), std::isfinite(forgets) ? fmt::format("{:.2g} s", forgets) : "forever", shot.preroll / shot.fps));
   SystemOutput output;
   output.primary = p;
   output.mesh = std::make_shared<const Mesh>(
@@ -139,7 +129,7 @@ Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowS
 }
 
 Result<std::unique_ptr<Solver>> FollowGroup::make_solver() {
-  return std::unique_ptr<Solver>(std::make_unique<FollowSolver>(*outputs.at(0).mesh, motion, *this));
+  return std::unique_ptr<Solver>(std::make_unique<FollowSolver>(*outputs.at(0).mesh, *this));
 }
 
 std::vector<std::string> FollowGroup::lines(const BakePlan& plan) const {

@@ -28,8 +28,8 @@ class FollowGroup final : public SystemGroup {
 };
 
 /// The section's own group; it goes on from the last one of the same primary (null: there is none), so that what
-/// follows adds up. Errors say where.
+/// follows adds up. Errors say where; notes go into the plan.
 Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowSpec& spec, std::size_t primary,
-                                                 const BakePlan& plan, const FollowGroup* before);
+                                                 BakePlan& plan, const FollowGroup* before);
 
 }  // namespace ft

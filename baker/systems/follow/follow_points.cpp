@@ -16,8 +16,7 @@ constexpr double k_step = 1.0 / 240;  ///< longest over which the middle is take
 FollowedPoints::FollowedPoints(std::shared_ptr<const Trajectory> own, std::vector<double> weights,
                                const FollowSpec& spec, const FollowTiming& timing, std::span<const Teleport> teleports)
     : own_(std::move(own)), weights_(std::move(weights)) {
-  const int steps = std::max(1, static_cast<int>(std::ceil(1 / (timing.fps * k_step) - 1e-9)));
-  const int lead = static_cast<int>(std::ceil(timing.lead * timing.fps - 1e-9));
+  const int steps = timing.steps(k_step), lead = timing.preroll_frames;
   dt_ = 1 / (timing.fps * steps);
   first_ = -lead / timing.fps;
   DampedOscillator spring{2 * std::numbers::pi * spec.frequency, spec.damping_ratio};

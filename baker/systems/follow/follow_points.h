@@ -24,7 +24,7 @@ class FollowedPoints final : public Trajectory {
   Eigen::Isometry3d bind_to_start() const override { return own_->bind_to_start(); }
   double preroll() const override { return own_->preroll(); }
 
-  /// How far the middle is from its animated place [m].
+  /// How far a vertex of weight 1 is from its animated place [m].
   double lag(double time) const { return displacement(time).norm(); }
 
  private:
