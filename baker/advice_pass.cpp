@@ -143,7 +143,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
       Evidence e;
       e.primary = primary.name;
       e.secondary = secondary.mesh->name;
-      e.two_way_possible = group->can_be_two_way();
+      e.two_way_possible = find_system_kind(group->role())->section().why_not_two_way().empty();
       std::vector<Wrench> forces(reports.size());
       for (std::size_t i = 0; i < reports.size(); ++i) {
         const FrameReport& r = reports[i];

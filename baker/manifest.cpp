@@ -208,15 +208,14 @@ Gates gates_of(const Shot& shot) {
 namespace {
 
 Status judge_metrics(const FrameReport& frame, const Gates& gates, const std::string& where) {
-  for (const auto& [key, limit] : gates.most)
-    for (const std::span<const Metric> metrics : {frame_metrics(), declared_metrics()})
-      for (const Metric& metric : metrics)
-        if (metric.key == key && value_of(frame, metric) > limit)
-          return Error{ErrorKind::k_quality,
-                       fmt::format("quality gate: {} = {:.4g} is above {:.4g}{}{}", key, value_of(frame, metric), limit,
-                                   metric.unit.empty() ? "" : " ", metric.unit),
-                       where,
-                       {}};
+  for (const auto& [key, limit] : gates.most) {
+    const Metric* metric = find_metric(key);
+    if (!metric || !(value_of(frame, *metric) > limit)) continue;
+    return Error{ErrorKind::k_quality,
+                 fmt::format("quality gate: {} = {:.4g} is above {:.4g}{}{}", key, value_of(frame, *metric), limit,
+                             metric->unit.empty() ? "" : " ", metric->unit),
+                 where, "look at the frame in the preview, which plots it, or raise the limit in [gate] most"};
+  }
   return {};
 }
 

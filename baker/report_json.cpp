@@ -35,28 +35,28 @@ Json value_of(bool v) {
 }
 
 struct Faulty {
-  const char* name;
+  std::string_view name;  ///< of a field; outlives the fault
 };
 
-void take(const Json& from, const char* name, double& out) {
+void take(const Json& from, std::string_view name, double& out) {
   if (!from.is_number()) throw Faulty{name};
   out = from.get<double>();
 }
-void take(const Json& from, const char* name, int& out) {
+void take(const Json& from, std::string_view name, int& out) {
   if (!from.is_number_integer()) throw Faulty{name};
   out = from.get<int>();
 }
-void take(const Json& from, const char* name, bool& out) {
+void take(const Json& from, std::string_view name, bool& out) {
   if (!from.is_boolean()) throw Faulty{name};
   out = from.get<bool>();
 }
-void take(const Json& from, const char* name, std::string& out) {
+void take(const Json& from, std::string_view name, std::string& out) {
   if (!from.is_string()) throw Faulty{name};
   out = from.get<std::string>();
 }
 
 template <class T>
-void take_field(const Json& from, const char* name, T& out) {
+void take_field(const Json& from, std::string_view name, T& out) {
   const auto it = from.find(name);
   if (it == from.end()) return;
   if constexpr (std::is_same_v<T, double>) {
@@ -69,7 +69,7 @@ void take_field(const Json& from, const char* name, T& out) {
 }
 
 /// Three numbers; null is taken for 0.
-void take_vector(const Json& from, const char* name, Vec3& out) {
+void take_vector(const Json& from, std::string_view name, Vec3& out) {
   const auto it = from.find(name);
   if (it == from.end()) return;
   if (!it->is_array() || it->size() != 3) throw Faulty{name};
@@ -197,7 +197,7 @@ Json to_json(const FrameReport& report) {
 
 Json to_json(const FrameProfile& profile) {
   Json out = Json::object();
-  for_each_time(profile, [&](const char* name, double value) { out[name] = value_of(value); });
+  for_each_time(profile, [&](std::string_view name, double value) { out[name] = value_of(value); });
   return out;
 }
 
@@ -209,12 +209,11 @@ Result<FrameReport> frame_report_from_json(const Json& json) {
     for (const Metric& metric : frame_metrics())
       std::visit(
           [&](auto member) {
-            if constexpr (!std::is_same_v<decltype(member), std::monostate>)
-              take_field(json, metric.key.data(), out.*member);
+            if constexpr (!std::is_same_v<decltype(member), std::monostate>) take_field(json, metric.key, out.*member);
           },
           metric.member);
     for (const Metric& metric : declared_metrics())
-      if (json.contains(metric.key)) take_field(json, metric.key.data(), out.own[std::string(metric.key)]);
+      if (json.contains(metric.key)) take_field(json, metric.key, out.own[std::string(metric.key)]);
     if (const auto list = json.find("forces"); list != json.end()) {
       if (!list->is_array()) throw Faulty{"forces"};
       for (const Json& f : *list) out.forces.push_back(force_from(f));
@@ -228,7 +227,7 @@ Result<FrameReport> frame_report_from_json(const Json& json) {
       for (const Json& i : *list) out.incidents.push_back(incident_from(i));
     }
   } catch (const Faulty& fault) {
-    return input_error(std::string("a frame's report has a \"") + fault.name + "\" of another type");
+    return input_error(std::string("a frame's report has a \"").append(fault.name).append("\" of another type"));
   }
   return out;
 }
@@ -237,9 +236,9 @@ Result<FrameProfile> frame_profile_from_json(const Json& json) {
   FrameProfile out;
   try {
     if (!json.is_object()) return input_error("a frame's times are not an object");
-    for_each_time(out, [&](const char* name, double& value) { take_field(json, name, value); });
+    for_each_time(out, [&](std::string_view name, double& value) { take_field(json, name, value); });
   } catch (const Faulty& fault) {
-    return input_error(std::string("a frame's times have a \"") + fault.name + "\" of another type");
+    return input_error(std::string("a frame's times have a \"").append(fault.name).append("\" of another type"));
   }
   return out;
 }

@@ -275,7 +275,7 @@
         return force ? Math.hypot(...of(force)) : null;
       }) }))));
     for (const { key, unit } of bake.metrics)
-      if (bake.frames.some((row) => key in row)) plots.push(plot(key.replaceAll('_', ' '), unit === '' ? '' : ' ' + unit, [{ name: '', values: column(key, 1) }]));
+      if (bake.frames.some((row) => key in row)) plots.push(plot(key.replaceAll('_', ' '), unit === '' || unit === '1' ? '' : ' ' + unit, [{ name: '', values: column(key, 1) }]));
     plots.push(plot('time', ' ms', [{ name: '', values: column('milliseconds', 1) }]));
     plots = plots.filter((p) => p !== null);
   }

@@ -25,6 +25,13 @@ std::span<const Metric> declared_metrics() {
   return all;
 }
 
+const Metric* find_metric(std::string_view key) {
+  for (const std::span<const Metric> metrics : {frame_metrics(), declared_metrics()})
+    for (const Metric& metric : metrics)
+      if (metric.key == key) return &metric;
+  return nullptr;
+}
+
 const SystemKind* find_system_kind(std::string_view name) {
   const auto kinds = system_kinds();
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const SystemKind* k) { return k->name() == name; });

@@ -71,8 +71,6 @@ class SystemGroup {
   virtual Result<std::vector<WrittenFile>> files(const BakePlan& /*plan*/, std::vector<std::string>& /*notes*/) const {
     return std::vector<WrittenFile>();
   }
-  /// Whether a primary could be moved by it.
-  virtual bool can_be_two_way() const { return false; }
 
   /// What is wrong where it starts, and where it has no room: appended.
   virtual void add_start(const BakePlan& /*plan*/, StartReport& /*report*/) const {}
@@ -132,6 +130,8 @@ class SystemKind {
 std::span<const SystemKind* const> system_kinds();
 /// The metrics of all kinds, beside frame_metrics().
 std::span<const Metric> declared_metrics();
+/// Among both; null: there is none of that name.
+const Metric* find_metric(std::string_view key);
 /// Null: no kind has that name.
 const SystemKind* find_system_kind(std::string_view name);
 

@@ -15,7 +15,6 @@ class CordsGroup final : public SystemGroup {
   std::string_view role() const override { return "cords"; }
   Result<std::unique_ptr<Solver>> make_solver() override { return make_lockstep_solver(setup); }
   std::vector<std::string> lines(const BakePlan& plan) const override;
-  bool can_be_two_way() const override { return true; }
 };
 
 }  // namespace ft
