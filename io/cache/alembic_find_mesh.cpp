@@ -42,14 +42,11 @@ class MeshReader {
     if (!face_sizes) return face_sizes.error();
     auto face_vertices = values_of<int>(file_, corners.samples.front());
     if (!face_vertices) return face_vertices.error();
-    std::uint64_t total = 0;
-    for (const int n : *face_sizes) {
+    for (const int n : *face_sizes)  // a mesh of other programs, not a damaged one
       if (n < 3) return fault("has a face with " + std::to_string(n) + " corners");
-      total += static_cast<std::uint64_t>(n);
-    }
-    if (total != face_vertices->size()) return fault("is damaged: face sizes do not add up");
-    for (const int v : *face_vertices)
-      if (v < 0 || v >= view_.info.vertex_count) return fault("is damaged: a face uses vertex " + std::to_string(v));
+    if (const std::string wrong = fault_of_faces(*face_sizes, *face_vertices, at(view_.info.vertex_count));
+        !wrong.empty())
+      return fault("is damaged: " + wrong);
     Mesh& mesh = view_.info.mesh;
     mesh.name = view_.info.system;
     mesh.face_sizes = std::move(*face_sizes);

@@ -11,9 +11,9 @@ namespace ft {
 namespace {
 
 const std::array k_formats = {
-    CacheFormat{"abc", ".abc", "Alembic (Ogawa), mesh with velocities", alembic_accepts, alembic_bytes_per_frame,
-                open_alembic_writer, open_alembic_reader, "Ogawa"},
-    CacheFormat{"pc2", ".pc2", "PointCache2, points only", pc2_accepts, pc2_bytes_per_frame, open_pc2_writer,
+    CacheFormat{"abc", ".abc", "Alembic (Ogawa): meshes, curves, points, instances, with velocities", alembic_accepts,
+                alembic_bytes_per_frame, open_alembic_writer, open_alembic_reader, "Ogawa"},
+    CacheFormat{"pc2", ".pc2", "PointCache2: positions only", pc2_accepts, pc2_bytes_per_frame, open_pc2_writer,
                 open_pc2_reader, "POINTCACHE2"},
 };
 

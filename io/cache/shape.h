@@ -1,11 +1,11 @@
 // The shapes that an output may have, and what each needs once (at rest) and in every frame.
 //
-//   shape      once                                        every frame
-//   mesh       Mesh: faces, uvs, rest positions            positions, velocities; where the faces change, they too
-//   curves     CurveSet: vertices of each curve, widths    positions, velocities
-//   points     nothing                                     ids, positions, velocities, widths; the number may change
-//   instances  InstanceSet: ids, prototypes                positions, orientations, velocities, angular velocities,
-//   scales grid       named only: no format takes it yet
+//   shape      once                                      every frame
+//   mesh       Mesh: faces, uvs, rest positions          positions, velocities; the faces, where they change
+//   curves     CurveSet: vertices of each curve, widths  positions, velocities
+//   points     nothing                                   ids, positions, velocities, widths; any number of points
+//   instances  InstanceSet: ids, prototypes              positions, orientations, scales, both kinds of velocity
+//   grid       no format takes it yet
 //
 // Which format takes what is a property of the format (cache.h). A frame itself is frame.h.
 #pragma once
