@@ -169,7 +169,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
   const double h = (frame.t1 - frame.t0) / substeps;
   double lost = 0;
   WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}), !frame.torn.empty());
-  bool hurried = false;
+  bool hurried = false, slowed = false;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
   std::vector<char> deep = frame.not_met(body_.start().absent), deep_next;
@@ -196,7 +196,10 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     }
     if (hold_jumps(*model_, t0, t0 + h)) m.h_previous = 0;
     // What is faster than the steps that there are can follow meets more with a power of its speed.
-    if ((hurried || substeps >= model_->setup.max_substeps) && slow_down(*model_, h, m)) m.h_previous = 0;
+    if ((hurried || substeps >= model_->setup.max_substeps) && slow_down(*model_, h, m)) {
+      m.h_previous = 0;
+      slowed = true;
+    }
     in.friction_share = sewing_friction(*model_, t0 + h);
     in.patience = limit.patience(substeps - 1 - k);
     const AdvanceReport step = advance_.substep(in, m);
@@ -217,7 +220,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     deep.swap(deep_next);
     pins.swap(pins_next);
   }
-  if (hurried) report.incidents.push_back(haste_incident(*model_, m, report.frame));
+  if (hurried || slowed) report.incidents.push_back(haste_incident(*model_, m, hurried, report.frame));
   return lost;
 }
 

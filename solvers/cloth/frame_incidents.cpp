@@ -35,7 +35,7 @@ Incident torn_incident(const ClothModel& model, const ClothMotion& motion, const
   return out;
 }
 
-Incident haste_incident(const ClothModel& model, const ClothMotion& motion, int frame) {
+Incident haste_incident(const ClothModel& model, const ClothMotion& motion, bool hurried, int frame) {
   const RestEdges& rest = model.rest_edges;
   double most = 0;
   int vertex = 0;
@@ -46,9 +46,11 @@ Incident haste_incident(const ClothModel& model, const ClothMotion& motion, int 
   }
   Incident out = at_vertex(model, motion, vertex, frame);
   out.kind = Incident::Kind::k_cut_short;
-  out.text =
-      "cut short: the frame took many times as long as frames usually do; what blocks the cloth is let go at once "
-      "(look at the animation there)";
+  out.text = hurried
+                 ? "cut short: the frame took many times as long as frames usually do; what blocks the cloth is let "
+                   "go at once (look at the animation there)"
+                 : "cut short: cloth was slowed down that is faster than " + std::to_string(model.setup.max_substeps) +
+                       " substeps can follow (more of them under [solver] max_substeps)";
   return out;
 }
 

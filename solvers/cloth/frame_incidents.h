@@ -18,7 +18,8 @@ struct TornFrame {
 /// What of the body was not met because it is torn, at the cloth's vertex that is nearest.
 Incident torn_incident(const ClothModel& model, const ClothMotion& motion, const TornFrame& frame);
 
-/// A frame that was cut short, at the cloth that is stretched most.
-Incident haste_incident(const ClothModel& model, const ClothMotion& motion, int frame);
+/// A frame that was cut short, at the cloth that is stretched most. hurried: it reached its limit of work; else cloth
+/// was slowed down that is faster than the substeps can follow.
+Incident haste_incident(const ClothModel& model, const ClothMotion& motion, bool hurried, int frame);
 
 }  // namespace ft

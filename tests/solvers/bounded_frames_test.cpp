@@ -124,5 +124,24 @@ TEST(BoundedFrames, Parts_that_leap_do_not_sweep_through_the_cloth) {
   EXPECT_TRUE(told);
 }
 
+TEST(BoundedFrames, Cloth_that_is_slowed_down_is_told_with_what_would_follow_it) {
+  ClothSetup setup;
+  setup.preroll_frames = 0;
+  setup.min_substeps = setup.max_substeps = 2;
+  ClothGarment sheet;
+  sheet.name = "sheet";
+  sheet.mesh = make_sheet(0.6, 12, 0.3);
+  setup.garments.push_back(std::move(sheet));
+  auto solver = make_cloth_solver(setup);
+  ASSERT_TRUE(solver) << solver.error().text();
+  State calm = (*solver)->initial_state(), fast = calm;
+  EXPECT_TRUE((*solver)->advance_frame(calm).incidents.empty());
+  fast.block("v")[3 * 40 + 2] = 500;  // m/s, of one vertex
+  const FrameReport report = (*solver)->advance_frame(fast);
+  ASSERT_FALSE(report.incidents.empty());
+  EXPECT_EQ(report.incidents[0].kind, Incident::Kind::k_cut_short);
+  EXPECT_NE(report.incidents[0].text.find("max_substeps"), std::string::npos) << report.incidents[0].text;
+}
+
 }  // namespace
 }  // namespace ft

@@ -74,10 +74,13 @@ TEST_P(LetThrough, Cloth_between_plates_without_room_comes_back_between_them) {
 
 struct Squeezed {
   int pieces = 0, released = 0;
+  double work = 0;
+  bool impatient = false;
 };
 
-/// The tube after the plates' way until t1 in one substep, all of whose shortened pieces are too short.
-Squeezed squeezed(double t1) {
+/// The tube after the plates' way until t1 in one substep, all of whose shortened pieces are too short. patience: as
+/// SubstepInput has it.
+Squeezed squeezed(double t1, double patience = std::numeric_limits<double>::infinity()) {
   auto model = build_cloth_model(tube_between_plates(1));
   EXPECT_TRUE(model);
   ClothMotion cloth;
@@ -99,9 +102,11 @@ Squeezed squeezed(double t1) {
   const std::vector<char> none(body_t1.size(), 0);
   in.deep_t1 = none;
   in.h = in.shortest = t1;
+  in.patience = patience;
   const AdvanceReport report = BodyAdvance(**model).substep(in, cloth);
   EXPECT_TRUE(report.finite);
-  return {report.pieces, static_cast<int>(std::count(cloth.absent.begin(), cloth.absent.end(), 1))};
+  return {report.pieces, static_cast<int>(std::count(cloth.absent.begin(), cloth.absent.end(), 1)), report.work,
+          report.impatient};
 }
 
 TEST(LetThrough, Blocked_cloth_gets_some_pieces_that_are_too_short_before) {
@@ -110,6 +115,17 @@ TEST(LetThrough, Blocked_cloth_gets_some_pieces_that_are_too_short_before) {
   EXPECT_EQ(with_room.released, 0);
   EXPECT_GT(without.released, 0);
   EXPECT_LT(without.pieces, 20);
+}
+
+TEST(LetThrough, Beyond_the_limit_of_work_what_blocks_is_let_go_at_once) {
+  const Squeezed patient = squeezed(0.4), hasty = squeezed(0.4, 0), enough = squeezed(0.4, 10 * patient.work);
+  EXPECT_FALSE(patient.impatient);
+  EXPECT_TRUE(hasty.impatient);
+  EXPECT_GT(hasty.released, 0) << "there is room, if it takes its time";
+  EXPECT_LT(hasty.pieces, patient.pieces);
+  EXPECT_LT(hasty.work, patient.work);
+  EXPECT_FALSE(enough.impatient);
+  EXPECT_EQ(enough.released, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(side, LetThrough, testing::Values(-1.0, 1.0));

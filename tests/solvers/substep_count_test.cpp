@@ -44,5 +44,27 @@ TEST(SubstepCount, Of_cloth_finer_than_its_contact_is_that_of_the_way_in_edges) 
   EXPECT_NEAR(substeps(160, k_way), 2 * fine, 1);
 }
 
+TEST(SubstepCount, What_is_faster_than_the_substeps_can_follow_is_slowed_down_and_nothing_else) {
+  ClothSetup setup;
+  ClothGarment sheet;
+  sheet.name = "sheet";
+  sheet.mesh = make_sheet(k_side, 10, 0);
+  setup.garments.push_back(std::move(sheet));
+  const auto model = build_cloth_model(std::move(setup));
+  ASSERT_TRUE(model);
+  const double h = 1e-3;
+  const Vec3 common(50, 0, 0);
+  ClothMotion motion;
+  motion.x = (*model)->start;
+  motion.v.assign(motion.x.size(), common);
+  EXPECT_FALSE(slow_down(**model, h, motion)) << "all of it goes the same way";
+  motion.v[7] += Vec3(0, 1000, 0);
+  EXPECT_TRUE(slow_down(**model, h, motion));
+  const Vec3 mean = common + Vec3(0, 1000, 0) / static_cast<double>(motion.v.size());
+  EXPECT_LT((motion.v[7] - mean).norm() * h, 0.1);
+  EXPECT_GT((motion.v[7] - mean).norm() * h, k_side / 10);
+  EXPECT_EQ(motion.v[8], common);
+}
+
 }  // namespace
 }  // namespace ft
