@@ -11,15 +11,19 @@ key="$2 $(getconf GNU_LIBC_VERSION | tr ' ' '-') ${processor:-unknown}"
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")/data" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-for shot in small_shot/shot pinned/net pinned/scene; do
-  name=$(basename "${shot/small_shot\/shot/skirt}")
-  frames=()
-  [ "$name" != skirt ] || frames=(--frames 1-6)
-  "$program" bake "$data/$shot.toml" --out "$scratch/$name" --progress none "${frames[@]}"
+hashes() { # NAME SHOT [bake arguments]
+  local name=$1 shot=$2
+  shift 2
+  "$program" bake "$shot" --out "$scratch/$name" --progress none "$@"
   for cache in "$scratch/$name"/*.pc2; do
     echo "$key $name $(basename "$cache" .pc2) $(md5sum <"$cache" | cut -d' ' -f1)"
   done
-done >"$scratch/now.txt"
+}
+{
+  hashes skirt "$data/small_shot/shot.toml" --frames 1-6
+  hashes net "$data/pinned/net.toml"
+  hashes scene "$data/pinned/scene.toml"
+} >"$scratch/now.txt"
 if ! grep -q "^$key " "$data/pinned/hashes.txt" 2>/dev/null; then
   echo "no hashes are on record for: $key"
   cat "$scratch/now.txt"

@@ -10,7 +10,6 @@ namespace ft::sets {
 namespace {
 
 constexpr double k_board_width = 0.50, k_board_depth = 0.19, k_board = 0.028, k_rope = 0.008;  // m
-constexpr double k_gravity = 9.80665;
 
 }  // namespace
 

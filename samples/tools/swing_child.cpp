@@ -25,7 +25,7 @@ class Child {
   double pumping(std::size_t sample) const {
     const std::size_t ahead = static_cast<std::size_t>(0.15 * settings_.fps);
     const std::size_t a = std::min(sample + ahead, angles_.size() - 2);
-    const double fastest = std::sqrt(9.80665 / settings_.length) * settings_.swing_deg * k_rad;
+    const double fastest = std::sqrt(k_gravity / settings_.length) * settings_.swing_deg * k_rad;
     return std::tanh(2 * (angles_[a + 1] - angles_[a]) * settings_.fps / fastest);
   }
 
