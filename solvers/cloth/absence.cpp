@@ -17,6 +17,8 @@ namespace {
 constexpr double k_worn_share = 0.02;
 /// What is let go of a part that is not worn around a place where it blocks cloth [m].
 constexpr double k_limb_reach = 0.08;
+/// What is let go next to a hole, of the hole's vertices at least [1].
+constexpr double k_growth = 0.5;
 /// Cloth nearer than this [m] is pressed by what comes back.
 constexpr double k_touching = 5e-4;
 }  // namespace
@@ -111,8 +113,35 @@ void Absence::grow(const ClothModel& model, std::span<const Vec3> body, double r
   }
 }
 
+/// Marks more around what is marked, in the same parts, where it borders on what is let go: k_growth of that at least.
+void Absence::widen(int garment, std::span<const int> parts, std::span<const char> deep, std::span<const char> absent,
+                    std::vector<char>& marked) const {
+  const auto let_go = [&](int b) { return absent[place(garment, b)] != 0 && !planned(garment, b, deep); };
+  std::vector<int> rim, hole;
+  std::vector<char> in_hole(body_count_, 0);
+  int added = 0;
+  for (int b = 0; b < static_cast<int>(body_count_); ++b) {
+    if (marked[at(b)] == 0) continue;
+    rim.push_back(b);
+    if (let_go(b))
+      in_hole[at(b)] = 1, hole.push_back(b);
+    else
+      ++added;
+  }
+  for (std::size_t k = 0; k < hole.size(); ++k)
+    for (const int w : neighbours_.row(hole[k]))
+      if (in_hole[at(w)] == 0 && parts[at(w)] == parts[at(hole[k])] && let_go(w)) in_hole[at(w)] = 1, hole.push_back(w);
+  for (std::size_t k = 0; k < rim.size() && added < k_growth * static_cast<double>(hole.size()); ++k)
+    for (const int w : neighbours_.row(rim[k])) {
+      if (marked[at(w)] != 0 || parts[at(w)] != parts[at(rim[k])] || absent[place(garment, w)] != 0) continue;
+      marked[at(w)] = 1;
+      rim.push_back(w);
+      ++added;
+    }
+}
+
 int Absence::let_go(const ClothModel& model, int garment, std::span<const int> body_vertices,
-                    std::span<const Vec3> body, std::vector<char>& absent) const {
+                    std::span<const Vec3> body, std::span<const char> deep, std::vector<char>& absent) const {
   const auto parts = model.collider->part_of_vertex();
   std::vector<char> marked(body_count_, 0);
   int rank = std::numeric_limits<int>::max();
@@ -126,6 +155,7 @@ int Absence::let_go(const ClothModel& model, int garment, std::span<const int> b
     marked[at(v)] = 1;
     for (const int w : neighbours_.row(v)) marked[at(w)] = 1;
   }
+  widen(garment, parts, deep, absent, marked);
   int added = 0;
   for (std::size_t b = 0; b < body_count_; ++b)
     if (char& is = absent[place(garment, static_cast<int>(b))]; marked[b] != 0 && is == 0) is = 1, ++added;

@@ -2,10 +2,12 @@
 // triangle) of the collider is absent for a garment where one of its vertices is.
 //
 //   planned    the body is too deep in itself there (collision/absent_vertices.h), or the shot has it ignored
-//   let go     cloth was blocked on all sides (Candidates::release_blocked), or what was planned is over but the cloth
-//              is still on the wrong side or crosses it. A part that a garment does not wear (a hand, for a skirt) and
-//              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook. So
-//              does one in which cloth is caught, which would drag it along and stretch it.
+//   let go     cloth was blocked on all sides (Candidates::release_blocked; a hole that has to grow does so by its
+//   half,
+//              lest a place without room is found vertex by vertex), or what was planned is over but the cloth is still
+//              on the wrong side or crosses it. A part that a garment does not wear (a hand, for a skirt) and that it
+//              has got through goes as a whole, with all that hangs on it: half a hand is a hook. So does one in which
+//              cloth is caught, which would drag it along and stretch it.
 //
 // What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it. Until
 // then cloth that it lay on is drawn back there (draw_back.h), and other cloth inside is pushed out. What is absent for
@@ -52,9 +54,10 @@ class Absence {
   void take_out(std::span<const char> deep_t0, std::span<const char> deep_t1, std::vector<char>& absent) const;
   /// Lets go of these vertices of the collider for a garment, and of what is around them; returns how many are new.
   /// Of parts that the garment does not wear, and of smaller ones, it is all that is near, else what is next to them: a
-  /// hole in what a sleeve lies on swallows it.
+  /// hole in what a sleeve lies on swallows it. But a hole that has to grow does so by its half at least: a place
+  /// without room is found by a few searches then. deep: at the end of the substep.
   int let_go(const ClothModel& model, int garment, std::span<const int> body_vertices, std::span<const Vec3> body,
-             std::vector<char>& absent) const;
+             std::span<const char> deep, std::vector<char>& absent) const;
   /// All of the collider; returns how many are new.
   int let_go_of_all(int garment, std::vector<char>& absent) const;
   /// At the end of a frame: what is clear of a garment comes back, what it has got through goes. crossings: of the
@@ -104,6 +107,8 @@ class Absence {
   void add_descendants(std::vector<char>& gone) const;
   void grow(const ClothModel& model, std::span<const Vec3> body, double reach, int least_rank,
             std::vector<char>& marked) const;
+  void widen(int garment, std::span<const int> parts, std::span<const char> deep, std::span<const char> absent,
+             std::vector<char>& marked) const;
 
   std::size_t body_count_ = 0;
   std::vector<char> ignored_;            ///< as ClothMotion::absent

@@ -203,7 +203,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   report.smallest_gap = std::numeric_limits<double>::infinity();
   report.on_body.resize(model_.setup.garments.size());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
-  int short_pieces = 0, releases = 0;
+  int short_pieces = 0, in_haste = 0;
   std::vector<double> starts;  // of the pieces, as done
   const auto gains = [&] {
     return starts.size() < k_patience || done - starts[starts.size() - k_patience] >= k_least_gain;
@@ -247,8 +247,9 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       const double shorter = share * std::clamp(k_approach * free, k_shortest_cut, k_approach);
       const double length = shorter * (1 - done) * in.h;
       const bool is_short = length < in.shortest;
+      const int most_short = k_most_short / (1 + in.earlier_releases + report.releases);
       if (!report.impatient && gains() &&
-          (!is_short || (length >= k_last_shortest * in.shortest && short_pieces < k_most_short))) {
+          (!is_short || (length >= k_last_shortest * in.shortest && short_pieces < most_short))) {
         if (is_short) ++short_pieces;
         share = shorter;
         continue;  // a shorter piece is carried anew: nothing ever ends next to a touch
@@ -259,8 +260,9 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
       report.seconds_candidates += seconds_since(joining);
       // No room: what blocks is let go until it is clear of the cloth again. Should cloth still block cloth then,
       // these pairs pass this once, and the certificate says so.
-      const bool whole = report.impatient && ++releases > k_most_releases;
-      if (free < 1 && s.candidates.release_blocked(cloth, piece, whole) > 0) {
+      const bool whole = report.impatient && ++in_haste > k_most_releases;
+      if (free < 1 && s.candidates.release_blocked(cloth, piece, in.deep_t1, whole) > 0) {
+        ++report.releases;
         find_skin_holds();  // at once: what is pressed springs through
         share = 1;
         continue;  // search again without them

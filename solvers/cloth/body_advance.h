@@ -22,7 +22,8 @@ struct SubstepInput {
   double friction_share = 1;               ///< as StepInput's [1]
   double h = 0;                            ///< s
   double time_t0 = 0;                      ///< s
-  double shortest = 0;  ///< pieces shorter than this [s] make the walk release, but for some, see k_last_shortest
+  double shortest = 0;       ///< pieces shorter than this [s] make the walk release, but for some, see k_last_shortest
+  int earlier_releases = 0;  ///< of this frame: where there was no room, there is seldom more a moment later
   /// What it may cost (work_limit.h) before what blocks is let go at once and Newton's method does no more than it
   /// has to.
   double patience = std::numeric_limits<double>::infinity();
@@ -33,6 +34,7 @@ struct AdvanceReport {
   int pieces = 0, newton_iterations = 0, linear_iterations = 0;
   double work = 0;         ///< see work_limit.h
   bool impatient = false;  ///< SubstepInput::patience was over
+  int releases = 0;        ///< times that something of the body was let go
   double lost_weight = 0;  ///< mean of StepResult::lost_weight over the substep
   double smallest_gap = 0;
   bool finite = true;

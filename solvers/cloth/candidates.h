@@ -76,7 +76,7 @@ class Candidates {
   /// collider's parts, the smaller ones are let go there; else what the pairs have of the collider is (noted in
   /// cloth.absent; returns how many vertices). Pairs of cloth with cloth are only dropped.
   /// whole: all of the collider is let go for the garments that are blocked.
-  int release_blocked(ClothMotion& cloth, const PieceMotion& piece, bool whole = false);
+  int release_blocked(ClothMotion& cloth, const PieceMotion& piece, std::span<const char> deep, bool whole = false);
 
   const PairList& pairs() const { return pairs_; }
 

@@ -35,7 +35,7 @@ std::vector<int> Candidates::pinched_through() const {
   return through;
 }
 
-int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece, bool whole) {
+int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece, std::span<const char> deep, bool whole) {
   join_zones(piece);
   const std::vector<int> through = pinched_through();
   const int n = model_.vertex_count();
@@ -62,7 +62,7 @@ int Candidates::release_blocked(ClothMotion& cloth, const PieceMotion& piece, bo
       if (!goes[at(g)].empty() && whole)
         freed += model_.absence.let_go_of_all(g, cloth.absent);
       else if (!goes[at(g)].empty())
-        freed += model_.absence.let_go(model_, g, goes[at(g)], body, cloth.absent);
+        freed += model_.absence.let_go(model_, g, goes[at(g)], body, deep, cloth.absent);
     return freed;
   };
   for (const auto* blocked : {&blocked_.vertex_face, &blocked_.edge_edge}) take_blocking(false, *blocked);

@@ -170,6 +170,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
   double lost = 0;
   WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}), !frame.torn.empty());
   bool hurried = false, slowed = false;
+  int releases = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
   std::vector<char> deep = frame.not_met(body_.start().absent), deep_next;
@@ -201,9 +202,11 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
       slowed = true;
     }
     in.friction_share = sewing_friction(*model_, t0 + h);
+    in.earlier_releases = releases;
     in.patience = limit.patience(substeps - 1 - k);
     const AdvanceReport step = advance_.substep(in, m);
     limit.spend(step.work);
+    releases += step.releases;
     hurried = hurried || step.impatient;
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;
