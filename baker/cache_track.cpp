@@ -38,4 +38,9 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   return track;
 }
 
+bool CachedBake::has_cache(const ManifestSystem& system) const {
+  std::error_code error;
+  return !system.caches.empty() && std::filesystem::exists(folder / system.caches[0].file, error);
+}
+
 }  // namespace ft

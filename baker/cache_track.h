@@ -28,4 +28,14 @@ struct CacheTrack {
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest);
 
+/// A bake's folder as a kind sees it that judges its systems there.
+struct CachedBake {
+  const std::filesystem::path& folder;
+  const Manifest& manifest;
+
+  Result<CacheTrack> open(const ManifestSystem& system) const { return open_track(folder, system, manifest); }
+  /// Whether the file is there that open() opens.
+  bool has_cache(const ManifestSystem& system) const;
+};
+
 }  // namespace ft

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "baker/cache_track.h"
 #include "baker/report_json.h"
 #include "baker/systems/system.h"
 

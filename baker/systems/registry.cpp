@@ -38,9 +38,4 @@ const SystemKind* find_system_kind(std::string_view name) {
   return found == kinds.end() ? nullptr : *found;
 }
 
-bool CachedBake::has_cache(const ManifestSystem& system) const {
-  std::error_code error;
-  return !system.caches.empty() && std::filesystem::exists(folder / system.caches[0].file, error);
-}
-
 }  // namespace ft

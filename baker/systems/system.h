@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "baker/cache_track.h"
 #include "baker/core/bytes.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/mesh.h"
@@ -25,6 +24,9 @@
 namespace ft {
 
 struct BakePlan;
+struct CachedBake;
+struct Manifest;
+struct ManifestSystem;
 struct RoomReport;
 struct StartReport;
 
@@ -90,16 +92,6 @@ class JudgedGroup {
   virtual Result<FrameReport> judge(int index, int frame, std::span<const AbsentRuns> absent) const = 0;
   /// What cannot be judged.
   virtual std::vector<std::string> notes() const { return {}; }
-};
-
-/// A bake's folder as a kind sees it that judges its systems there.
-struct CachedBake {
-  const std::filesystem::path& folder;
-  const Manifest& manifest;
-
-  Result<CacheTrack> open(const ManifestSystem& system) const { return open_track(folder, system, manifest); }
-  /// Whether the file is there that open() opens.
-  bool has_cache(const ManifestSystem& system) const;
 };
 
 class SystemKind {

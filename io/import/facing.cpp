@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "baker/core/mesh.h"
-#include "io/import/sampled_trajectory.h"
 
 namespace ft {
 namespace {

@@ -10,10 +10,10 @@
 #include "io/import/character_trajectory.h"
 #include "io/import/clips.h"
 #include "io/import/facing.h"
-#include "io/import/geometry_cache.h"
 #include "io/import/import_cache.h"
 #include "io/import/placed_character.h"
 #include "io/import/placement.h"
+#include "io/import/read_geometry_cache.h"
 #include "io/import/sampled_trajectory.h"
 #include "io/import/stray_vertices.h"
 

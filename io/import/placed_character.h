@@ -4,7 +4,7 @@
 
 #include "io/import/bind.h"
 #include "io/import/character_trajectory.h"
-#include "io/import/import.h"
+#include "io/import/import_request.h"
 
 namespace ft {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/import/character.h"
-#include "io/import/import.h"
+#include "io/import/import_request.h"
 
 namespace ft {
 

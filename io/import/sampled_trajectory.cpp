@@ -47,33 +47,6 @@ std::vector<char> rigid_pieces(const GeometryCache& cache, std::span<const int> 
 
 }  // namespace
 
-std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> triangles, int& piece_count) {
-  std::vector<int> root(static_cast<std::size_t>(vertex_count));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int v) {
-    while (root[static_cast<std::size_t>(v)] != v)
-      v = root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
-    return v;
-  };
-  std::vector<char> used(root.size(), 0);
-  for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) {
-      used[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] = 1;
-      const int a = find(t[0]), b = find(t[static_cast<std::size_t>(k)]);
-      root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  std::vector<int> number(root.size(), -1), out(root.size(), 0);
-  piece_count = 0;
-  for (int v = 0; v < vertex_count; ++v) {
-    if (!used[static_cast<std::size_t>(v)]) continue;
-    int& n = number[static_cast<std::size_t>(find(v))];
-    if (n < 0) n = piece_count++;
-    out[static_cast<std::size_t>(v)] = n;
-  }
-  piece_count = std::max(piece_count, 1);
-  return out;
-}
-
 SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback)
     : cache_(std::move(cache)), linear_(unit_scale * axes), playback_(playback) {
   find_jumps();

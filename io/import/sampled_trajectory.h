@@ -40,8 +40,4 @@ class SampledTrajectory : public Trajectory {
   Vec3 start_velocity_ = Vec3::Zero();  ///< mean over the vertices at the first frame [m/s]
 };
 
-/// Pieces of a surface that are not joined by triangles: one index per vertex, numbered by first vertex; vertices
-/// without triangles join piece 0.
-std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> triangles, int& piece_count);
-
 }  // namespace ft

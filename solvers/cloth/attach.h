@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collision/nearest_point.h"
-#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/cloth_setup.h"
 
 namespace ft {
 

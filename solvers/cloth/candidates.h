@@ -13,20 +13,10 @@
 #include "collision/pair_runs.h"
 #include "solvers/cloth/approach_limits.h"
 #include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/piece_motion.h"
 #include "solvers/cloth/way_out.h"
 
 namespace ft {
-
-/// Positions and motions of a piece: cloth first, then the body.
-struct PieceMotion {
-  std::vector<Vec3> start;        ///< m
-  std::vector<Vec3> body_motion;  ///< per body vertex, to the end of the substep [m]
-  std::vector<Vec3> carry;        ///< per cloth vertex, while it is planned [m]
-  std::vector<Vec3f> all;         ///< carry, then body_motion; what the cloth really does [m]
-  /// Per vertex: from the start to the middle of where the solve may put it; of the body its motion [m].
-  std::vector<Vec3f> centre;
-  std::vector<float> slack;  ///< per cloth vertex: how far the solve may put it from there [m]
-};
 
 /// A cloth vertex that wants to leave its ball: where it is, where it wants to be, and what to add around [m].
 struct RoomRequest {

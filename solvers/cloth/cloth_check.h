@@ -2,7 +2,7 @@
 #pragma once
 
 #include "baker/core/result.h"
-#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/cloth_setup.h"
 
 namespace ft {
 

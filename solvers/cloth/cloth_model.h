@@ -13,7 +13,7 @@
 #include "collision/vertex_clumps.h"
 #include "solvers/cloth/absence.h"
 #include "solvers/cloth/carry_smooth.h"
-#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/cloth_setup.h"
 #include "solvers/cloth/contact_potential.h"
 #include "solvers/cloth/moving_collider.h"
 #include "solvers/energies/cloth_topology.h"

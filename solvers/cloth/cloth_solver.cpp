@@ -345,8 +345,8 @@ FrameReport ClothSolver::advance(Frame frame, State& state) {
 
 Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup) {
   if (!setup.keep_short_edges)
-    if (auto riding = make_riding_solver(setup); !riding || *riding) return riding;
-  if (setup.coarsen > 1) return make_coarse_solver(std::move(setup));
+    if (auto riding = make_riding_solver(setup, make_cloth_solver); !riding || *riding) return riding;
+  if (setup.coarsen > 1) return make_coarse_solver(std::move(setup), make_cloth_solver);
   auto model = build_cloth_model(std::move(setup));
   if (!model) return model.error();
   return std::unique_ptr<Solver>(std::make_unique<ClothSolver>(std::move(*model)));

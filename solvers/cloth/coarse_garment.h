@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "collision/mesh_coarsen.h"
-#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/cloth_setup.h"
 
 namespace ft {
 

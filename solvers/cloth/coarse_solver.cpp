@@ -62,7 +62,7 @@ class CoarseSolver final : public Solver {
 
 }  // namespace
 
-Result<std::unique_ptr<Solver>> make_coarse_solver(ClothSetup setup) {
+Result<std::unique_ptr<Solver>> make_coarse_solver(ClothSetup setup, const ClothSolverMaker& make_inner) {
   // What is wrong with a garment is said of the garment as it was given.
   if (Status status = check(setup); !status) return status.error();
   const double factor = setup.coarsen;
@@ -73,7 +73,7 @@ Result<std::unique_ptr<Solver>> make_coarse_solver(ClothSetup setup) {
     garments.push_back({garment.name, std::move(garment.mesh), std::move(coarse.kept), std::move(coarse.places)});
     garment = std::move(coarse.garment);
   }
-  auto inner = make_cloth_solver(std::move(setup));
+  auto inner = make_inner(std::move(setup));
   if (!inner) return inner.error();
   return std::unique_ptr<Solver>(std::make_unique<CoarseSolver>(std::move(*inner), std::move(garments)));
 }

@@ -3,13 +3,13 @@
 
 #include <memory>
 
-#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/cloth_setup.h"
 
 namespace ft {
 
 /// As make_cloth_solver(), with edges setup.coarsen times as long. Systems, their positions and the vertices of
 /// incidents are those of the given garments; crossings, gaps and strains are those of the coarser ones, which is what
 /// moved.
-Result<std::unique_ptr<Solver>> make_coarse_solver(ClothSetup setup);
+Result<std::unique_ptr<Solver>> make_coarse_solver(ClothSetup setup, const ClothSolverMaker& make_inner);
 
 }  // namespace ft

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "solvers/cloth/candidates.h"
 #include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/piece_motion.h"
 
 namespace ft {
 namespace {

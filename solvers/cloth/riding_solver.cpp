@@ -142,7 +142,7 @@ void RidingSolver::tell(std::span<const Crossing> crossings, std::span<const Vec
 
 }  // namespace
 
-Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& given) {
+Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& given, const ClothSolverMaker& make_inner) {
   // What is wrong with a garment is said of the garment as it was given.
   if (Status status = check(given); !status) return status.error();
   std::vector<std::optional<CoarseGarment>> coarse;
@@ -157,7 +157,7 @@ Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& given) {
     if (coarse[g]) setup.garments[g] = std::move(coarse[g]->garment);
   }
   riders.finish();
-  auto inner = make_cloth_solver(std::move(setup));
+  auto inner = make_inner(std::move(setup));
   if (!inner) return inner.error();
   return std::unique_ptr<Solver>(
       std::make_unique<RidingSolver>(std::move(*inner), std::move(riders), !(given.coarsen > 1)));

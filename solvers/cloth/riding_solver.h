@@ -7,13 +7,13 @@
 
 #include <memory>
 
-#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/cloth_setup.h"
 
 namespace ft {
 
 /// Null when no garment has such edges. Systems, incidents, crossings and strains are those of the given garments, gaps
 /// and depths those of what moves. With setup.coarsen above 1 it is a preview of that, and crossings and strains, too,
 /// are those of what moves.
-Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& setup);
+Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& setup, const ClothSolverMaker& make_inner);
 
 }  // namespace ft

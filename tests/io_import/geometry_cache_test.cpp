@@ -1,6 +1,4 @@
 // Geometry caches as primaries: PC2, MDD, OBJ sequences; exact at the samples, smooth between, and refused when cut.
-#include "io/import/geometry_cache.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -10,6 +8,7 @@
 #include "baker/core/file.h"
 #include "io/cache/cache.h"
 #include "io/import/import.h"
+#include "io/import/read_geometry_cache.h"
 #include "io/import/sampled_trajectory.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "baker/absent_runs.h"
+#include "baker/cache_track.h"
 #include "baker/core/corner_uvs.h"
 #include "collision/crossings.h"
 #include "collision/penetration.h"

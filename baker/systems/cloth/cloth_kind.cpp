@@ -1,5 +1,6 @@
 #include "baker/systems/cloth/cloth_kind.h"
 
+#include "baker/cache_track.h"
 #include "baker/systems/cloth/cloth_check.h"
 #include "baker/systems/cloth/cloth_section.h"
 #include "baker/systems/cloth/plan_cloths.h"

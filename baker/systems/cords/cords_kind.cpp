@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "baker/cache_track.h"
 #include "baker/systems/cords/cords_section.h"
 #include "baker/systems/cords/judge_cords.h"
 #include "baker/systems/cords/plan_cords.h"

@@ -1,4 +1,4 @@
-#include "io/import/geometry_cache.h"
+#include "io/import/read_geometry_cache.h"
 
 #include <algorithm>
 #include <bit>
