@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 using History = std::map<int, InteractionForce>;
@@ -84,4 +84,4 @@ Json to_json(const std::vector<ForceComparison>& forces) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "baker/manifest.h"
-#include "baker/report_json.h"
+#include "baker/record/manifest.h"
+#include "baker/record/report_json.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 struct ForceDifference {
   int frame = 0;
@@ -30,4 +30,4 @@ std::vector<ForceComparison> compare_forces(const Manifest& a, const Manifest& b
 std::string to_text(const std::vector<ForceComparison>& forces);
 Json to_json(const std::vector<ForceComparison>& forces);
 
-}  // namespace ft
+}  // namespace ft::inline baker

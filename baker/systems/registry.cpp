@@ -3,9 +3,9 @@
 #include "baker/systems/cloth/cloth_kind.h"
 #include "baker/systems/cords/cords_kind.h"
 #include "baker/systems/follow/follow_kind.h"
-#include "baker/systems/system.h"
+#include "baker/systems/interface/system.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 std::span<const SystemKind* const> system_kinds() {
   static const SystemKind* const kinds[] = {
@@ -38,4 +38,4 @@ const SystemKind* find_system_kind(std::string_view name) {
   return found == kinds.end() ? nullptr : *found;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

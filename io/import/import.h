@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "baker/core/result.h"
-#include "io/import/import_request.h"
+#include "io/import/character/import_request.h"
 
-namespace ft {
+namespace ft::inline io {
 
 Result<ImportedPrimary> import_primary(const ImportRequest& request);
 Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const ImportLimits& limits = {});
@@ -16,4 +16,4 @@ Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const
 /// anything else.
 int import_child_main(int argc, char** argv);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -1,6 +1,6 @@
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline io {
 
 std::string_view SecondarySpec::kind() const {
   return section->name();
@@ -10,4 +10,4 @@ std::string SecondarySpec::owner() const {
   return std::string(kind()) + " " + in_quotes(name);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -5,7 +5,7 @@
 #include "io/shot/secondary.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr int k_most_frames = 100'000;
@@ -132,4 +132,4 @@ void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary
   judge_couplings(root, shot, faults);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -14,23 +14,23 @@
 
 #include "baker/core/give_back.h"
 #include "baker/core/volume.h"
-#include "solvers/cloth/body_advance.h"
-#include "solvers/cloth/body_ahead.h"
-#include "solvers/cloth/certificate.h"
-#include "solvers/cloth/cloth_model.h"
-#include "solvers/cloth/coarse_solver.h"
-#include "solvers/cloth/first_state.h"
-#include "solvers/cloth/frame_incidents.h"
-#include "solvers/cloth/pins.h"
-#include "solvers/cloth/riding_solver.h"
-#include "solvers/cloth/settling.h"
-#include "solvers/cloth/sewing.h"
-#include "solvers/cloth/substep_count.h"
-#include "solvers/cloth/tangles.h"
-#include "solvers/cloth/torn_body.h"
-#include "solvers/cloth/work_limit.h"
+#include "solvers/cloth/advance/body_advance.h"
+#include "solvers/cloth/advance/body_ahead.h"
+#include "solvers/cloth/advance/substep_count.h"
+#include "solvers/cloth/advance/tangles.h"
+#include "solvers/cloth/advance/work_limit.h"
+#include "solvers/cloth/certify/certificate.h"
+#include "solvers/cloth/certify/frame_incidents.h"
+#include "solvers/cloth/embed/coarse_solver.h"
+#include "solvers/cloth/embed/riding_solver.h"
+#include "solvers/cloth/model/cloth_model.h"
+#include "solvers/cloth/model/first_state.h"
+#include "solvers/cloth/model/pins.h"
+#include "solvers/cloth/model/settling.h"
+#include "solvers/cloth/model/sewing.h"
+#include "solvers/cloth/model/torn_body.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_rewinds = 3;
@@ -352,4 +352,4 @@ Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup) {
   return std::unique_ptr<Solver>(std::make_unique<ClothSolver>(std::move(*model)));
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

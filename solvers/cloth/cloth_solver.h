@@ -6,11 +6,11 @@
 
 #include <memory>
 
-#include "solvers/cloth/cloth_setup.h"
+#include "solvers/cloth/model/cloth_setup.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Checks the setup (pins in range, garments not empty) and builds the model.
 Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

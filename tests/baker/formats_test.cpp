@@ -2,9 +2,9 @@
 // reports.
 #include <limits>
 
-#include "baker/checkpoint.h"
-#include "baker/manifest.h"
-#include "baker/report_json.h"
+#include "baker/record/manifest.h"
+#include "baker/record/report_json.h"
+#include "baker/run/checkpoint.h"
 #include "tests/baker/fake_bake.h"
 #include "tests/support/damage.h"
 

@@ -1,5 +1,5 @@
 // The table of forces: what it takes together, with which mass, and who is told.
-#include "baker/interaction.h"
+#include "baker/run/interaction.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "baker/plan.h"
+#include "baker/plan/plan.h"
 #include "baker/systems/cloth/cloth_group.h"
 #include "baker/systems/cloth/meeting.h"
 #include "io/shot/mesh_file.h"

@@ -7,9 +7,9 @@
 
 #include "baker/core/file.h"
 #include "io/cache/cache.h"
+#include "io/import/files/read_geometry_cache.h"
 #include "io/import/import.h"
-#include "io/import/read_geometry_cache.h"
-#include "io/import/sampled_trajectory.h"
+#include "io/import/motion/sampled_trajectory.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
 

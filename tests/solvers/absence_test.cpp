@@ -1,11 +1,11 @@
 // What cloth does not meet, decided at the end of a frame.
-#include "solvers/cloth/absence.h"
+#include "solvers/cloth/model/absence.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/model/cloth_model.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {

@@ -1,6 +1,6 @@
 // The pairs of one piece of a substep: complete for all that the solve may do, also after it got more room; what was
 // let pass stays out.
-#include "solvers/cloth/candidates.h"
+#include "solvers/cloth/advance/candidates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,14 @@
 // Garments with edges so short that nobody sees them move: what moves has none, and the given vertices ride on it.
-#include "solvers/cloth/riding_solver.h"
+#include "solvers/cloth/embed/riding_solver.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "baker/core/parallel.h"
-#include "solvers/cloth/coarse_garment.h"
-#include "solvers/cloth/riders.h"
+#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/embed/coarse_garment.h"
+#include "solvers/cloth/embed/riders.h"
 #include "tests/support/exact_crossings.h"
 #include "tests/support/scripted_body.h"
 
@@ -94,7 +95,7 @@ std::vector<Vec3> positions(const Solver& solver, const State& state, int system
 
 TEST(RidingSolver, Garments_without_such_edges_are_solved_as_they_are) {
   const ClothSetup setup = over_balls(false, false);
-  auto none = make_riding_solver(setup);
+  auto none = make_riding_solver(setup, make_cloth_solver);
   ASSERT_TRUE(none);
   EXPECT_EQ(*none, nullptr);
   ClothSetup keeps = setup;

@@ -10,7 +10,7 @@
 #include "baker/core/types.h"
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// One way to hold a garment to its primary, or to a garment.
 inline constexpr std::string_view k_pin_world = "world";  ///< PinSpec::to: a place that does not move
@@ -65,4 +65,4 @@ struct ClothSpec final : SecondarySpec {
   std::vector<std::string> meets{"*"};  ///< patterns of primaries that it meets beside its own
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

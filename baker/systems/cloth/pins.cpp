@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
-#include "collision/pair_geometry.h"
+#include "collision/geometry/pair_geometry.h"
 #include "io/shot/vertex_values.h"
-#include "solvers/cloth/attach.h"
+#include "solvers/cloth/model/attach.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr std::size_t k_bundle = 32;  // triangles per box: neighbours in the file are neighbours in space, mostly
@@ -138,4 +138,4 @@ Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, 
   return {};
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

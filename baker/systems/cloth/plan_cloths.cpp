@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <map>
 
-#include "baker/located.h"
+#include "baker/plan/located.h"
 #include "baker/systems/cloth/pins.h"
 #include "baker/systems/cloth/vertex_maps.h"
-#include "baker/systems/plan_common.h"
+#include "baker/systems/interface/plan_common.h"
 #include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/patterns.h"
 #include "io/shot/shot_values.h"
 #include "io/shot/weld.h"
 #include "io/shot/words.h"
-#include "solvers/cloth/coarse_garment.h"
+#include "solvers/cloth/embed/coarse_garment.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 namespace {
 
@@ -246,4 +246,4 @@ Result<std::unique_ptr<ClothGroup>> cloths_of(const Shot& shot, std::size_t p, B
   return made;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

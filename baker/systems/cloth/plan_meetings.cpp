@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "baker/located.h"
+#include "baker/plan/located.h"
 #include "baker/systems/cloth/cloth_quality.h"
 #include "baker/systems/cloth/meeting.h"
 #include "baker/systems/cloth/plan_cloths.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// Why no other primary's cloth can meet a primary, nor its own cloth another primary; empty: they can.
@@ -127,4 +127,4 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker
