@@ -201,7 +201,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   const std::size_t nc = cloth.x.size(), nb = in.body_t0.size();
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
-  report.on_body.resize(model_.setup.garments.size());
+  report.on_body.resize(model_.setup.garments.size() * model_.body_count());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
   int short_pieces = 0, releases = 0;
   std::vector<double> starts;  // of the pieces, as done

@@ -41,7 +41,7 @@ struct AdvanceReport {
     double peak = 0;          ///< largest force of a piece [N]
     double contact_time = 0;  ///< s
   };
-  std::vector<OnBody> on_body;  ///< per garment
+  std::vector<OnBody> on_body;  ///< per garment, and of each per body of the setup
   double seconds_candidates = 0, seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
 
