@@ -144,11 +144,12 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
       e.primary = primary.name;
       e.secondary = secondary.mesh->name;
       e.two_way_possible = find_system_kind(group->role())->section().why_not_two_way().empty();
+      const std::string& own = plan->primaries[secondary.primary].name;
       std::vector<Wrench> forces(reports.size());
       for (std::size_t i = 0; i < reports.size(); ++i) {
         const FrameReport& r = reports[i];
         for (const InteractionForce& f : r.forces)
-          if (f.system == e.secondary) forces[i] = f.mean;
+          if (f.system == e.secondary && (f.primary.empty() || f.primary == own)) forces[i] = f.mean;
         e.strain_p99 = std::max(e.strain_p99, r.strain_p99);
         e.crossing_frames += r.crossings_body + r.crossings_self > 0;
         e.released_frames += r.released_vertices > 0;

@@ -101,6 +101,7 @@ InteractionForce force_from(const Json& json) {
   take_vector(json, "torque", out.mean.torque);
   take_field(json, "peak", out.peak);
   take_field(json, "contact", out.contact_share);
+  take_field(json, "primary", out.primary);
   return out;
 }
 
@@ -151,11 +152,13 @@ Json to_json(const Incident& i) {
 }
 
 Json to_json(const InteractionForce& f) {
-  return Json{{"system", f.system},
-              {"force", value_of(f.mean.force)},
-              {"torque", value_of(f.mean.torque)},
-              {"peak", value_of(f.peak)},
-              {"contact", value_of(f.contact_share)}};
+  Json out{{"system", f.system},
+           {"force", value_of(f.mean.force)},
+           {"torque", value_of(f.mean.torque)},
+           {"peak", value_of(f.peak)},
+           {"contact", value_of(f.contact_share)}};
+  if (!f.primary.empty()) out["primary"] = f.primary;
+  return out;
 }
 
 Json to_json(const AbsentRuns& absent) {

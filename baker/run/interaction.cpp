@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "io/shot/shot_values.h"
+#include "io/shot/words.h"
+
 namespace ft::inline baker {
 namespace {
 
@@ -49,15 +52,32 @@ Json to_json(const Spread& s) {
   return Json{{"min", s.min}, {"mean", s.mean}, {"max", s.max}};
 }
 
+/// Those that are on a primary, and those that meet it, in the manifest's order.
+std::vector<std::string> secondaries_of(const Manifest& manifest, const std::string& primary) {
+  std::vector<std::string> out;
+  for (const ManifestSystem& s : manifest.systems) {
+    if (!is_secondary(s.role)) continue;
+    const auto is_met = [&](const FrameReport& frame) {
+      return std::any_of(frame.forces.begin(), frame.forces.end(),
+                         [&](const InteractionForce& f) { return f.system == s.name && f.primary == primary; });
+    };
+    if (s.primary == primary || std::any_of(manifest.frames.begin(), manifest.frames.end(), is_met))
+      out.push_back(s.name);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Interaction> interactions(const Manifest& manifest, const std::vector<PrimaryPlan>& primaries) {
   std::vector<Interaction> out;
   const double frame_time = 1 / manifest.fps;
   for (const PrimaryPlan& primary : primaries) {
-    std::vector<std::string> secondaries;
-    for (const ManifestSystem& s : manifest.systems)
-      if (is_secondary(s.role) && s.primary == primary.name) secondaries.push_back(s.name);
+    const std::vector<std::string> secondaries = secondaries_of(manifest, primary.name);
+    const auto is_own = [&](const std::string& secondary) {
+      return std::any_of(manifest.systems.begin(), manifest.systems.end(),
+                         [&](const ManifestSystem& s) { return s.name == secondary && s.primary == primary.name; });
+    };
     std::vector<Sum> sums(secondaries.size());
     std::vector<char> measured(secondaries.size(), 0);
     Sum together;
@@ -68,7 +88,7 @@ std::vector<Interaction> interactions(const Manifest& manifest, const std::vecto
       bool any = false;
       for (const InteractionForce& f : frame.forces) {
         const auto own = std::find(secondaries.begin(), secondaries.end(), f.system);
-        if (own == secondaries.end()) continue;
+        if (own == secondaries.end() || (f.primary.empty() ? !is_own(f.system) : f.primary != primary.name)) continue;
         measured[static_cast<std::size_t>(own - secondaries.begin())] = 1;
         if (f.contact_share <= 0) continue;
         sums[static_cast<std::size_t>(own - secondaries.begin())].add(f.mean.force, f.mean.torque, f.peak);
@@ -106,9 +126,26 @@ std::vector<std::string> interaction_lines(const std::vector<Interaction>& inter
                                 primary.mass.kilograms > 0 ? "  a = " + text(i.acceleration, "m/s2") : ""));
     }
   }
-  for (const Interaction& i : interactions)
-    if (i.measured && i.frames == 0)
-      out.push_back(fmt::format("\"{}\" touches nothing in any frame: is it where \"{}\" is?", i.secondary, i.primary));
+  for (std::string& line : untouched_lines(interactions)) out.push_back(std::move(line));
+  return out;
+}
+
+std::vector<std::string> untouched_lines(const std::vector<Interaction>& interactions) {
+  std::vector<std::string> out, told;
+  for (const Interaction& i : interactions) {
+    if (i.secondary.empty() || std::find(told.begin(), told.end(), i.secondary) != told.end()) continue;
+    told.push_back(i.secondary);
+    std::vector<std::string> primaries;
+    bool touches = false;
+    for (const Interaction& other : interactions) {
+      if (other.secondary != i.secondary || !other.measured) continue;
+      primaries.push_back(in_quotes(other.primary));
+      touches = touches || other.frames > 0;
+    }
+    if (touches || primaries.empty()) continue;
+    out.push_back(fmt::format("\"{}\" touches nothing in any frame: is it where {} {}?", i.secondary, joined(primaries),
+                              primaries.size() > 1 ? "are" : "is"));
+  }
   return out;
 }
 

@@ -31,12 +31,15 @@ struct Interaction {
   Vec3 impulse = Vec3::Zero();  ///< over all frames [N s]
 };
 
-/// Of the written frames; secondaries in the manifest's order, each primary's sum behind its own.
+/// Of the written frames: a row for each primary and each secondary that is on it or meets it; secondaries in the
+/// manifest's order, each primary's sum behind its own.
 std::vector<Interaction> interactions(const Manifest& manifest, const std::vector<PrimaryPlan>& primaries);
 
 /// A table to be read, with the primaries' masses and where they come from; and what touches nothing.
 std::vector<std::string> interaction_lines(const std::vector<Interaction>& interactions,
                                            const std::vector<PrimaryPlan>& primaries);
+/// The secondaries that touch none of the primaries that they meet.
+std::vector<std::string> untouched_lines(const std::vector<Interaction>& interactions);
 Json to_json(const std::vector<Interaction>& interactions, const std::vector<PrimaryPlan>& primaries);
 
 }  // namespace ft::inline baker

@@ -260,6 +260,8 @@ Status Walk::complete() {
   if (const Status closed = caches_.close(); !closed) return closed;
   manifest_.systems = caches_.systems();
   if (const Status written = write_report(); !written) return written;
+  for (std::string& note : untouched_lines(interactions(manifest_, plan_.primaries)))
+    manifest_.notes.push_back(std::move(note));
   manifest_.complete = true;
   if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
   std::error_code ignored;  // a checkpoint of a complete bake does no harm

@@ -57,13 +57,14 @@ struct ProfilePhase {
 /// The one list of the phases; the total is not among them.
 std::span<const ProfilePhase> profile_phases();
 
-/// What one secondary did to its primary in one frame by contact, friction and pins, from its change of momentum. The
+/// What one secondary did to a primary in one frame by contact, friction and pins, from its change of momentum. The
 /// paper's measure of what a coupling has to carry.
 struct InteractionForce {
   std::string system;        ///< name of the garment
   Wrench mean;               ///< over the frame; the torque about the primary's centre of volume at the frame's end
   double peak = 0;           ///< largest force of a piece of a substep [N]
   double contact_share = 0;  ///< of the frame, during which there was any force [1]
+  std::string primary{};     ///< whose; empty: the secondary's own, and it meets no other
 };
 
 /// Vertices of the feasible collider that a system does not meet at a frame's end, as Solver::collider_absent.
@@ -94,7 +95,7 @@ struct FrameReport {
   int released_vertices = 0;
   bool finite = true;
   std::map<std::string, double, std::less<>> own;  ///< metrics that only some kinds have, see frame_metrics.h
-  std::vector<InteractionForce> forces;            ///< one of each garment
+  std::vector<InteractionForce> forces;            ///< one of each garment, and of each primary that it meets
   std::vector<AbsentRuns> absent;                  ///< of the systems that do not meet all of the collider
   std::vector<Incident> incidents;                 ///< worst first, at most 16 a frame
   FrameProfile profile;

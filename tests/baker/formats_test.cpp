@@ -37,7 +37,8 @@ FrameReport example_report(int frame) {
   f.mean = {Vec3(1.0 / 3, -5, 0), Vec3(0, 1e-17, 2)};
   f.peak = 6;
   f.contact_share = 0.75;
-  r.forces = {f};
+  r.forces = {f, f};
+  r.forces[1].primary = "chair";
   return r;
 }
 

@@ -178,7 +178,7 @@ void BodyAdvance::solve(const SubstepInput& in, double h, double end, bool short
   report.finite = report.finite && result.finite;
   ++report.pieces;
   for (std::size_t g = 0; g < result.on_body.size(); ++g) {
-    AdvanceReport::OnBody& sum = report.on_body[g];
+    OnBody& sum = report.on_body[g];
     const double force = result.on_body[g].force.norm();
     sum.impulse += h * result.on_body[g];
     sum.peak = std::max(sum.peak, force);
@@ -201,7 +201,7 @@ AdvanceReport BodyAdvance::substep(const SubstepInput& in, ClothMotion& cloth) {
   const std::size_t nc = cloth.x.size(), nb = in.body_t0.size();
   AdvanceReport report;
   report.smallest_gap = std::numeric_limits<double>::infinity();
-  report.on_body.resize(model_.setup.garments.size());
+  report.on_body.resize(model_.setup.garments.size() * model_.body_count());
   double done = 0, share = 1;  // share: of what is left, that this piece takes
   int short_pieces = 0, in_haste = 0;
   std::vector<double> starts;  // of the pieces, as done

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solvers/cloth/model/cloth_motion.h"
+#include "solvers/cloth/solve/forces_on_bodies.h"
 #include "solvers/cloth/solve/implicit_step.h"
 
 namespace ft::inline solvers {
@@ -38,12 +39,7 @@ struct AdvanceReport {
   double lost_weight = 0;  ///< mean of StepResult::lost_weight over the substep
   double smallest_gap = 0;
   bool finite = true;
-  struct OnBody {
-    Wrench impulse;           ///< about the origin [N s]
-    double peak = 0;          ///< largest force of a piece [N]
-    double contact_time = 0;  ///< s
-  };
-  std::vector<OnBody> on_body;  ///< per garment
+  std::vector<OnBody> on_body;  ///< per garment, and of each per body of the setup
   double seconds_candidates = 0, seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
 

@@ -170,6 +170,11 @@ Result<std::unique_ptr<ClothModel>> build_cloth_model(ClothSetup setup) {
     model->part_rank.resize(by_size.size());
     for (std::size_t rank = 0; rank < by_size.size(); ++rank)
       model->part_rank[at(by_size[rank])] = static_cast<int>(rank);
+    for (const int part : s.bodies.empty() ? std::span<const int>{} : model->collider->part_of_vertex()) {
+      const auto own = std::find_if(s.bodies.begin(), s.bodies.end(), [&](const PartRange& b) { return b.has(part); });
+      CHECK(own != s.bodies.end());
+      model->body_of_vertex.push_back(static_cast<int>(own - s.bodies.begin()));
+    }
     model->absence = Absence(*model);
     double thickness = 0;
     for (const double radius : model->contact.radius) thickness = std::max(thickness, radius);

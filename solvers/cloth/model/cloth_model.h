@@ -2,6 +2,7 @@
 // contact data and pins. Built once by build_cloth_model().
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -67,10 +68,13 @@ struct ClothModel {
   std::vector<FlippedCap> flipped_caps;
   std::unique_ptr<MovingCollider> collider;  ///< null: cloth alone
   std::vector<int> part_rank;                ///< of the collider's parts: 0 is the largest
+  std::vector<int> body_of_vertex;           ///< of the collider's vertices: into setup.bodies; empty: it is one
   Absence absence;                           ///< of the collider, where there is one
   double start_depth = 0;                    ///< how deep the deepest vertex started inside the body [m]
 
   int vertex_count() const { return static_cast<int>(mass.size()); }
+  /// What forces are told of: the primary, or each of several bodies in it.
+  std::size_t body_count() const { return std::max<std::size_t>(setup.bodies.size(), 1); }
   int garment_of(int vertex) const { return contact.garment[static_cast<std::size_t>(vertex)]; }
 };
 

@@ -33,6 +33,12 @@ struct ClothPin {
   Vec3 opens = Vec3::Zero();
 };
 
+/// Parts of a primary that follow one another: those of one body, where it is several in one.
+struct PartRange {
+  int first_part = 0, part_count = 0;
+  bool has(int part) const { return part >= first_part && part < first_part + part_count; }
+};
+
 struct ClothGarment {
   std::string name;
   Mesh mesh;  ///< bind-pose placement, m; its positions are the rest shape unless pattern_scale says otherwise
@@ -45,12 +51,10 @@ struct ClothGarment {
   double self_friction = 0.3;  ///< among cloths [1]
   bool self_collision = true;
   std::vector<int> ignores;  ///< parts of the primary that it does not meet
-  /// Where the primary is several bodies in one: the parts of the body that wears it, first and count, and what takes
-  /// it to where that starts. Without a value the primary is one body, and the garment starts with it.
-  struct Wearer {
-    int first_part = 0, part_count = 0;
+  /// Where the primary is several bodies in one: the parts of the body that wears it, and what takes it to where that
+  /// starts. Without a value the primary is one body, and the garment starts with it.
+  struct Wearer : PartRange {
     Eigen::Isometry3d to_start = Eigen::Isometry3d::Identity();
-    bool has(int part) const { return part >= first_part && part < first_part + part_count; }
   };
   std::optional<Wearer> wearer;
   VertexMaps maps;  ///< one value per vertex of `mesh`, or empty
@@ -59,6 +63,12 @@ struct ClothGarment {
 struct ClothSetup {
   std::vector<ClothGarment> garments;
   std::shared_ptr<const Trajectory> primary;  ///< may be null: cloth alone
+  /// Where the primary is several bodies in one: which of its parts are whose. Forces are told of each. Empty: it is
+  /// one.
+  struct Body : PartRange {
+    std::string name;
+  };
+  std::vector<Body> bodies;
   int first_frame = 1;
   double fps = 24;
   int preroll_frames = 24;

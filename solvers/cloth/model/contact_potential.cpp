@@ -287,6 +287,15 @@ void ContactPotential::add_gradient_between_garments(std::span<const Vec3> x, st
   });
 }
 
+void ContactPotential::add_gradient_with_body(std::span<const Vec3> x, int body, std::span<const int> body_of_vertex,
+                                              std::span<Vec3> gradient) const {
+  const int n = model_.cloth_vertex_count;
+  add_gradient_where(x, gradient, [&](const std::array<int, 4>& v) {
+    const int of_body = std::max(v[0], v[3]), of_cloth = std::min(v[0], v[3]);
+    return of_cloth < n && of_body >= n && body_of_vertex[at(of_body - n)] == body;
+  });
+}
+
 void ContactPotential::mark_touching(std::span<char> of_garment) const {
   const int n = model_.cloth_vertex_count;
   for (const Contact& c : contacts_)

@@ -71,6 +71,9 @@ class ContactPotential {
 
   /// Of add_gradient() what garments do to each other alone.
   void add_gradient_between_garments(std::span<const Vec3> x, std::span<Vec3> gradient) const;
+  /// Of add_gradient() what garments do to one of several bodies; body_of_vertex: per vertex behind the cloth's.
+  void add_gradient_with_body(std::span<const Vec3> x, int body, std::span<const int> body_of_vertex,
+                              std::span<Vec3> gradient) const;
   /// Marks the garments that touched the body at the last update.
   void mark_touching(std::span<char> of_garment) const;
 

@@ -9,6 +9,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/stopwatch.h"
 #include "solvers/cloth/model/pin_pull.h"
+#include "solvers/cloth/solve/forces_on_bodies.h"
 #include "solvers/cloth/solve/newton_direction.h"
 #include "solvers/cloth/solve/step_measures.h"
 
@@ -172,7 +173,7 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       for (std::size_t i = begin; i < end; ++i) s.gradient[i] = model_.mass[i] * inertia * (x[i] - s.y[i]);
     });
     for (const auto& energy : model_.energies) energy->add_derivatives(x, s.gradient, hessian);
-    add_pin_gradient(all, false);
+    add_pin_gradient(all, [](const PinPoint&) { return true; });
     for (const Pull& pull : in.pulls) pull.add_gradient(x, s.gradient);
     contact.add_gradient(all, s.gradient);
     add_pins_and_contact();
@@ -270,12 +271,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   return result;
 }
 
-/// Adds what the pins, or those to the world alone, pull with at the end of the solve.
-void ImplicitStep::add_pin_gradient(std::span<const Vec3> all, bool to_world_only) {
+/// Adds what the pins that count pull with at the end of the solve.
+template <class Counts>
+void ImplicitStep::add_pin_gradient(std::span<const Vec3> all, Counts&& counts) {
   Scratch& s = *scratch_;
   for (std::size_t p = 0; p < model_.pins.size(); ++p) {
     const PinPoint& pin = model_.pins[p];
-    if (!s.pins[p].holds() || (to_world_only && !pin.to_world)) continue;
+    if (!s.pins[p].holds() || !counts(pin)) continue;
     s.gradient[at(pin.vertex)] += s.pins[p].gradient(all[at(pin.vertex)]);
   }
 }
@@ -286,18 +288,37 @@ void ImplicitStep::add_pin_gradient(std::span<const Vec3> all, bool to_world_onl
 void ImplicitStep::measure_on_body(std::span<const Vec3> all, double inertia, StepResult& result) {
   Scratch& s = *scratch_;
   const std::size_t garments = model_.setup.garments.size(), n = s.y.size();
-  result.on_body.resize(garments);
+  result.on_body.resize(garments * model_.body_count());
   if (std::none_of(s.touches.begin(), s.touches.end(), [](char c) { return c != 0; })) return;
   const std::span<const Vec3> x = all.first(n);
   s.gradient.assign(n, Vec3::Zero());
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   if (garments > 1) s.contact->add_gradient_between_garments(all, s.gradient);
-  add_pin_gradient(all, true);
+  add_pin_gradient(all, [](const PinPoint& pin) { return pin.to_world; });
+  std::vector<Wrench> total(garments);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t g = at(model_.contact.garment[i]);
-    if (s.touches[g] != 0) result.on_body[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));
+    if (s.touches[g] != 0) total[g].add(x[i], -(model_.mass[i] * inertia * (x[i] - s.y[i]) + s.gradient[i]));
   }
+  result.on_body = model_.setup.bodies.empty() ? total : share_out(total, told_by_contacts(all), wearer_bodies(model_));
+}
+
+/// What contacts and pins press on each of several bodies with.
+std::vector<Wrench> ImplicitStep::told_by_contacts(std::span<const Vec3> all) {
+  Scratch& s = *scratch_;
+  const std::size_t n = s.y.size(), bodies = model_.body_count();
+  std::vector<Wrench> out(model_.setup.garments.size() * bodies);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    s.gradient.assign(n, Vec3::Zero());
+    s.contact->add_gradient_with_body(all, static_cast<int>(b), model_.body_of_vertex, s.gradient);
+    add_pin_gradient(all, [&](const PinPoint& pin) {
+      return pin.triangle[0] >= 0 && at(model_.body_of_vertex[at(pin.triangle[0])]) == b;
+    });
+    for (std::size_t i = 0; i < n; ++i)
+      if (s.gradient[i] != Vec3::Zero()) out[at(model_.contact.garment[i]) * bodies + b].add(all[i], s.gradient[i]);
+  }
+  return out;
 }
 
 /// What is left of the gradient of a whole garment: inner forces cancel out, and all others have to make its momentum.
@@ -310,7 +331,7 @@ void ImplicitStep::measure_lost(std::span<const Vec3> all, double inertia, StepR
   for (const auto& energy : model_.energies)
     if (!energy->is_internal()) energy->add_gradient(x, s.gradient);
   s.contact->add_gradient(all, s.gradient);
-  add_pin_gradient(all, false);
+  add_pin_gradient(all, [](const PinPoint&) { return true; });
   std::vector<char> attached(model_.setup.garments.size(), 0);
   for (const AttachPoint& point : model_.attachments) attached[at(model_.garment_of(point.vertex))] = 1;
   for (std::size_t g = 0; g < attached.size(); ++g) {

@@ -55,7 +55,8 @@ struct StepResult {
   double last_move = 0;     ///< largest displacement of the last iteration [m]
   double smallest_gap = 0;  ///< m
   bool finite = true;
-  /// Per garment: what it does to the body at the end of the step, by contact, friction and pins; about the origin.
+  /// Per garment, and of each per body of the setup: what it does to it at the end of the step, by contact, friction
+  /// and pins; about the origin.
   std::vector<Wrench> on_body;
   double seconds_assembly = 0, seconds_linear = 0, seconds_contact = 0;
 };
@@ -72,7 +73,9 @@ class ImplicitStep {
  private:
   void measure_on_body(std::span<const Vec3> all, double inertia, StepResult& result);
   void measure_lost(std::span<const Vec3> all, double inertia, StepResult& result);
-  void add_pin_gradient(std::span<const Vec3> all, bool to_world_only);
+  std::vector<Wrench> told_by_contacts(std::span<const Vec3> all);
+  template <class Counts>
+  void add_pin_gradient(std::span<const Vec3> all, Counts&& counts);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
   const ClothModel& model_;
