@@ -167,7 +167,7 @@ TEST(RidingSolver, Goes_on_from_a_saved_state_as_if_nothing_had_been) {
 TEST(RidingSolver, A_pin_on_a_tiny_vertex_holds_the_vertex_that_stands_for_it) {
   ClothGarment given = garment("g", 0, true);
   const int last = given.mesh.vertex_count() - 1;
-  given.pins.push_back({{last, 0, last - 1}, {0.25, 0.5, 1}});
+  given.pins.push_back({{}, {last, 0, last - 1}, {0.25, 0.5, 1}});
   const auto moves = without_short_edges(given);
   ASSERT_TRUE(moves);
   const ClothPin& pin = moves->garment.pins[0];

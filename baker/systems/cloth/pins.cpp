@@ -64,8 +64,7 @@ std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span
 Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span<const Vec3> body,
                              std::span<const Triangle> triangles) {
   ClothPin pin;
-  pin.stiffness = spec.stiffness;
-  pin.max_pull = spec.max_pull;
+  static_cast<ClothPinSettings&>(pin) = spec;
   switch (spec.select) {
     case PinSpec::Select::k_group: {
       const auto group = std::find_if(garment.groups.begin(), garment.groups.end(),

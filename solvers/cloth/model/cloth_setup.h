@@ -13,6 +13,7 @@
 #include "baker/core/trajectory.h"
 #include "collision/body/feasible_poses.h"
 #include "solvers/base/solver.h"
+#include "solvers/cloth/model/cloth_settings.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/hold_span.h"
 
@@ -20,17 +21,12 @@ namespace ft::inline solvers {
 
 /// Vertices that are held to the body, each following the nearest point of the body's bind pose; or to a garment, each
 /// hanging on the nearest point of its surface by a cord, see attach.h.
-struct ClothPin {
+struct ClothPin : ClothPinSettings {
   std::vector<int> vertices;    ///< garment's file order
   std::vector<double> weights;  ///< 0..1 each, scales the stiffness; empty: all 1
-  double stiffness = 1e6;       ///< N/m3: spring per garment area and displacement
-  double max_pull = 5e3;        ///< Pa: force limit per garment area; contact wins over pins
   HoldSpan hold{};              ///< when
   int to = -1;                  ///< garment of the setup, perhaps its own, which holds it; -1: the body
   bool to_world = false;        ///< holds where the mesh is; the garment then starts there, too
-  /// Not zero: its vertices let go one after another in this direction, and take hold the other way round, the last of
-  /// them when hold.fade is over.
-  Vec3 opens = Vec3::Zero();
 };
 
 /// Parts of a primary that follow one another: those of one body, where it is several in one.
@@ -39,17 +35,12 @@ struct PartRange {
   bool has(int part) const { return part >= first_part && part < first_part + part_count; }
 };
 
-struct ClothGarment {
+struct ClothGarment : ClothSettings {
   std::string name;
   Mesh mesh;  ///< bind-pose placement, m; its positions are the rest shape unless pattern_scale says otherwise
   double pattern_scale = 0;  ///< m per unit of uvs, which are the rest shape then; 0: the positions are
-  double sewing_time = 0;  ///< s from the start of the pre-roll until its stitches are closed; 0: half of the pre-roll
   Fabric fabric;
   std::vector<ClothPin> pins;
-  double thickness = 3e-3;     ///< contact begins at this distance from the body [m], 0.5e-3..10e-3
-  double friction = 0.4;       ///< Coulomb, against the body [1]
-  double self_friction = 0.3;  ///< among cloths [1]
-  bool self_collision = true;
   std::vector<int> ignores;  ///< parts of the primary that it does not meet
   /// Where the primary is several bodies in one: the parts of the body that wears it, and what takes it to where that
   /// starts. Without a value the primary is one body, and the garment starts with it.
