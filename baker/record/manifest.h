@@ -38,8 +38,8 @@ struct ManifestSystem {
   std::vector<ManifestCache> caches;
   double pattern_scale = 0;  ///< of a cloth whose rest lengths are those of its flat pattern: m per unit of vt; else 0
   double weld = 0;  ///< what lay nearer than this at rest was one vertex for the simulation [m]; 0: nothing was joined
-  /// Of a cloth that was solved with several primaries: the systems that are their colliders ("collider", or "body" of
-  /// what stands still). Cloths with the same list were solved together. Empty: its primary's.
+  /// Of a secondary that was solved with several primaries: the systems that are their colliders ("collider", or "body"
+  /// where that is as drawn). Cloths with the same list were solved together. Empty: its primary's.
   std::vector<std::string> meets{};
 };
 

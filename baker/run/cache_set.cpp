@@ -40,7 +40,8 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       add(std::move(source), output.mesh->name, std::string(plan.groups[g]->role()), true);
       systems_.back().pattern_scale = output.pattern_scale;
       systems_.back().weld = output.weld;
-      for (const ColliderSlice& slice : slices) systems_.back().meets.push_back(slice.name);
+      for (const ColliderSlice& slice : slices)
+        if (slice.met_by.empty() || slice.met_by[at(s)] != 0) systems_.back().meets.push_back(slice.name);
     }
     const bool alone = outputs.empty();
     if (!plan.shot().cache_collider && !alone) continue;
@@ -164,7 +165,8 @@ Snapshot CacheSet::take(std::span<const State> states) const {
       positions_of(source, state, x);
     else if (!source.slice.empty())
       slice_of(source, state, x);
-    else if (source.collider || solvers_[source.group]->moves_primary())
+    else if (source.collider ||
+             (source.primary == plan_.groups[source.group]->primary && solvers_[source.group]->moves_primary()))
       solvers_[source.group]->collider_positions(state, x);
     else
       plan_.primaries[source.primary].trajectory->sample(state.time, x);

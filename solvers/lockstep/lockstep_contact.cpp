@@ -9,6 +9,7 @@
 #include "collision/check/crossings.h"
 #include "collision/geometry/ccd_li2021.h"
 #include "collision/geometry/triangle_tree.h"
+#include "solvers/lockstep/contact_laws.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -16,39 +17,20 @@ namespace {
 /// Slip speed below which friction grows to its full force [m/s].
 constexpr double k_sliding_speed = 1e-3;
 
+/// Contact with scenery pushes back twice as hard as at rest against what approaches at this speed. 0.01 is as dead as
+/// sand, 1 bounces [m/s].
+constexpr double k_dead_speed = 0.05;
+
 /// Nearer to rest than so many times the slip at which friction is full, its tangent is what stiffness is made of [1].
 constexpr double k_near = 300;
-
-/// Of what stands in the way, all within so many times the least distance [1].
-constexpr double k_hard = 3;
-
-struct Barrier {
-  double energy = 0, slope = 0, curvature = 0;
-};
-
-Barrier barrier(double d, double reach, double k) {
-  if (d >= reach) return {};
-  if (d <= 0) return {std::numeric_limits<double>::infinity(), 0, 0};
-  const double in = d - reach, log = std::log(d / reach);
-  return {-k * in * in * log, -k * (2 * in * log + in * in / d), -k * (2 * log + 4 * in / d - in * in / (d * d))};
-}
-
-/// Friction's potential by slip, over the full force, with its slope and curvature (Li et al. 2020, eq. 15).
-double friction_energy(double slip, double full) {
-  return slip >= full ? slip : slip * slip / full * (1 - slip / (3 * full)) + full / 3;
-}
-double friction_slope(double slip, double full) {
-  return slip >= full ? 1 : slip / full * (2 - slip / full);
-}
-double friction_curvature(double slip, double full) {
-  return slip >= full ? 0 : 2 / full * (1 - slip / full);
-}
 
 }  // namespace
 
 LockstepContact::LockstepContact(const LockstepModel& model)
     : model_(model),
-      finder_(model.point_count(), model.cords, static_cast<int>(model.skin_weights.size()), model.skin) {
+      finder_(model.point_count(), model.cords, static_cast<int>(model.skin_weights.size()), model.skin),
+      scenery_(model.setup.bodies),
+      near_(scenery_, model.point_count(), model.cords) {
   for (const CordSystem& c : model.setup.cords) {
     self_ = self_ || c.self_collision;
     widest_reach_ = std::max(widest_reach_, 2 * c.radius);
@@ -63,15 +45,14 @@ void LockstepContact::push_pairs(const PairList& from, PairKind kind) {
   const int points = model_.point_count(), split = first_feature_size(kind);
   for (const PairKey key : from.of(kind)) {
     const Stencil s = from.features.stencil(kind, key);
-    Pair pair{kind, s.v, 0, 0, false};
+    Pair pair{kind, s.v, 0, 0, k_own};
     // One side may be the prop; the other, or both, are cords.
     int first = s.v[0], second = s.v[at(split)];
-    pair.with_prop = first >= points || second >= points;
+    if (first >= points || second >= points) pair.met = 0;
     if (first >= points) std::swap(first, second);
-    const auto passes = [&](int v) { return v < points && !let_through_.empty() && let_through_[at(v)] != 0; };
-    if (pair.with_prop && std::any_of(s.v.begin(), s.v.end(), passes)) continue;
+    if (pair.met == 0 && passes(s.v, 0)) continue;
     const CordSystem& a = model_.cords_of(first);
-    if (pair.with_prop) {
+    if (pair.met == 0) {
       pair.reach = 2 * a.radius;
       pair.friction = a.friction;
     } else {
@@ -88,20 +69,78 @@ void LockstepContact::push_pairs(const PairList& from, PairKind kind) {
   }
 }
 
-void LockstepContact::find(std::span<const Vec3> x, std::span<const Vec3> dx) {
+/// Of cords and scenery, which the finder numbers right behind the points.
+void LockstepContact::push_scenery_pairs(const PairList& from, PairKind kind) {
+  const int points = model_.point_count(), skin = model_.place_count() - points;
+  for (const PairKey key : from.of(kind)) {
+    Stencil s = from.features.stencil(kind, key);
+    int cord = -1, met = k_own;
+    for (int& v : s.v) {
+      if (v < points) {
+        cord = v;
+        continue;
+      }
+      met = 1 + scenery_.body_of(near_.vertices()[at(v - points)]);
+      v += skin;
+    }
+    if (!model_.meets(model_.system_of[at(cord)], met) || passes(s.v, met)) continue;
+    const CordSystem& system = model_.cords_of(cord);
+    pairs_.push_back({kind, s.v, 2 * system.radius, system.friction, met});
+  }
+}
+
+bool LockstepContact::passes(const std::array<int, 4>& v, int met) const {
+  return !let_through_.empty() && std::any_of(v.begin(), v.end(), [&](int i) {
+    return i < model_.point_count() && (static_cast<std::uint64_t>(let_through_[at(i)]) & met_bit(met)) != 0;
+  });
+}
+
+void LockstepContact::begin_step(double t0, double t1) {
+  scenery_.begin_step(t0, t1);
+  if (scenery_.any_moves()) near_.forget();
+}
+
+/// Nodes -> all places, with the scenery where a share of its way has brought it.
+void LockstepContact::spread(std::span<const Vec3> x, double share, std::vector<Vec3>& places) const {
+  model_.spread(x, places);
+  for (const int v : near_.vertices()) places.push_back(scenery_.start(v) + share * scenery_.way(v));
+}
+
+void LockstepContact::find(std::span<const Vec3> x, std::span<const Vec3> dx, double share) {
   model_.spread(x, from_);
   model_.spread(dx, way_);
   const std::size_t points = at(model_.point_count());
+  if (!scenery_.empty()) {
+    Box swept;
+    for (std::size_t i = 0; i < points; ++i) swept.include(from_[i]), swept.include(Vec3(from_[i] + way_[i]));
+    swept.inflate(widest_reach_);
+    near_.cover(swept);
+    for (const int v : near_.vertices()) {
+      from_.push_back(scenery_.start(v) + share * scenery_.way(v));
+      way_.push_back((1 - share) * scenery_.way(v));
+    }
+  }
   const BoxFrame frame = frame_around(std::span(from_).first(points), std::span(way_).first(points), widest_reach_);
   boxes_.clear();
   for (std::size_t i = 0; i < from_.size(); ++i)
     boxes_.push_back(frame.swept(from_[i], from_[i] + way_[i], 0.5 * widest_reach_));
-  finder_.arrange(from_);
+  const std::size_t own = at(model_.place_count());
+  finder_.arrange(std::span(from_).first(own));
   PairList found;
-  finder_.find(boxes_, self_, found);
+  finder_.find(std::span(boxes_).first(own), self_, found);
   pairs_.clear();
   push_pairs(found, PairKind::k_vertex_face);
   push_pairs(found, PairKind::k_edge_edge);
+  if (near_.vertices().empty()) return;
+  const auto without_skin = [&](auto& all) {
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(points), all.begin() + static_cast<std::ptrdiff_t>(own));
+  };
+  std::vector<Vec3> places = from_;
+  without_skin(places);
+  without_skin(boxes_);
+  near_.find(boxes_, places, found);
+  push_scenery_pairs(found, PairKind::k_vertex_face);
+  push_scenery_pairs(found, PairKind::k_edge_edge);
 }
 
 std::array<Vec3, 4> LockstepContact::corners(const Pair& pair, std::span<const Vec3> places) const {
@@ -125,14 +164,14 @@ double LockstepContact::free_share() const {
 
 bool LockstepContact::meets_prop() const {
   return std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& pair) {
-    if (!pair.with_prop) return false;
+    if (pair.met != 0) return false;
     const auto x = corners(pair, from_);
     return pair_geometry(pair.kind, x).distance < pair.reach + largest_relative_motion(pair.kind, corners(pair, way_));
   });
 }
 
-double LockstepContact::value(std::span<const Vec3> x) const {
-  model_.spread(x, places_);
+double LockstepContact::value(std::span<const Vec3> x, double share) const {
+  spread(x, share, places_);
   double sum = 0;
   for (const Pair& pair : pairs_) {
     const auto corner = corners(pair, places_);
@@ -141,19 +180,36 @@ double LockstepContact::value(std::span<const Vec3> x) const {
     smallest_gap_ = std::min(smallest_gap_, d);
     sum += barrier(d, pair.reach, model_.contact_stiffness).energy;
   }
-  for (const Slide& s : slides_) sum += s.limit * friction_energy(slip(s, x).norm(), sliding_);
+  for (const Slide& s : slides_) {
+    const Vec3 u = moved(s, x, share);
+    sum += s.limit * friction_energy((s.across * u).norm(), sliding_);
+    if (s.dashpot > 0) sum += 0.5 * s.dashpot / h_ * std::pow(std::min(0.0, s.normal.dot(u)), 2);
+  }
   return sum;
 }
 
 NodeTerm LockstepContact::combination(const Pair& pair, const PairGeometry& geometry) const {
   NodeTerm out;
   for (std::size_t k = 0; k < 4; ++k)
-    if (geometry.weight[k] != 0) model_.add_place(pair.v[k], geometry.weight[k], out);
+    if (geometry.weight[k] != 0 && pair.v[k] < model_.place_count())
+      model_.add_place(pair.v[k], geometry.weight[k], out);
   return out;
 }
 
-void LockstepContact::add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out, double far) const {
-  model_.spread(x, places_);
+/// How far the whole way of the scenery moves the two sides of a pair against each other [m].
+Vec3 LockstepContact::given(const Pair& pair, const PairGeometry& geometry) const {
+  Vec3 out = Vec3::Zero();
+  if (pair.met < 1) return out;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (pair.v[k] >= model_.place_count())
+      out += geometry.weight[k] * scenery_.way(near_.vertices()[at(pair.v[k] - model_.place_count())]);
+  return out;
+}
+
+/// visit(term, what is met or k_own).
+template <class Visit>
+void LockstepContact::for_each_term(std::span<const Vec3> x, double far, double share, Visit&& visit) const {
+  spread(x, share, places_);
   for (const Pair& pair : pairs_) {
     const auto corner = corners(pair, places_);
     if (box_gap_squared(pair.kind, corner) >= pair.reach * pair.reach) continue;
@@ -161,38 +217,76 @@ void LockstepContact::add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& 
     smallest_gap_ = std::min(smallest_gap_, geometry.distance);
     if (geometry.distance >= pair.reach || geometry.distance <= 0) continue;
     const Barrier b = barrier(geometry.distance, pair.reach, model_.contact_stiffness);
-    NodeTerm& term = out.emplace_back(combination(pair, geometry));
+    NodeTerm term = combination(pair, geometry);
     term.force = b.slope * geometry.normal;
     term.stiffness = b.curvature * geometry.normal * geometry.normal.transpose();
+    if (pair.met > 0) term.ahead = (1 - share) * (term.stiffness * given(pair, geometry));
+    visit(term, pair.met);
   }
   for (const Slide& s : slides_) {
-    const Vec3 u = slip(s, x);
+    const Vec3 all = moved(s, x, share), u = s.across * all;
     const double size = u.norm();
     const double secant = size > 0 ? friction_slope(size, sliding_) / size : 2 / sliding_;
-    NodeTerm& term = out.emplace_back(s.of);
+    NodeTerm term = s.of;
     term.force = s.limit * secant * u;
     term.stiffness = s.limit * secant * s.across;
     if (size > 0 && far < k_near * sliding_) {
       const Vec3 along = u / size;
       term.stiffness -= s.limit * (secant - friction_curvature(size, sliding_)) * along * along.transpose();
     }
+    if (const double apart = s.normal.dot(all); s.dashpot > 0 && apart < 0) {
+      term.force += s.dashpot / h_ * apart * s.normal;
+      term.stiffness += s.dashpot / h_ * s.normal * s.normal.transpose();
+    }
+    if (s.met > 0) term.ahead = (1 - share) * (term.stiffness * s.given);
+    visit(term, s.met);
   }
 }
 
-Vec3 LockstepContact::slip(const Slide& slide, std::span<const Vec3> x) const {
-  Vec3 u = Vec3::Zero();
-  for (int k = 0; k < slide.of.count; ++k)
-    u += slide.of.weight[at(k)] * (x[at(slide.of.node[at(k)])] - slide_start_[at(slide.of.node[at(k)])]);
-  return slide.across * u;
+void LockstepContact::add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out, double far, double share) const {
+  for_each_term(x, far, share, [&](const NodeTerm& term, int) { out.push_back(term); });
 }
 
-void LockstepContact::lag_friction(std::span<const Vec3> x, std::span<const Vec3> x_t0, double h) {
+std::vector<Wrench> LockstepContact::on_met(std::span<const Vec3> x, double share) const {
+  const std::size_t met_count = model_.met_count();
+  std::vector<Wrench> out(model_.setup.cords.size() * met_count);
+  const int points = model_.point_count();
+  std::vector<NodeTerm> terms;
+  std::vector<int> met_by_term;
+  for_each_term(x, 0, share, [&](const NodeTerm& term, int met) { terms.push_back(term), met_by_term.push_back(met); });
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const NodeTerm& t = terms[i];
+    const int met = met_by_term[i];
+    if (met == k_own) continue;
+    int system = -1;
+    for (int k = 0; k < t.count; ++k)
+      if (t.node[at(k)] < points) system = model_.system_of[at(t.node[at(k)])];
+    Wrench& sum = out[at(system) * met_count + at(met)];
+    for (int k = 0; k < t.count; ++k) {
+      const Vec3& place = x[at(t.node[at(k)])];
+      if (met == 0 && t.node[at(k)] >= points) sum.add(place, -t.weight[at(k)] * t.force);
+      if (met > 0) sum.add(place, t.weight[at(k)] * t.force);  // scenery is no node: what pushes the cord back
+    }
+  }
+  return out;
+}
+
+/// How far the two sides of a contact have moved against each other in the step [m].
+Vec3 LockstepContact::moved(const Slide& slide, std::span<const Vec3> x, double share) const {
+  Vec3 u = share * slide.given;
+  for (int k = 0; k < slide.of.count; ++k)
+    u += slide.of.weight[at(k)] * (x[at(slide.of.node[at(k)])] - slide_start_[at(slide.of.node[at(k)])]);
+  return u;
+}
+
+void LockstepContact::lag_friction(std::span<const Vec3> x, std::span<const Vec3> x_t0, double h, double share) {
   slides_.clear();
   slide_start_.assign(x_t0.begin(), x_t0.end());
   sliding_ = k_sliding_speed * h;
-  model_.spread(x, places_);
+  h_ = h;
+  spread(x, share, places_);
   for (const Pair& pair : pairs_) {
-    if (pair.friction <= 0) continue;
+    if (pair.friction <= 0 && pair.met < 1) continue;
     const auto corner = corners(pair, places_);
     if (box_gap_squared(pair.kind, corner) >= pair.reach * pair.reach) continue;
     const PairGeometry g = pair_geometry(pair.kind, corner);
@@ -200,69 +294,14 @@ void LockstepContact::lag_friction(std::span<const Vec3> x, std::span<const Vec3
     Slide& s = slides_.emplace_back();
     s.of = combination(pair, g);
     s.across = Mat3::Identity() - g.normal * g.normal.transpose();
-    s.limit = -pair.friction * barrier(g.distance, pair.reach, model_.contact_stiffness).slope;
+    s.met = pair.met;
+    s.given = given(pair, g);
+    const double pressed = -barrier(g.distance, pair.reach, model_.contact_stiffness).slope;
+    s.normal = g.normal;
+    s.dashpot = pair.met > 0 ? pressed / k_dead_speed : 0;
+    const double approach = s.dashpot > 0 ? std::max(0.0, -s.normal.dot(moved(s, x, share))) : 0;
+    s.limit = pair.friction * (pressed + s.dashpot / h * approach);
   }
-}
-
-std::vector<Wrench> LockstepContact::on_prop(std::span<const Vec3> x) const {
-  std::vector<Wrench> out(model_.setup.cords.size());
-  std::vector<NodeTerm> terms;
-  add_terms(x, terms);
-  const int points = model_.point_count();
-  for (const NodeTerm& t : terms) {
-    int system = -1;
-    for (int k = 0; k < t.count; ++k)
-      if (t.node[at(k)] < points) system = model_.system_of[at(t.node[at(k)])];
-    for (int k = 0; k < t.count; ++k)
-      if (t.node[at(k)] >= points) out[at(system)].add(x[at(t.node[at(k)])], -t.weight[at(k)] * t.force);
-  }
-  return out;
-}
-
-std::vector<int> LockstepContact::blocking(std::span<const Vec3> x) const {
-  model_.spread(x, places_);
-  double least = 1;  // of the reach
-  std::vector<double> nearness(at(model_.point_count()), 1);
-  for (const Pair& pair : pairs_) {
-    if (!pair.with_prop) continue;
-    const double near = pair_geometry(pair.kind, corners(pair, places_)).distance / pair.reach;
-    for (const int v : pair.v)
-      if (v < model_.point_count()) nearness[at(v)] = std::min(nearness[at(v)], near);
-    least = std::min(least, near);
-  }
-  std::vector<int> out;
-  for (int v = 0; v < model_.point_count(); ++v)
-    if (nearness[at(v)] < 1 && nearness[at(v)] <= k_hard * least) out.push_back(v);
-  return out;
-}
-
-std::vector<char> LockstepContact::within_reach(std::span<const Vec3> x) {
-  const std::vector<double> kept = std::exchange(let_through_, {});
-  find(x, std::vector<Vec3>(x.size(), Vec3::Zero()));
-  std::vector<char> out(at(model_.point_count()), 0);
-  for (const Pair& pair : pairs_) {
-    if (!pair.with_prop || pair_geometry(pair.kind, corners(pair, from_)).distance >= pair.reach) continue;
-    for (const int v : pair.v)
-      if (v < model_.point_count()) out[at(v)] = 1;
-  }
-  let_through_ = kept;
-  return out;
-}
-
-std::vector<Crossing> LockstepContact::crossings(std::span<const Vec3> x) const {
-  std::vector<Crossing> out;
-  if (!model_.has_prop()) return out;
-  model_.spread(x, places_);
-  const TriangleTree tree(places_, model_.skin);
-  for (const Triangle& cord : model_.cords) {
-    const Vec3 &p = places_[at(cord[0])], &q = places_[at(cord[1])];
-    tree.for_each_near(TreeBox::around(p.cwiseMin(q), p.cwiseMax(q)), [&](int index) {
-      const Triangle& t = model_.skin[at(index)];
-      if (edge_crosses_triangle(p, q, places_[at(t[0])], places_[at(t[1])], places_[at(t[2])]))
-        out.push_back({{cord[0], cord[1]}, t, true});
-    });
-  }
-  return out;
 }
 
 }  // namespace ft::inline solvers

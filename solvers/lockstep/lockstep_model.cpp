@@ -109,6 +109,11 @@ Result<LockstepModel> build_lockstep_model(LockstepSetup setup) {
   std::nth_element(piece_stiffness.begin(),
                    piece_stiffness.begin() + static_cast<std::ptrdiff_t>(piece_stiffness.size() / 2),
                    piece_stiffness.end());
+  for (const MetBody& body : m.setup.bodies) {
+    CHECK(body.trajectory && body.met_by.size() == m.setup.cords.size());
+    if (body.trajectory->surface().triangles.empty())
+      return usage_error("it has no surface", "primary \"" + body.name + "\"");
+  }
   m.contact_stiffness = k_contact_share * piece_stiffness[piece_stiffness.size() / 2];
 
   if (!m.has_prop()) return m;

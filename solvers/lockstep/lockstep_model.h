@@ -1,8 +1,10 @@
 // What never changes of a lockstep system: all points of all cords and the prop's four nodes as one numbering of nodes,
 // masses, elements and contact data. Positions that contact looks at are a second numbering: the points, then the
-// vertices of the prop's surface.
+// vertices of the prop's surface, then those of the scenery that are near (near_scenery.h), which are no nodes.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,9 +29,17 @@ struct LockstepModel {
   std::vector<double> rest_length;                  ///< per cord, as `cords`
   double contact_stiffness = 0;                     ///< N/m
 
+  /// What cords meet, in one numbering: the prop, then the bodies of the setup.
+  std::size_t met_count() const { return 1 + setup.bodies.size(); }
+  bool meets(int system, int met) const { return met == 0 || setup.bodies[at(met - 1)].met_by[at(system)] != 0; }
+  const std::string& name_of_met(std::size_t met) const {
+    return met == 0 ? setup.prop->name : setup.bodies[met - 1].name;
+  }
+
   int point_count() const { return first_point.back(); }
   int node_count() const { return static_cast<int>(mass.size()); }
   bool has_prop() const { return setup.prop.has_value(); }
+  /// Points and the prop's surface.
   int place_count() const { return point_count() + static_cast<int>(skin_weights.size()); }
   const CordSystem& cords_of(int point) const { return setup.cords[at(system_of[at(point)])]; }
 
@@ -38,6 +48,11 @@ struct LockstepModel {
   /// Adds what a place in the second numbering is made of.
   void add_place(int place, double weight, NodeTerm& term) const;
 };
+
+/// Of what is met, for sets of them; what is beyond those that a double has room for shares the last [1].
+inline std::uint64_t met_bit(int met) {
+  return std::uint64_t{1} << std::min(met, 51);
+}
 
 Result<LockstepModel> build_lockstep_model(LockstepSetup setup);
 

@@ -1,6 +1,6 @@
 // The walk of a frame: equal substeps no longer than the setup's; in each the prop's place at its end, if it is driven,
-// then the step. A prop that is to be released on contact is let go at the start of the first substep in which
-// something comes into its reach.
+// and the scenery's, then the step. A prop that is to be released on contact is let go at the start of the first
+// substep in which something comes into its reach.
 #include "solvers/lockstep/lockstep_solver.h"
 
 #include <fmt/format.h>
@@ -11,8 +11,10 @@
 #include <mutex>
 
 #include "baker/core/state_points.h"
+#include "baker/core/volume.h"
 #include "solvers/cords/tubes.h"
 #include "solvers/lockstep/lockstep_step.h"
+#include "solvers/lockstep/passing.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -56,7 +58,7 @@ class LockstepSolver final : public Solver {
   struct Moving {
     LockstepMotion motion;
     bool free = false;
-    std::vector<double> through;  ///< per point: 1 where it is let through the prop
+    std::vector<double> through;  ///< per point, as LockstepContact::let_through()
     Vec3 hold_impulse = Vec3::Zero();
   };
   struct Unsettled {
@@ -67,7 +69,9 @@ class LockstepSolver final : public Solver {
                FrameReport& report);
   Incident incident_at(int point, Incident::Kind kind, const Moving& moving, const FrameReport& report) const;
   bool is_released(double time, double h, const Moving& moving);
-  void hold_again(Moving& moving, FrameReport& report);
+  void begin_forces(FrameReport& report) const;
+  void end_forces(const Moving& moving, double time, FrameReport& report) const;
+  void tell_passing(const Moving& moving, FrameReport& report) const;
   void judge(const Moving& moving, FrameReport& report);
   void store(State& state, const Moving& moving) const;
   Moving load(const State& state) const;
@@ -123,6 +127,7 @@ State LockstepSolver::initial_state() const {
   m.motion.x_previous = m.motion.x;
   m.motion.v_previous = m.motion.v;
   m.through.assign(model_.start.size(), 0);
+  let_start_through(model_, state.time, m.through);
   store(state, m);
   return state;
 }
@@ -146,6 +151,7 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
                              FrameReport& report) {
   std::array<Vec3, 4> driven;
   bool is_driven = false;
+  step_.contact().begin_step(time, time + h);
   if (model_.has_prop() && !m.free) {
     if (is_released(time, h, m)) {
       m.free = true;
@@ -175,11 +181,14 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
     ++report.substeps;
     report.newton_iterations += step.newton_iterations;
     report.linear_iterations += step.newton_iterations;
-    if (!is_driven || !step.finite || step.missed <= k_missed || attempt == k_most_attempts) break;
+    const bool late = step.scenery_late && halvings == model_.setup.most_halvings;  // else a shorter step is tried
+    if (!step.finite || (step.missed <= k_missed && !late) || attempt > k_most_attempts) break;
     // What is driven goes its way: cords that stand in it and give way no further are let through.
-    const std::vector<int> blocking = step_.contact().blocking(m.motion.x);
-    if (blocking.empty()) break;
-    for (const int v : blocking) m.through[at(v)] = 1;
+    if (attempt == k_most_attempts || !let_blocking_through(step_.blocking(m.motion.x, is_driven), m.through)) {
+      if (model_.setup.bodies.empty()) break;
+      let_all_through(model_, m.through);
+      attempt = k_most_attempts;
+    }
     m.motion = before;
   }
   report.profile.narrow += step.seconds_contact;
@@ -199,13 +208,43 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
   report.finite = report.finite && step.finite;
   if (!step.finite) return;
   m.hold_impulse += step.effective_step * step.hold_force;
-  for (std::size_t c = 0; c < report.forces.size(); ++c) {
-    InteractionForce& force = report.forces[c];
-    const double size = step.on_prop[c].force.norm();
-    force.mean += (h / frame_time) * step.on_prop[c];
+  for (std::size_t row = 0; row < report.forces.size(); ++row) {
+    InteractionForce& force = report.forces[row];
+    const double size = step.on_met[row].force.norm();
+    force.mean += (h / frame_time) * step.on_met[row];
     force.peak = std::max(force.peak, size);
     if (size > 0) force.contact_share = std::min(1.0, force.contact_share + h / frame_time);
   }
+}
+
+/// A row for each cord system and all that there is to meet.
+void LockstepSolver::begin_forces(FrameReport& report) const {
+  for (const CordSystem& c : model_.setup.cords)
+    for (std::size_t met = 0; met < model_.met_count(); ++met) {
+      InteractionForce& row = report.forces.emplace_back();
+      row.system = c.name;
+      if (model_.met_count() > 1 && (met > 0 || model_.has_prop())) row.primary = model_.name_of_met(met);
+    }
+}
+
+/// Torques about centres; rows of what a cord system does not meet are left out.
+void LockstepSolver::end_forces(const Moving& m, double time, FrameReport& report) const {
+  std::vector<Vec3> centre(model_.met_count(), Vec3::Zero()), x;
+  for (std::size_t k = 0; k < 4 && model_.has_prop(); ++k) centre[0] += 0.25 * m.motion.x[at(model_.point_count()) + k];
+  for (std::size_t b = 0; b < model_.setup.bodies.size(); ++b) {
+    const Trajectory& body = *model_.setup.bodies[b].trajectory;
+    x.resize(at(body.surface().vertex_count()));
+    body.sample(time, x);
+    centre[b + 1] = volume_centre(x, body.surface().triangles);
+  }
+  std::vector<InteractionForce> kept;
+  for (std::size_t row = 0; row < report.forces.size(); ++row) {
+    const std::size_t system = row / centre.size(), met = row % centre.size();
+    if (met == 0 ? !model_.has_prop() : !model_.meets(static_cast<int>(system), static_cast<int>(met))) continue;
+    kept.push_back(std::move(report.forces[row]));
+    kept.back().mean = kept.back().mean.moved(centre[met]);
+  }
+  report.forces = std::move(kept);
 }
 
 Incident LockstepSolver::incident_at(int point, Incident::Kind kind, const Moving& m, const FrameReport& report) const {
@@ -219,21 +258,14 @@ Incident LockstepSolver::incident_at(int point, Incident::Kind kind, const Movin
   return out;
 }
 
-/// What was let through and is out of the prop's reach again, is held back by it again.
-void LockstepSolver::hold_again(Moving& m, FrameReport& report) {
-  report.released_vertices = static_cast<int>(std::count(m.through.begin(), m.through.end(), 1.0));
+void LockstepSolver::tell_passing(const Moving& m, FrameReport& report) const {
+  const auto passes = [](double through) { return through != 0; };
+  report.released_vertices = static_cast<int>(std::count_if(m.through.begin(), m.through.end(), passes));
   if (report.released_vertices == 0) return;
-  Incident incident =
-      incident_at(static_cast<int>(std::find(m.through.begin(), m.through.end(), 1.0) - m.through.begin()),
-                  Incident::Kind::k_released, m, report);
-  incident.text = fmt::format("{} points are let through \"{}\", which goes its way whatever stands in it",
-                              report.released_vertices, model_.setup.prop->name);
+  const auto first = std::find_if(m.through.begin(), m.through.end(), passes);
+  Incident incident = incident_at(static_cast<int>(first - m.through.begin()), Incident::Kind::k_released, m, report);
+  incident.text = fmt::format("{} points are let through {}", report.released_vertices, passed_text(model_, m.through));
   report.incidents.push_back(std::move(incident));
-  std::vector<char> meets = step_.contact().within_reach(m.motion.x);
-  for (const Crossing& c : step_.contact().crossings(m.motion.x))
-    for (const int v : c.edge) meets[at(v)] = 1;
-  for (std::size_t v = 0; v < m.through.size(); ++v)
-    if (meets[v] == 0) m.through[v] = 0;
 }
 
 void LockstepSolver::judge(const Moving& m, FrameReport& report) {
@@ -253,8 +285,9 @@ void LockstepSolver::judge(const Moving& m, FrameReport& report) {
   for (int i = 0; i < model_.point_count(); ++i)
     report.kinetic_energy += 0.5 * model_.mass[at(i)] * m.motion.v[at(i)].squaredNorm();
   if (crossings.empty()) return;
-  Incident incident = incident_at(crossings[0].edge[0], Incident::Kind::k_crossing, m, report);
-  incident.text = "cords cross the prop";
+  Incident incident = incident_at(crossings[0].cord[0], Incident::Kind::k_crossing, m, report);
+  incident.text = crossings[0].met == 0 ? "cords cross the prop"
+                                        : "cords cross \"" + model_.name_of_met(at(crossings[0].met)) + "\"";
   report.incidents.push_back(std::move(incident));
 }
 
@@ -269,8 +302,8 @@ FrameReport LockstepSolver::advance_frame(State& state) {
   Moving moving = load(state);
   FrameReport report;
   report.frame = number;
-  if (model_.has_prop())
-    for (const CordSystem& c : setup.cords) report.forces.push_back({c.name, {}, 0, 0});
+  begin_forces(report);
+  step_.contact().begin_frame();
   step_.contact().forget_gap();
   Unsettled unsettled;
   for (int k = 0; k < substeps && report.finite; ++k)
@@ -285,14 +318,11 @@ FrameReport LockstepSolver::advance_frame(State& state) {
         "{} of {} steps ended before all was at rest: {:.1e} m were still wanted; a larger min_substeps helps",
         unsettled.steps, report.substeps, unsettled.residual);
   }
-  if (model_.has_prop()) {
-    Vec3 centre = Vec3::Zero();
-    for (std::size_t k = 0; k < 4; ++k) centre += 0.25 * moving.motion.x[at(model_.point_count()) + k];
-    for (InteractionForce& force : report.forces) force.mean = force.mean.moved(centre);
-  }
+  end_forces(moving, t1, report);
   report.smallest_gap = std::min(step_.contact().smallest_gap(), step_.contact().widest_reach());
   judge(moving, report);
-  hold_again(moving, report);
+  tell_passing(moving, report);
+  if (report.released_vertices > 0) hold_again(model_, step_.contact(), t1, moving.motion.x, moving.through);
   store(state, moving);
   state.frame = number;
   state.time = t1;

@@ -1,7 +1,8 @@
 // Nets, ropes and one rigid prop in one system, stepped in lock step: what a cord does to the prop, the prop does to
-// the cord. The potential is inertia + stretching + bending + holds + contact + friction; Newton with a direct sparse
-// factorisation solves it to rounding, so cords need no iterations and momentum is kept. The prop may be driven along
-// a track (one-way, and hybrid with an adjusted track) or move by itself once it is released (two-way).
+// the cord. Other bodies go their way, and cords meet them there. The potential is inertia + stretching + bending +
+// holds + contact + friction; Newton with a direct sparse factorisation solves it to rounding, so cords need no
+// iterations and momentum is kept. The prop may be driven along a track (one-way, and hybrid with an adjusted track) or
+// move by itself once it is released (two-way).
 //
 // Sources: affine body dynamics (Lan et al. 2022) with an equimomental tetrahedron for the prop, incremental potential
 // contact (Li et al. 2020) with lagged friction, BDF2.
@@ -16,6 +17,7 @@
 
 #include "baker/core/result.h"
 #include "baker/core/rigid.h"
+#include "baker/core/trajectory.h"
 #include "solvers/base/solver.h"
 #include "solvers/cords/cord_graph.h"
 
@@ -46,9 +48,18 @@ struct RigidProp {
   bool release_on_contact = false;                           ///< or from where something comes into reach
 };
 
+/// A body that pushes cords and does not feel them: a ground, a set, another prop, a character.
+struct MetBody {
+  std::string name;
+  std::shared_ptr<const Trajectory> trajectory;
+  bool fixed = false;        ///< it stands still in the whole shot
+  std::vector<char> met_by;  ///< per cord system: not 0 where it meets the body
+};
+
 struct LockstepSetup {
   std::vector<CordSystem> cords;
   std::optional<RigidProp> prop;
+  std::vector<MetBody> bodies;  ///< others that cords meet
   int first_frame = 1;
   double fps = 24;
   int preroll_frames = 24;
@@ -63,8 +74,9 @@ struct LockstepSetup {
 };
 
 /// Systems are the cords, as surfaces of tubes. The collider is the prop. Blocks of its states: "x", "v" and their
-/// history of all cord points and then the prop's four nodes; "free": 1 once the prop is released; "hold_impulse":
-/// what the held points were given so far [N s].
+/// history of all cord points and then the prop's four nodes; "free": 1 once the prop is released; "through": per
+/// point, what it is let through (met_bit() of each, added up); "hold_impulse": what the held points were given so far
+/// [N s].
 Result<std::unique_ptr<Solver>> make_lockstep_solver(LockstepSetup setup);
 
 }  // namespace ft::inline solvers

@@ -33,10 +33,12 @@ double longest(std::span<const Vec3> all) {
 
 LockstepStep::LockstepStep(const LockstepModel& model) : model_(model), contact_(model), elements_(model.elements) {}
 
-double LockstepStep::value(std::span<const Vec3> x) const {
+/// Scenery is driven as a prop is: what is left of its way costs so much that it is gone first.
+double LockstepStep::value(std::span<const Vec3> x, double share) const {
   double sum = 0;
   for (std::size_t i = 0; i < x.size(); ++i) sum += 0.5 * weight_[i] * (x[i] - y_[i]).squaredNorm();
-  return sum + elements_.value(x) + contact_.value(x);
+  sum = sum + elements_.value(x) + contact_.value(x, share);
+  return share < 1 ? sum + 0.5 * scenery_cost_ * (1 - share) * (1 - share) : sum;
 }
 
 /// From x_; false where it did not settle.
@@ -51,10 +53,11 @@ bool LockstepStep::newton(LockstepStepReport& report) {
     for (std::size_t i = 0; i < n; ++i) gradient_[i] = weight_[i] * (y_[i] - x_[i]);
     terms_.clear();
     elements_.add_terms(x_, terms_);
-    contact_.add_terms(x_, terms_, iteration > 0 ? report.residual : std::numeric_limits<double>::infinity());
+    contact_.add_terms(x_, terms_, iteration > 0 ? report.residual : std::numeric_limits<double>::infinity(), share_);
     for (const NodeTerm& t : terms_) {
       system_.add(t);
       for (int k = 0; k < t.count; ++k) gradient_[at(t.node[at(k)])] -= t.weight[at(k)] * t.force;
+      for (int k = 0; k < t.count && share_ < 1; ++k) gradient_[at(t.node[at(k)])] -= t.weight[at(k)] * t.ahead;
     }
     report.seconds_assembly += watch.lap();
     ++report.newton_iterations;
@@ -76,23 +79,24 @@ bool LockstepStep::newton(LockstepStepReport& report) {
     } else {
       last_ = direction_;
     }
-    const double before = value(x_);
-    contact_.find(x_, direction_);
+    const double before = value(x_, share_), left = 1 - share_;
+    contact_.find(x_, direction_, share_);
     double factor = 2 * contact_.free_share();
     bool accepted = false;
     for (int halving = 0; halving < k_most_halvings && !accepted; ++halving) {
       factor *= 0.5;
       for (std::size_t i = 0; i < n; ++i) trial_[i] = x_[i] + factor * direction_[i];
-      const double after = value(trial_);
+      const double after = value(trial_, factor < 1 ? share_ + factor * left : 1);
       accepted = std::isfinite(after) && after <= before + k_energy_noise * std::abs(before);
     }
     report.seconds_contact += watch.lap();
-    if (!accepted) return report.residual < 1e3 * model_.setup.settled;  // rounding decides here
+    if (!accepted) return report.residual < 1e3 * model_.setup.settled && share_ == 1;  // rounding decides here
     whole = factor == 1;
     stuck = factor < k_stuck_share ? stuck + 1 : 0;
     if (stuck >= k_stuck_iterations) return false;
     x_.swap(trial_);
-    if (report.residual < model_.setup.settled) return true;
+    share_ = whole ? 1 : share_ + factor * left;
+    if (report.residual < model_.setup.settled && share_ == 1) return true;
   }
   return false;
 }
@@ -111,9 +115,9 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
             bh * bh * model_.setup.gravity;
     weight_[i] = model_.mass[i] / (bh * bh);
   }
+  double stiffest = model_.contact_stiffness;
+  for (const CordSpring& s : model_.elements.springs) stiffest = std::max(stiffest, s.stiffness);
   if (!driven.empty()) {
-    double stiffest = model_.contact_stiffness;
-    for (const CordSpring& s : model_.elements.springs) stiffest = std::max(stiffest, s.stiffness);
     for (std::size_t k = 0; k < 4; ++k) y_[points + k] = driven[k], weight_[points + k] = k_driven * stiffest;
   }
 
@@ -121,13 +125,16 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   x_ = m.x;
   for (std::size_t i = 0; i < n; ++i)
     direction_[i] = i >= points && !driven.empty() ? (driven[i - points] - m.x[i]).eval() : (h * m.v[i]).eval();
-  contact_.find(x_, direction_);
-  const double share = contact_.free_share();
+  contact_.find(x_, direction_, 0);
+  const double share = contact_.free_share(), way = contact_.scenery_way();
   for (std::size_t i = 0; i < n; ++i) x_[i] += share * direction_[i];
+  share_ = way > 0 ? share : 1;
+  const double least_way = std::max(way, contact_.widest_reach());
+  scenery_cost_ = k_driven * stiffest * least_way * least_way;
 
   std::vector<Vec3> before;
   for (int look = 0; look < k_friction_looks; ++look) {
-    contact_.lag_friction(x_, m.x, h);
+    contact_.lag_friction(x_, m.x, h, share_);
     before = x_;
     report.settled = newton(report);
     if (!report.settled) break;
@@ -139,10 +146,11 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   report.finite = report.finite && all_finite(x_);
   if (!report.finite) return report;
 
-  report.on_prop = contact_.on_prop(x_);
+  report.on_met = contact_.on_met(x_, share_);
   report.hold_force = elements_.hold_force(x_);
   for (std::size_t k = 0; k < driven.size(); ++k)
     report.missed = std::max(report.missed, (x_[points + k] - driven[k]).norm());
+  report.scenery_late = share_ < 1;
   LockstepMotion next;
   next.x = x_;
   next.v.resize(n);

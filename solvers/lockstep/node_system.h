@@ -19,6 +19,7 @@ struct NodeTerm {
   std::array<double, 6> weight{};
   Vec3 force = Vec3::Zero();      ///< gradient of the potential by u [N]
   Mat3 stiffness = Mat3::Zero();  ///< positive semidefinite [N/m]
+  Vec3 ahead = Vec3::Zero();      ///< what the force grows by while bodies go the rest of their way [N]
 
   void add(int k, double w) { node[at(count)] = k, weight[at(count)] = w, ++count; }
 };

@@ -101,7 +101,7 @@ TEST(LockstepTerms, Gradient_of_contact_and_friction_is_the_slope_of_their_energ
   EXPECT_LT(sum.norm(), 1e-12);
   Vec3 on_cord = Vec3::Zero();
   for (std::size_t i = 0; i < 3; ++i) on_cord -= gradient_of(terms, x.size())[i];
-  EXPECT_LT((contact.on_prop(x)[0].force + on_cord).norm(), 1e-12);
+  EXPECT_LT((contact.on_met(x)[0].force + on_cord).norm(), 1e-12);
 }
 
 TEST(LockstepTerms, The_direct_solver_solves_what_terms_add_up_to) {

@@ -4,15 +4,12 @@
 #include <limits>
 
 #include "baker/core/disjoint_sets.h"
-#include "io/shot/patterns.h"
 
 namespace ft::inline baker {
 namespace {
 
 /// Cloth that nothing holds may slide and swing so much farther than its own size [m].
 constexpr double k_margin = 0.25;
-/// What moves by no more than this stands still [m].
-constexpr double k_still = 1e-9;
 
 /// Where a body is in each interval between two frames, the first one before the shot.
 std::vector<Box> boxes_of(const Shot& shot, const Trajectory& body) {
@@ -60,18 +57,6 @@ bool meet(const std::vector<Box>& a, const std::vector<Box>& b) {
 
 }  // namespace
 
-bool stands_still(const Shot& shot, const PrimaryPlan& primary) {
-  const auto n = at(primary.trajectory->surface().vertex_count());
-  std::vector<Vec3> first(n), now(n);
-  primary.trajectory->sample(-shot.preroll / shot.fps, first);
-  for (int frame = shot.first_frame - shot.preroll + 1; frame <= shot.last_frame; ++frame) {
-    primary.trajectory->sample((frame - shot.first_frame) / shot.fps, now);
-    for (std::size_t v = 0; v < n; ++v)
-      if (!((now[v] - first[v]).norm() <= k_still)) return false;
-  }
-  return true;
-}
-
 std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan> primaries,
                                    std::span<const ClothReach> cloths) {
   if (primaries.size() == 1) return {{{0}, {0}}};
@@ -105,18 +90,6 @@ std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan
     std::sort(meeting.bodies.begin(), meeting.bodies.end());
     meeting.bodies.erase(std::unique(meeting.bodies.begin(), meeting.bodies.end()), meeting.bodies.end());
   }
-  return out;
-}
-
-Result<std::vector<char>> meets_of(const ClothSpec& cloth, std::span<const PrimaryPlan> primaries) {
-  std::vector<std::string> names;
-  for (const PrimaryPlan& primary : primaries) names.push_back(primary.name);
-  const auto met = indices_like(cloth.meets, names, "meets", "primary");
-  if (!met) return met.error();
-  std::vector<char> out(primaries.size(), 0);
-  for (const int p : *met) out[at(p)] = 1;
-  for (std::size_t p = 0; p < names.size(); ++p)
-    if (names[p] == cloth.on) out[p] = 1;
   return out;
 }
 

@@ -30,14 +30,8 @@ struct ClothReach {
   std::vector<char> meets;  ///< per primary
 };
 
-/// Whether a primary stands still in all frames of the shot, pre-roll included.
-bool stands_still(const Shot& shot, const PrimaryPlan& primary);
-
 /// Meetings in the order of their first wearer. primaries: all of the shot.
 std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan> primaries,
                                    std::span<const ClothReach> cloths);
-
-/// What a cloth's `meets` says of each primary; its own is always met. Error: a pattern that names none.
-Result<std::vector<char>> meets_of(const ClothSpec& cloth, std::span<const PrimaryPlan> primaries);
 
 }  // namespace ft::inline baker

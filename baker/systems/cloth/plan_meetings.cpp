@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "baker/plan/located.h"
+#include "baker/plan/meets.h"
 #include "baker/systems/cloth/cloth_quality.h"
 #include "baker/systems/cloth/meeting.h"
 #include "baker/systems/cloth/plan_cloths.h"
@@ -11,15 +12,6 @@
 
 namespace ft::inline baker {
 namespace {
-
-/// Why no other primary's cloth can meet a primary, nor its own cloth another primary; empty: they can.
-std::string why_alone(const Shot& shot, const PrimaryPlan& primary) {
-  const auto two_way = [&](const auto& s) { return s->on == primary.name && s->coupling == "two-way"; };
-  if (std::any_of(shot.secondaries.begin(), shot.secondaries.end(), two_way))
-    return "where it goes is only known once its secondaries are solved (two-way)";
-  if (!primary.scan.teleports.empty()) return "it is cut to another place within the shot";
-  return {};
-}
 
 /// What decides about the cloths of a group that was made by cloths_of().
 Status add_reaches(const Shot& shot, const ClothGroup& group, const BakePlan& plan, std::vector<ClothReach>& out) {
@@ -30,7 +22,7 @@ Status add_reaches(const Shot& shot, const ClothGroup& group, const BakePlan& pl
         std::find_if(specs.begin(), specs.end(), [&](const ClothSpec* cloth) { return cloth->name == garment.name; });
     CHECK(found != specs.end());
     const ClothSpec* spec = *found;
-    auto meets = meets_of(*spec, plan.primaries);
+    auto meets = meets_of(spec->meets, spec->on, plan.primaries);
     if (!meets) return located(meets.error(), shot, spec->owner());
     for (std::size_t p = 0; p < plan.primaries.size(); ++p)
       if (p != group.primary &&

@@ -1,4 +1,5 @@
-// All cords of one primary, which is their prop: one system in lock step. Cloth and cords do not feel each other.
+// All cords of one primary, which is their prop unless it stands still: one system in lock step, among all other
+// primaries that they meet and do not move. Cloth and cords do not feel each other.
 #pragma once
 
 #include "baker/plan/plan.h"
@@ -11,10 +12,12 @@ class CordsGroup final : public SystemGroup {
   using SystemGroup::SystemGroup;
 
   LockstepSetup setup;
+  std::vector<std::size_t> bodies;  ///< those of the setup, into BakePlan::primaries
 
   std::string_view role() const override { return "cords"; }
   Result<std::unique_ptr<Solver>> make_solver() override { return make_lockstep_solver(setup); }
   std::vector<std::string> lines(const BakePlan& plan) const override;
+  std::vector<ColliderSlice> slices(const BakePlan& plan, std::span<const std::string> taken) const override;
 };
 
 }  // namespace ft::inline baker

@@ -44,6 +44,10 @@ std::span<const ShotKey<CordsSpec>> cords_keys() {
       {"self_collision", &CordsSpec::self_collision, 0, 0, "", "", false, "self_contact", "Cords meet each other"},
       {"hold_stiffness", &CordsSpec::hold_stiffness, 1, 1e9, "N/m", "", false, "pin_stiffness",
        "Of the spring at each held point"},
+      {"meets", &CordsSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
+       "Primaries that these cords meet beside the one that they are on, and do not move: names with `*` and `?`; "
+       "`[]`: "
+       "no other"},
       {"on", &CordsSpec::on, 0, 0, "", "@name of a primary", false, "primary body collider prop with",
        "The primary that it meets; not needed when there is only one"},
       {"coupling", &CordsSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",

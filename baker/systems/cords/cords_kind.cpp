@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "baker/record/cache_track.h"
@@ -12,22 +13,24 @@
 namespace ft::inline baker {
 namespace {
 
-/// Cords and their prop, which is its own collider, as drawn.
+/// Cords and what they meet, which is as drawn.
 class JudgedCords final : public JudgedGroup {
  public:
-  JudgedCords(CacheTrack track, MiddleLines lines, std::vector<CacheTrack> bodies, std::string prop)
-      : track_(std::move(track)), lines_(std::move(lines)), bodies_(std::move(bodies)), prop_(std::move(prop)) {}
+  JudgedCords(CacheTrack track, MiddleLines lines, std::vector<CacheTrack> bodies, std::vector<std::string> missing)
+      : track_(std::move(track)), lines_(std::move(lines)), bodies_(std::move(bodies)), missing_(std::move(missing)) {}
   Result<FrameReport> judge(int index, int frame, std::span<const AbsentRuns> absent) const override;
   std::vector<std::string> notes() const override {
-    if (!bodies_.empty()) return {};
-    return {"the prop \"" + prop_ + "\" is not cached: crossings of cords with it are not judged"};
+    std::vector<std::string> out;
+    for (const std::string& name : missing_)
+      out.push_back("\"" + name + "\" is not cached: crossings of cords with it are not judged");
+    return out;
   }
 
  private:
   CacheTrack track_;
   MiddleLines lines_;
   std::vector<CacheTrack> bodies_;
-  std::string prop_;
+  std::vector<std::string> missing_;  ///< what they meet and is not cached
 };
 
 Result<FrameReport> JudgedCords::judge(int index, int frame, std::span<const AbsentRuns>) const {
@@ -46,17 +49,18 @@ Result<FrameReport> JudgedCords::judge(int index, int frame, std::span<const Abs
     std::vector<Vec3> y;
     if (const Status read = body.read(index, y); !read) return read.error();
     const CordsAndBody found = judge_cords(lines_.cords.edges, points, y, body.triangles);
-    report.crossings_body = report.crossings_drawn = found.crossings;
-    report.smallest_gap = found.gap;
-    report.deepest_drawn = found.deepest;
+    report.crossings_body += found.crossings;
+    report.crossings_drawn = report.crossings_body;
+    report.smallest_gap = std::min(report.smallest_gap, found.gap);
+    report.deepest_drawn = std::max(report.deepest_drawn, found.deepest);
     if (found.crossed >= 0)
       report.incidents.push_back({Incident::Kind::k_crossing, frame, track_.name, vertex_of_point(found.crossed),
                                   points[at(found.crossed)], 0,
-                                  fmt::format("{} crossings of cords with the prop", found.crossings)});
+                                  fmt::format("{} crossings of cords with \"{}\"", found.crossings, body.name)});
     if (found.inside >= 0)
       report.incidents.push_back({Incident::Kind::k_penetration, frame, track_.name, vertex_of_point(found.inside),
                                   points[at(found.inside)], found.deepest,
-                                  fmt::format("{:.2f} mm inside the prop", 1e3 * found.deepest)});
+                                  fmt::format("{:.2f} mm inside \"{}\"", 1e3 * found.deepest, body.name)});
   }
   return report;
 }
@@ -67,14 +71,17 @@ Result<std::unique_ptr<JudgedGroup>> judged(const CachedBake& bake, const Manife
   auto lines = middle_lines(track->rest);
   if (!lines) return lines.error();
   std::vector<CacheTrack> bodies;
+  std::vector<std::string> missing = system.meets.empty() ? std::vector{system.primary} : system.meets;
   for (const ManifestSystem& other : bake.manifest.systems) {
-    if (other.role != "body" || other.primary != system.primary || !bake.has_cache(other)) continue;
+    const auto met = std::find(missing.begin(), missing.end(), other.name);
+    if (other.role != "body" || met == missing.end() || !bake.has_cache(other)) continue;
     auto body = bake.open(other);
     if (!body) return body.error();
     bodies.push_back(std::move(*body));
+    missing.erase(met);
   }
   return std::unique_ptr<JudgedGroup>(
-      std::make_unique<JudgedCords>(std::move(*track), std::move(*lines), std::move(bodies), system.primary));
+      std::make_unique<JudgedCords>(std::move(*track), std::move(*lines), std::move(bodies), std::move(missing)));
 }
 
 class CordsKind final : public SystemKind {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "baker/core/types.h"
 #include "io/shot/secondary.h"
@@ -31,7 +32,8 @@ struct CordsSpec final : SecondarySpec {
   double radius = 1.5e-3;  ///< of a cord, drawn and in contact [m]
   double friction = 0.4;   ///< Coulomb coefficient
   bool self_collision = false;
-  double hold_stiffness = 2e4;  ///< of the springs that hold points [N/m]
+  std::vector<std::string> meets{"*"};  ///< patterns of primaries that they meet beside their own
+  double hold_stiffness = 2e4;          ///< of the springs that hold points [N/m]
 };
 
 }  // namespace ft::inline baker

@@ -5,9 +5,12 @@
 #include <algorithm>
 
 #include "baker/plan/located.h"
+#include "baker/plan/meets.h"
 #include "baker/plan/quality.h"
 #include "baker/systems/interface/plan_common.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/shot_values.h"
+#include "io/shot/words.h"
 #include "solvers/cords/generators.h"
 #include "solvers/cords/tubes.h"
 
@@ -59,6 +62,38 @@ void apply_quality(const Shot& shot, LockstepSetup& setup) {
   setup.min_substeps = std::max(1, setup.min_substeps / k_fewer_substeps);
 }
 
+/// The other primaries that the cords of a group meet, each specs' own.
+Status add_bodies(const Shot& shot, std::span<const CordsSpec* const> specs, BakePlan& plan, CordsGroup& group) {
+  std::vector<std::vector<char>> meets;
+  for (const CordsSpec* spec : specs) {
+    auto own = meets_of(spec->meets, spec->on, plan.primaries);
+    if (!own) return located(own.error(), shot, spec->owner());
+    meets.push_back(std::move(*own));
+  }
+  const std::string& prop = plan.primaries[group.primary].name;
+  std::vector<std::string> past;  // a two-way prop
+  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+    if (p == group.primary && group.setup.prop) continue;
+    const PrimaryPlan& primary = plan.primaries[p];
+    if (p != group.primary) past.push_back(in_quotes(primary.name));
+    MetBody body{primary.name, primary.trajectory, stands_still(shot, primary), {}};
+    for (const auto& of_spec : meets) body.met_by.push_back(of_spec[p]);
+    if (std::count(body.met_by.begin(), body.met_by.end(), 1) == 0) continue;
+    if (const std::string why = why_alone(shot, primary); !why.empty() && p != group.primary) {
+      plan.notes.push_back(fmt::format("cords on \"{}\" do not meet \"{}\": {}", prop, primary.name, why));
+      continue;
+    }
+    group.setup.bodies.push_back(std::move(body));
+    group.bodies.push_back(p);
+  }
+  if (!group.setup.prop || !group.setup.prop->two_way || past.empty()) return {};
+  plan.notes.push_back(
+      fmt::format("\"{}\" goes where its cords let it (two-way) and does not meet {}", prop, joined(past)));
+  if (!group.bodies.empty())
+    plan.notes.push_back(fmt::format("cords on \"{}\" move that alone: all else that they meet goes its way", prop));
+  return {};
+}
+
 }  // namespace
 
 Result<CordGraph> cord_graph(const CordsSpec& s) {
@@ -96,11 +131,12 @@ Result<CordGraph> cord_graph(const CordsSpec& s) {
   return rope(line);
 }
 
-Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, const BakePlan& plan) {
+Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, BakePlan& plan) {
   const PrimaryPlan& primary = plan.primaries[p];
   auto group = std::make_unique<CordsGroup>(p);
   LockstepSetup& setup = group->setup;
   bool two_way = false;
+  std::vector<const CordsSpec*> specs;
   for (const CordsSpec* one : specs_of<CordsSpec>(shot.secondaries)) {
     const CordsSpec& spec = *one;
     if (spec.on != primary.name) continue;
@@ -113,6 +149,7 @@ Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, co
     output.mesh = std::make_shared<const Mesh>(std::move(mesh));
     group->outputs.push_back(std::move(output));
     setup.cords.push_back(std::move(*system));
+    specs.push_back(one);
     two_way = two_way || spec.coupling == "two-way";
   }
   if (setup.cords.empty()) return std::unique_ptr<CordsGroup>();
@@ -122,7 +159,9 @@ Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, co
     return usage_error("some of its secondaries are two-way and others are not", where,
                        "a primary that yields is followed by cords that are all two-way so far");
   CHECK(primary.prop);
-  setup.prop = rigid_prop(*primary.prop, primary.track, two_way);
+  // What stands still needs no nodes of its own: it is met as other primaries are.
+  if (two_way || !stands_still(shot, primary)) setup.prop = rigid_prop(*primary.prop, primary.track, two_way);
+  if (const Status added = add_bodies(shot, specs, plan, *group); !added) return added.error();
   take_from_shot(shot, setup);
   apply_quality(shot, setup);
   return group;

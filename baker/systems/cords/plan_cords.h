@@ -7,8 +7,9 @@
 
 namespace ft::inline baker {
 
-/// The cords of one primary, with it as their prop; null where there are none.
-Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t primary, const BakePlan& plan);
+/// The cords of one primary, with it as their prop and the others that they meet; null where there are none. Notes go
+/// into the plan.
+Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t primary, BakePlan& plan);
 
 /// The graph that a shot file's table means [m].
 Result<CordGraph> cord_graph(const CordsSpec& spec);

@@ -17,6 +17,7 @@ struct ColliderSlice {
   bool fixed = false;               ///< nothing there gives way: the collider is the body as drawn
   std::vector<int> vertices;        ///< of the whole collider, ascending: those of the drawn body first
   std::vector<Triangle> triangles;  ///< in the slice's own numbers
+  std::vector<char> met_by{};       ///< per system of the group: not 0 where it meets this; empty: all do
 };
 
 /// Of each slice what the runs, which are in the whole collider's numbers, have of it.

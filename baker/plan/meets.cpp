@@ -1,0 +1,48 @@
+#include "baker/plan/meets.h"
+
+#include <algorithm>
+
+#include "io/shot/patterns.h"
+
+namespace ft::inline baker {
+namespace {
+
+/// What moves by no more than this stands still [m].
+constexpr double k_still = 1e-9;
+
+}  // namespace
+
+Result<std::vector<char>> meets_of(std::span<const std::string> patterns, const std::string& own,
+                                   std::span<const PrimaryPlan> primaries) {
+  std::vector<std::string> names;
+  for (const PrimaryPlan& primary : primaries) names.push_back(primary.name);
+  const auto met = indices_like(patterns, names, "meets", "primary");
+  if (!met) return met.error();
+  std::vector<char> out(primaries.size(), 0);
+  for (const int p : *met) out[at(p)] = 1;
+  for (std::size_t p = 0; p < names.size(); ++p)
+    if (names[p] == own) out[p] = 1;
+  return out;
+}
+
+bool stands_still(const Shot& shot, const PrimaryPlan& primary) {
+  const auto n = at(primary.trajectory->surface().vertex_count());
+  std::vector<Vec3> first(n), now(n);
+  primary.trajectory->sample(-shot.preroll / shot.fps, first);
+  for (int frame = shot.first_frame - shot.preroll + 1; frame <= shot.last_frame; ++frame) {
+    primary.trajectory->sample((frame - shot.first_frame) / shot.fps, now);
+    for (std::size_t v = 0; v < n; ++v)
+      if (!((now[v] - first[v]).norm() <= k_still)) return false;
+  }
+  return true;
+}
+
+std::string why_alone(const Shot& shot, const PrimaryPlan& primary) {
+  const auto two_way = [&](const auto& s) { return s->on == primary.name && s->coupling == "two-way"; };
+  if (std::any_of(shot.secondaries.begin(), shot.secondaries.end(), two_way))
+    return "where it goes is only known once its secondaries are solved (two-way)";
+  if (!primary.scan.teleports.empty()) return "it is cut to another place within the shot";
+  return {};
+}
+
+}  // namespace ft::inline baker
