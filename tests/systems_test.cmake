@@ -2,6 +2,7 @@
 # the registry. Solvers, energies and tests of a kind are its own.
 cmake_minimum_required(VERSION 3.25)
 file(GLOB kinds RELATIVE ${ROOT}/baker/systems ${ROOT}/baker/systems/*)
+list(REMOVE_ITEM kinds interface)  # what all others know of a kind
 set(names "")
 foreach(kind ${kinds})
   if(IS_DIRECTORY ${ROOT}/baker/systems/${kind})

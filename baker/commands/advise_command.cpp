@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "baker/advice_pass.h"
 #include "baker/commands/command_line.h"
 #include "baker/core/file.h"
+#include "baker/judge/advice_pass.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 struct AdviseArguments {
@@ -85,4 +85,4 @@ void add_advise_command(CLI::App& app, int& exit_code) {
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

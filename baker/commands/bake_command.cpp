@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "baker/bake.h"
 #include "baker/commands/command_line.h"
 #include "baker/core/parallel.h"
-#include "baker/profile_text.h"
+#include "baker/run/bake.h"
+#include "baker/run/profile_text.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 struct BakeArguments {
@@ -89,4 +89,4 @@ void add_bake_command(CLI::App& app, int& exit_code) {
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

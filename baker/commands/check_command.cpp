@@ -12,10 +12,10 @@
 #include "baker/commands/command_line.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
-#include "baker/judge_caches.h"
-#include "baker/report_json.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/report_json.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 struct CheckArguments {
@@ -147,4 +147,4 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

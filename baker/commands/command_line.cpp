@@ -5,10 +5,10 @@
 #include <exception>
 #include <new>
 
-#include "baker/version.h"
+#include "baker/record/version.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// The first word that names neither a command nor an option of its command, and what was probably meant; empty: none.
@@ -80,4 +80,4 @@ int run_command_line(int argc, char** argv) {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -10,7 +10,7 @@ namespace CLI {
 class App;
 }
 
-namespace ft {
+namespace ft::inline baker {
 
 int run_command_line(int argc, char** argv);
 
@@ -26,4 +26,4 @@ void add_preview_command(CLI::App& app, int& exit_code);
 void add_advise_command(CLI::App& app, int& exit_code);
 void add_validate_command(CLI::App& app, int& exit_code);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -10,7 +10,7 @@
 #include "baker/commands/compare_report.h"
 #include "baker/core/file.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 struct Difference {
@@ -217,4 +217,4 @@ int run_compare(const CompareOptions& options) {
   return exit_code(overall_verdict(reports));
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -12,7 +12,7 @@
 #include "baker/core/types.h"
 #include "io/cache/cache.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 struct CompareOptions {
   std::filesystem::path a, b;               ///< two caches or two folders with caches
@@ -69,4 +69,4 @@ int exit_code(CompareVerdict verdict);
 /// The command: prints the report, writes what is asked for, gives the exit code.
 int run_compare(const CompareOptions& options);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,7 +5,7 @@
 #include "baker/commands/command_line.h"
 #include "baker/commands/compare.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 void add_compare_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("compare", "Compares two caches of any formats, or the caches of two bakes");
@@ -21,4 +21,4 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command->callback([o, &exit_code] { exit_code = run_compare(*o); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -4,25 +4,25 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 using History = std::map<int, InteractionForce>;
 
-/// System -> frame -> force, of written frames.
-std::map<std::string, History> histories(const Manifest& manifest) {
-  std::map<std::string, History> out;
+/// System, primary -> frame -> force, of written frames.
+std::map<std::pair<std::string, std::string>, History> histories(const Manifest& manifest) {
+  std::map<std::pair<std::string, std::string>, History> out;
   for (const FrameReport& frame : manifest.frames) {
     if (frame.frame < manifest.first_written) continue;
-    for (const InteractionForce& f : frame.forces) out[f.system][frame.frame] = f;
+    for (const InteractionForce& f : frame.forces) out[{f.system, f.primary}][frame.frame] = f;
   }
   return out;
 }
 
-ForceComparison compare(std::string system, const History& a, const History& b) {
+ForceComparison compare(const History& a, const History& b) {
   ForceComparison out;
-  out.system = std::move(system);
   for (const auto& [frame, in_a] : a) {
     const auto twin = b.find(frame);
     if (twin == b.end() || in_a.contact_share + twin->second.contact_share <= 0) continue;
@@ -47,10 +47,13 @@ std::vector<ForceComparison> compare_forces(const Manifest& a, const Manifest& b
   const auto in_a = histories(a), in_b = histories(b);
   std::vector<ForceComparison> out;
   for (const ManifestSystem& s : a.systems) {
-    const auto own = in_a.find(s.name), twin = in_b.find(s.name);
-    if (own == in_a.end() || twin == in_b.end()) continue;
-    ForceComparison forces = compare(s.name, own->second, twin->second);
-    if (forces.worst >= 0) out.push_back(std::move(forces));
+    for (const auto& [names, history] : in_a) {
+      const auto twin = in_b.find(names);
+      if (names.first != s.name || twin == in_b.end()) continue;
+      ForceComparison forces = compare(history, twin->second);
+      std::tie(forces.system, forces.primary) = names;
+      if (forces.worst >= 0) out.push_back(std::move(forces));
+    }
   }
   return out;
 }
@@ -60,9 +63,9 @@ std::string to_text(const std::vector<ForceComparison>& forces) {
   for (const ForceComparison& c : forces) {
     const ForceDifference& w = c.frames[static_cast<std::size_t>(c.worst)];
     out += fmt::format(
-        "force of {}: mean {:.4g} N in a, {:.4g} N in b; largest {:.4g} and {:.4g} N; farthest apart in frame {}, by "
+        "force of {}{}: mean {:.4g} N in a, {:.4g} N in b; largest {:.4g} and {:.4g} N; farthest apart in frame {}, by "
         "{:.4g} N\n",
-        c.system, c.mean_a, c.mean_b, c.max_a, c.max_b, w.frame, w.apart);
+        c.system, c.primary.empty() ? "" : " on " + c.primary, c.mean_a, c.mean_b, c.max_a, c.max_b, w.frame, w.apart);
   }
   return out;
 }
@@ -74,6 +77,7 @@ Json to_json(const std::vector<ForceComparison>& forces) {
     for (const ForceDifference& f : c.frames)
       frames.push_back({{"frame", f.frame}, {"a", f.a}, {"b", f.b}, {"apart", f.apart}});
     out.push_back({{"system", c.system},
+                   {"primary", c.primary.empty() ? Json(nullptr) : Json(c.primary)},
                    {"mean_a", c.mean_a},
                    {"mean_b", c.mean_b},
                    {"max_a", c.max_a},
@@ -84,4 +88,4 @@ Json to_json(const std::vector<ForceComparison>& forces) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -9,7 +9,7 @@
 
 #include "baker/commands/compare_report.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr std::size_t k_most_points = 6000;  // per picture; above it every nth vertex, and all of the worst
@@ -161,4 +161,4 @@ std::string compare_html(const std::vector<CompareReport>& reports) {
   return out + "</body></html>\n";
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// In a frame, from it and the two before: exact in free flight. Of the second frame from two, of the first none.
@@ -75,4 +75,4 @@ Json to_json(const std::vector<PathComparison>& paths) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "baker/primary_paths.h"
-#include "baker/report_json.h"
+#include "baker/record/primary_paths.h"
+#include "baker/record/report_json.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 struct PathComparison {
   std::string primary;
@@ -25,4 +25,4 @@ std::vector<PathComparison> compare_primaries(const std::vector<PrimaryPath>& a,
 std::string to_text(const std::vector<PathComparison>& paths);
 Json to_json(const std::vector<PathComparison>& paths);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr int k_most_lines = 20;  // frames listed as text; JSON has all
@@ -144,4 +144,4 @@ std::string compare_junit(const std::vector<CompareReport>& reports) {
       reports.size(), failures, errors, cases);
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

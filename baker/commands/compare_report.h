@@ -9,7 +9,7 @@
 #include "baker/commands/compare_forces.h"
 #include "baker/commands/compare_primaries.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 std::string compare_text(const std::vector<CompareReport>& reports);
 std::string compare_json(const std::vector<CompareReport>& reports, const std::vector<ForceComparison>& forces = {},
@@ -26,4 +26,4 @@ std::string length_text(double metres);
 /// Text for the inside of XML and HTML elements and attributes.
 std::string escaped(std::string_view text);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -8,18 +8,18 @@
 #include <memory>
 
 #include "baker/commands/command_line.h"
-#include "baker/inputs.h"
-#include "baker/manifest.h"
-#include "baker/plan.h"
-#include "baker/plan_text.h"
-#include "baker/room_report.h"
+#include "baker/plan/inputs.h"
+#include "baker/plan/plan.h"
+#include "baker/plan/plan_text.h"
+#include "baker/plan/room_report.h"
+#include "baker/record/manifest.h"
 #include "io/cache/cache.h"
 #include "io/import/import.h"
 #include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/shot.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -196,4 +196,4 @@ void add_info_command(CLI::App& app, int& exit_code) {
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

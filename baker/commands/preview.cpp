@@ -9,7 +9,7 @@
 #include "baker/core/file.h"
 #include "baker/preview/embedded.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 void replace(std::string& page, std::string_view mark, std::string_view text) {
@@ -84,4 +84,4 @@ int run_preview(const PreviewOptions& options) {
   return 0;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -10,7 +10,7 @@
 
 #include "baker/core/result.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 struct PreviewOptions {
   std::vector<std::filesystem::path> folders;  ///< of bakes, the first one plays; one that is unfinished is shown as
@@ -27,4 +27,4 @@ Result<std::string> preview_page(std::span<const std::filesystem::path> bake_fol
 /// Writes the page and says where; returns an exit code.
 int run_preview(const PreviewOptions& options);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,18 +5,18 @@
 #include <functional>
 #include <map>
 
-#include "baker/absent_runs.h"
-#include "baker/bake_folder.h"
-#include "baker/cache_track.h"
 #include "baker/commands/preview.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
-#include "baker/primary_paths.h"
-#include "baker/systems/system.h"
-#include "collision/triangle_tree.h"
+#include "baker/record/bake_folder.h"
+#include "baker/record/cache_track.h"
+#include "baker/record/primary_paths.h"
+#include "baker/systems/interface/absent_runs.h"
+#include "baker/systems/interface/system.h"
+#include "collision/geometry/triangle_tree.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr double k_strain_step = 0.0025;  ///< of the 8-bit strain; player.js knows it as 40 steps to 10 %
@@ -290,4 +290,4 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   return bake;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

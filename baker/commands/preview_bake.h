@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "baker/core/result.h"
-#include "baker/report_json.h"
+#include "baker/record/report_json.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// Errors: no manifest, no finished frame, caches that do not belong to it (k_input).
 Result<Json> preview_bake(const std::filesystem::path& bake_folder);
 
-}  // namespace ft
+}  // namespace ft::inline baker

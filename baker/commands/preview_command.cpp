@@ -5,7 +5,7 @@
 #include "baker/commands/command_line.h"
 #include "baker/commands/preview.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 void add_preview_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("preview", "Writes one self-contained page with a player and plots");
@@ -20,4 +20,4 @@ void add_preview_command(CLI::App& app, int& exit_code) {
   command->callback([o, &exit_code] { exit_code = run_preview(*o); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,10 +6,10 @@
 #include "baker/commands/command_line.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
-#include "baker/report_json.h"
+#include "baker/record/report_json.h"
 #include "solvers/validation/validation.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 struct ValidateArguments {
@@ -77,4 +77,4 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   command->callback([a, &exit_code] { exit_code = run(*a); });
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

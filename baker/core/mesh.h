@@ -75,4 +75,8 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> positions, std::span<cons
 
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// Pieces of a surface that are not joined by triangles: one index per vertex, numbered by first vertex; vertices
+/// without triangles join piece 0.
+std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> triangles, int& piece_count);
+
 }  // namespace ft

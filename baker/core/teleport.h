@@ -1,7 +1,7 @@
 // A primary that is cut to another place between two frames (a cut in the edit, a popped root). What follows it goes
 // along rigidly over that interval, in position, velocity and history, and the body's own motion within the frame is
-// solved for as in any other. Who finds them is io/import/teleport_scan.h. Caution: gravity and wind do not turn with
-// the character.
+// solved for as in any other. Who finds them is io/import/repair/teleport_scan.h. Caution: gravity and wind do not turn
+// with the character.
 #pragma once
 
 #include <span>

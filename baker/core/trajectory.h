@@ -14,7 +14,7 @@
 namespace ft {
 
 /// A piece of the surface that moves as one: all that follows one bone, or one closed shell. Overlapping parts are what
-/// makes a collider infeasible, see collision/feasible_collider.h.
+/// makes a collider infeasible, see collision/body/feasible_collider.h.
 struct SurfacePart {
   std::string name;
   int parent = -1;  ///< part it is jointed to, -1 for the root

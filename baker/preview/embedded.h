@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-namespace ft {
+namespace ft::inline baker {
 
 std::string_view embedded_page();
 std::string_view embedded_style();
@@ -14,4 +14,4 @@ std::string_view embedded_player();
 std::string_view embedded_three();
 std::string_view embedded_controls();
 
-}  // namespace ft
+}  // namespace ft::inline baker

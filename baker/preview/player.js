@@ -268,10 +268,11 @@
       plot('strain', ' %', [{ name: 'p99', values: column('strain_p99', 100) }, { name: 'max', values: column('strain_max', 100) }]),
       plot('smallest gap', ' mm', [{ name: '', values: column('smallest_gap', 1000) }]),
       plot('crossings', '', [{ name: 'body', values: column('crossings_body', 1) }, { name: 'among themselves', values: column('crossings_self', 1) }], true)];
-    const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map((f) => f.system)))];
+    const label = (f) => f.system + (f.primary ? ' on ' + f.primary : '');
+    const names = [...new Set(bake.frames.flatMap((row) => (row.forces ?? []).map(label)))];
     for (const [title, unit, of] of names.length === 0 ? [] : [['force', ' N', (f) => f.force], ['torque', ' N m', (f) => f.torque]])
       plots.push(plot(title, unit, names.map((name) => ({ name: names.length > 1 ? name : '', values: bake.frames.map((row) => {
-        const force = (row.forces ?? []).find((f) => f.system === name);
+        const force = (row.forces ?? []).find((f) => label(f) === name);
         return force ? Math.hypot(...of(force)) : null;
       }) }))));
     for (const { key, unit } of bake.metrics)

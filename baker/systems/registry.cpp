@@ -3,9 +3,9 @@
 #include "baker/systems/cloth/cloth_kind.h"
 #include "baker/systems/cords/cords_kind.h"
 #include "baker/systems/follow/follow_kind.h"
-#include "baker/systems/system.h"
+#include "baker/systems/interface/system.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 std::span<const SystemKind* const> system_kinds() {
   static const SystemKind* const kinds[] = {
@@ -38,9 +38,4 @@ const SystemKind* find_system_kind(std::string_view name) {
   return found == kinds.end() ? nullptr : *found;
 }
 
-bool CachedBake::has_cache(const ManifestSystem& system) const {
-  std::error_code error;
-  return !system.caches.empty() && std::filesystem::exists(folder / system.caches[0].file, error);
-}
-
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 std::size_t pod_size(Pod pod) {
   switch (pod) {
@@ -125,4 +125,4 @@ Hash128 hash_children(const Object& object, std::span<const TimeSampling> time_s
   return hasher.digest();
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -14,7 +14,7 @@
 #include "io/cache/murmur3.h"
 #include "io/cache/ogawa.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 enum class Pod : std::uint8_t {
   k_bool,
@@ -121,4 +121,4 @@ Result<Archive> parse(const InputFile& file, std::vector<StoredHashes>* stored_h
 /// The raw values of a sample after a look at its key; an error when the file was damaged.
 Result<Bytes> read_values(const InputFile& file, const Sample& sample);
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -4,7 +4,7 @@
 // each of its vertices.
 #include "io/cache/alembic_tree.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 std::vector<float> spread_over_vertices(const CurveSet& curves) {
@@ -45,4 +45,4 @@ Layout curves_layout(const CacheInfo& info, ogawa::Builder& out) {
   return layout;
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

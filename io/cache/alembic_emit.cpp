@@ -4,7 +4,7 @@
 
 #include "io/cache/alembic_archive.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 constexpr std::uint8_t k_inline_metadata = 255;
@@ -135,4 +135,4 @@ Bytes emit(const Archive& archive, std::uint64_t base, ogawa::Reference& root) {
   return builder.take();
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -6,7 +6,7 @@
 
 #include "io/cache/alembic_view.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 struct Found {
@@ -178,4 +178,4 @@ Result<ShapeView> find_shape(const InputFile& file, const Archive& archive) {
   return Reader(file, archive).run();
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

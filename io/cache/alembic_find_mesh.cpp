@@ -4,7 +4,7 @@
 
 #include "io/cache/alembic_view.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 class MeshReader {
@@ -104,4 +104,4 @@ Status view_mesh(const InputFile& file, const Property& geom, ShapeView& view) {
   return MeshReader(file, view).run(geom);
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -5,7 +5,7 @@
 
 #include "io/cache/alembic_view.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 /// Attributes of the kinds that we write, constant ones, of any of the counts that go with a scope.
@@ -147,4 +147,4 @@ Status view_points(const InputFile& file, const Property& geom, ShapeView& view)
                          {"con", "var", "vtx"}, info);
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -5,7 +5,7 @@
 #include "io/cache/alembic_tree.h"
 #include "io/cache/alembic_view.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 void reverse_faces(std::span<const int> face_sizes, std::vector<int>& corners) {
   auto face = corners.begin();
@@ -49,4 +49,4 @@ Layout mesh_layout(const CacheInfo& info, ogawa::Builder& out) {
   return layout;
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -5,7 +5,7 @@
 
 #include "io/cache/alembic_archive.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 constexpr int k_max_depth = 64;
@@ -222,4 +222,4 @@ Result<Bytes> read_values(const InputFile& file, const Sample& sample) {
   return values;
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -4,7 +4,7 @@
 // Careful: orient has no interpretation "quat", for the order of that one is w x y z.
 #include "io/cache/alembic_tree.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 Layout points_layout(const CacheInfo& info, ogawa::Builder&) {
   Layout layout{"AbcGeom_Points_v1", first_entries("var")};
@@ -41,4 +41,4 @@ Layout instances_layout(const CacheInfo& info, ogawa::Builder& out) {
   return layout;
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

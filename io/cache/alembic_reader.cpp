@@ -7,7 +7,7 @@
 #include "io/cache/alembic_view.h"
 #include "io/cache/formats.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 using namespace alembic;
@@ -153,4 +153,4 @@ Result<std::unique_ptr<CacheReader>> open_alembic_reader(const std::filesystem::
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 enum Operation { k_scale, k_translate, k_rotate, k_matrix, k_rotate_x, k_rotate_y, k_rotate_z, k_operation_count };
@@ -114,4 +114,4 @@ Eigen::Affine3d TransformChain::Link::matrix(double time) const {
   return total;
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -8,7 +8,7 @@
 #include "baker/core/types.h"
 #include "io/cache/alembic_archive.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 /// Time of sample index [s].
 double sample_time(const TimeSampling& times, std::uint32_t index);
@@ -35,4 +35,4 @@ class TransformChain {
   std::vector<Link> links_;
 };
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 constexpr const char* k_application = "Followthrough";
@@ -207,4 +207,4 @@ bool is_own(const Archive& archive) {
   return archive.metadata.starts_with(std::string("_ai_Application=") + k_application + ";");
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -14,7 +14,7 @@
 #include "io/cache/alembic_archive.h"
 #include "io/cache/cache.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 /// What a frame may hold, in the order in which its data stand in the file.
 enum Channel : std::uint8_t {
@@ -109,4 +109,4 @@ class ArchiveTree {
 /// True when the archive says that this program wrote it: its hashes can then be checked.
 bool is_own(const Archive& archive);
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -11,7 +11,7 @@
 #include "io/cache/alembic_transform.h"
 #include "io/cache/alembic_tree.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 /// Corners of every face in reverse order; applied twice it changes nothing.
 void reverse_faces(std::span<const int> face_sizes, std::vector<int>& corners);
@@ -47,4 +47,4 @@ Result<std::vector<T>> values_of(const InputFile& file, const Sample& sample) {
 /// Zero-terminated texts in turn.
 Result<std::vector<std::string>> strings_of(const InputFile& file, const Sample& sample);
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -17,7 +17,7 @@
 #include "io/cache/alembic_view.h"
 #include "io/cache/formats.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 using namespace alembic;
@@ -291,4 +291,4 @@ Result<std::unique_ptr<CacheWriter>> open_alembic_writer(const std::filesystem::
   return std::unique_ptr<CacheWriter>(std::move(writer));
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -24,7 +24,7 @@
 #include "io/cache/frame.h"
 #include "io/cache/shape.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct CacheInfo {
   std::string system;    ///< name of the garment; object name in the cache
@@ -92,4 +92,4 @@ Result<std::unique_ptr<CacheReader>> open_cache(const std::filesystem::path& pat
 /// The same for all shapes; look at info().content.
 Result<std::unique_ptr<CacheReader>> open_cache_of_any_shape(const std::filesystem::path& path);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -4,7 +4,7 @@
 
 #include "io/cache/cache.h"
 
-namespace ft {
+namespace ft::inline io {
 
 Result<std::unique_ptr<CacheWriter>> open_alembic_writer(const std::filesystem::path& path, const CacheInfo& info,
                                                          int keep_frames);
@@ -27,4 +27,4 @@ bool points_from_bytes(std::span<const std::byte> raw, std::vector<Vec3f>& point
 /// The error of a writer that is asked to continue what is not there.
 Error cannot_continue(const std::filesystem::path& path, std::string why);
 
-}  // namespace ft
+}  // namespace ft::inline io

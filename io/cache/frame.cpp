@@ -9,7 +9,7 @@
 
 #include "io/cache/cache.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 template <class T>
@@ -147,4 +147,4 @@ std::string fault_of_faces(std::span<const int> sizes, std::span<const int> corn
   return {};
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,7 +8,7 @@
 #include "baker/core/result.h"
 #include "io/cache/shape.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct CacheFrame {
   std::span<const Vec3f> positions;                  ///< m
@@ -47,4 +47,4 @@ Status check_frame(const CacheFrame& frame, const CacheInfo& info, int frame_ind
 /// Faces are whole and use vertices that are there; an empty message when they are.
 std::string fault_of_faces(std::span<const int> sizes, std::span<const int> corners, std::size_t vertex_count);
 
-}  // namespace ft
+}  // namespace ft::inline io

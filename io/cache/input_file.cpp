@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-namespace ft {
+namespace ft::inline io {
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path) {
   // Not blocking: a pipe under the name of a cache must not hang the program.
@@ -52,4 +52,4 @@ bool InputFile::read_at(std::uint64_t offset, std::span<std::byte> data) const {
   return true;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

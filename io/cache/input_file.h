@@ -9,7 +9,7 @@
 
 #include "baker/core/result.h"
 
-namespace ft {
+namespace ft::inline io {
 
 class InputFile {
  public:
@@ -35,4 +35,4 @@ class InputFile {
   std::filesystem::path path_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline io

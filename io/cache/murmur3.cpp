@@ -3,7 +3,7 @@
 
 #include <bit>
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 namespace {
 
 constexpr std::uint64_t k_c1 = 0x87c37b91114253d5u, k_c2 = 0x4cf5ad432745937fu;
@@ -48,4 +48,4 @@ Key murmur3(std::span<const std::byte> data) {
   return {h1, h2};
 }
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -7,7 +7,7 @@
 
 #include "baker/core/bytes.h"
 
-namespace ft::alembic {
+namespace ft::inline io::alembic {
 
 struct Key {
   std::uint64_t h1 = 0, h2 = 0;
@@ -16,4 +16,4 @@ struct Key {
 
 Key murmur3(std::span<const std::byte> data);
 
-}  // namespace ft::alembic
+}  // namespace ft::inline io::alembic

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace ft::ogawa {
+namespace ft::inline io::ogawa {
 namespace {
 
 constexpr unsigned char k_magic[8] = {'O', 'g', 'a', 'w', 'a', 0xff, 0, 1};
@@ -115,4 +115,4 @@ Bytes Source::data(Reference reference, std::uint64_t max_size) {
   return out;
 }
 
-}  // namespace ft::ogawa
+}  // namespace ft::inline io::ogawa

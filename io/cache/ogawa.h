@@ -12,7 +12,7 @@
 #include "baker/core/bytes.h"
 #include "io/cache/input_file.h"
 
-namespace ft::ogawa {
+namespace ft::inline io::ogawa {
 
 /// File offset of a node; the top bit says that it is data.
 using Reference = std::uint64_t;
@@ -68,4 +68,4 @@ class Source {
   std::string fault_;
 };
 
-}  // namespace ft::ogawa
+}  // namespace ft::inline io::ogawa

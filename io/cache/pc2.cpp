@@ -11,7 +11,7 @@
 #include "io/cache/formats.h"
 #include "io/cache/input_file.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr char k_magic[12] = {'P', 'O', 'I', 'N', 'T', 'C', 'A', 'C', 'H', 'E', '2', '\0'};
@@ -204,4 +204,4 @@ Result<std::unique_ptr<CacheReader>> open_pc2_reader(const std::filesystem::path
   return std::unique_ptr<CacheReader>(std::move(reader));
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -7,7 +7,7 @@
 #include "io/cache/formats.h"
 #include "io/cache/input_file.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 const std::array k_formats = {
@@ -103,4 +103,4 @@ Error cannot_continue(const std::filesystem::path& path, std::string why) {
   return output_error("cannot be continued: " + why, path.string(), "bake again without --resume");
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

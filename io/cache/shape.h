@@ -18,7 +18,7 @@
 
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline io {
 
 enum class OutputShape : std::uint8_t { k_mesh, k_curves, k_points, k_instances, k_grid };
 
@@ -71,4 +71,4 @@ struct InstanceSet {
   std::vector<std::string> prototype_names;
 };
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,9 +8,9 @@
 
 #include "baker/core/file.h"
 #include "io/export/bvh_file.h"
-#include "io/import/pose.h"
+#include "io/import/character/pose.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr double k_degree = std::numbers::pi / 180;
@@ -137,4 +137,4 @@ Result<std::string> export_bvh(const std::filesystem::path& source, const Charac
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

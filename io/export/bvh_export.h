@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
-#include "io/import/motion_change.h"
+#include "io/import/character/motion_change.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// The text of `source` with the changed channels, at its own frames, in its own units, axes and orders of rotation. A
 /// number that stays what it is keeps its spelling; without changes all bytes are the same. `character` is what was
@@ -33,4 +33,4 @@ Result<std::string> bvh_from_character(const Character& character, int clip, con
 /// Angles [rad] about three different axes, so that R = R_0(a) R_1(b) R_2(c); of all that do so the nearest to `near`.
 Vec3 euler_angles(const Quat& rotation, const std::array<int, 3>& axes, const Vec3& near);
 
-}  // namespace ft
+}  // namespace ft::inline io

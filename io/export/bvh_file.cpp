@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr std::string_view k_blank = " \t\r\n\v\f";
@@ -103,4 +103,4 @@ Result<BvhFile> read_bvh(std::string_view text) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,7 +8,7 @@
 
 #include "baker/core/result.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct BvhChannel {
   bool is_rotation = false;
@@ -31,4 +31,4 @@ struct BvhFile {
 /// The text has to outlive what is returned. Errors name the joint or the frame.
 Result<BvhFile> read_bvh(std::string_view text);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "io/export/bvh_export.h"
-#include "io/import/bind.h"
-#include "io/import/pose.h"
+#include "io/import/body/bind.h"
+#include "io/import/character/pose.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr std::array<int, 3> k_order{2, 0, 1};  // Z, X, Y
@@ -145,4 +145,4 @@ Result<std::string> bvh_from_character(const Character& character, int clip, con
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

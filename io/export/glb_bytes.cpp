@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr std::uint32_t k_glb = 0x46546c67, k_json = 0x4e4f534a, k_bin = 0x004e4942;
@@ -64,4 +64,4 @@ Result<Bytes> glb_bytes(gltf::Json& json, const Bytes& bin, std::span<const std:
   return out.take();
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -5,9 +5,9 @@
 
 #include "baker/core/bytes.h"
 #include "baker/core/result.h"
-#include "io/import/gltf_file.h"
+#include "io/import/files/gltf_file.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Where the data begins in bin: a multiple of 16, which suits every kind of component.
 std::size_t append_aligned(Bytes& bin, std::span<const std::byte> data);
@@ -19,4 +19,4 @@ std::size_t add_accessor(gltf::Json& json, Bytes& bin, std::span<const double> v
 /// The file: JSON, BIN and further chunks as they are. Sets the length of the first buffer. Refuses more than 4 GiB.
 Result<Bytes> glb_bytes(gltf::Json& json, const Bytes& bin, std::span<const std::byte> further_chunks = {});
 
-}  // namespace ft
+}  // namespace ft::inline io

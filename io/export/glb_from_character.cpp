@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "io/export/glb_bytes.h"
-#include "io/import/motion_change.h"
-#include "io/import/pose.h"
+#include "io/import/character/motion_change.h"
+#include "io/import/character/pose.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 using gltf::Json;
@@ -108,4 +108,4 @@ Result<Bytes> glb_from_character(const Character& character, int clip, const Mat
   return glb_bytes(json, bin);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

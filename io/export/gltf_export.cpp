@@ -5,10 +5,10 @@
 
 #include "baker/core/file.h"
 #include "io/export/glb_bytes.h"
-#include "io/import/gltf_file.h"
-#include "io/import/pose.h"
+#include "io/import/character/pose.h"
+#include "io/import/files/gltf_file.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 using gltf::element, gltf::integer, gltf::Json, gltf::member, gltf::text;
@@ -207,4 +207,4 @@ Result<Bytes> export_glb(const std::filesystem::path& source, const Character& c
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

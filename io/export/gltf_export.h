@@ -6,9 +6,9 @@
 #include <span>
 
 #include "baker/core/bytes.h"
-#include "io/import/motion_change.h"
+#include "io/import/character/motion_change.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// The bytes of a .glb: `source` (.glb, or .gltf with its buffers) with the changed channels of one clip. `character`
 /// is what was imported from `source`; `clip` and nodes count in it. Without changes the copy of a .glb is the same
@@ -19,4 +19,4 @@ namespace ft {
 Result<Bytes> export_glb(const std::filesystem::path& source, const Character& character, int clip,
                          std::span<const ChangedChannel> changes);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -4,10 +4,10 @@
 
 #include "io/export/glb_from_character.h"
 #include "io/export/gltf_export.h"
-#include "io/import/clips.h"
+#include "io/import/character/clips.h"
 #include "io/import/import_cache.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 /// Changes of a character as changes of the file that its clips came from: retarget_clips() backwards.
@@ -62,4 +62,4 @@ Result<MotionFiles> export_motion(const ImportRequest& request, const PlacedChar
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "io/export/bvh_export.h"
-#include "io/import/placed_character.h"
+#include "io/import/motion/placed_character.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct MotionFiles {
   Bytes glb;
@@ -20,4 +20,4 @@ struct MotionFiles {
 Result<MotionFiles> export_motion(const ImportRequest& request, const PlacedCharacter& placed,
                                   std::span<const ChangedChannel> changes, const BvhFrames& frames);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,19 +6,19 @@
 #include <cmath>
 #include <cstdio>
 
-#include "io/import/body.h"
-#include "io/import/character_trajectory.h"
-#include "io/import/clips.h"
-#include "io/import/facing.h"
-#include "io/import/geometry_cache.h"
+#include "io/import/body/body.h"
+#include "io/import/character/clips.h"
+#include "io/import/files/read_geometry_cache.h"
 #include "io/import/import_cache.h"
-#include "io/import/placed_character.h"
-#include "io/import/placement.h"
-#include "io/import/sampled_trajectory.h"
-#include "io/import/sheet.h"
-#include "io/import/stray_vertices.h"
+#include "io/import/motion/character_trajectory.h"
+#include "io/import/motion/placed_character.h"
+#include "io/import/motion/placement.h"
+#include "io/import/motion/sampled_trajectory.h"
+#include "io/import/motion/sheet.h"
+#include "io/import/repair/facing.h"
+#include "io/import/repair/stray_vertices.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 bool wanted(const CharacterMesh& mesh, const Character& character, const std::vector<std::string>& names,
@@ -341,4 +341,4 @@ Result<CharacterInfo> inspect_character(const std::filesystem::path& file, const
   return info;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

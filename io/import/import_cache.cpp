@@ -1,10 +1,10 @@
 #include "io/import/import_cache.h"
 
 #include "baker/core/file.h"
-#include "io/import/assimp_read.h"
+#include "io/import/files/assimp_read.h"
 #include "io/import/import_child.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 bool dependencies_unchanged(const std::filesystem::path& file, const Character& character) {
@@ -57,4 +57,4 @@ Result<LoadedCharacter> load_character(const std::filesystem::path& file, const 
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "io/import/character.h"
+#include "io/import/character/character.h"
 #include "io/import/import.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct LoadedCharacter {
   Character character;
@@ -19,4 +19,4 @@ struct LoadedCharacter {
 Result<LoadedCharacter> load_character(const std::filesystem::path& file, const std::filesystem::path& cache_folder,
                                        const ImportLimits& limits);
 
-}  // namespace ft
+}  // namespace ft::inline io

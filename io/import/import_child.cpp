@@ -19,7 +19,7 @@
 #include <thread>
 
 #include "baker/core/file.h"
-#include "io/import/assimp_read.h"
+#include "io/import/files/assimp_read.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define FT_SANITIZED 1
@@ -29,7 +29,7 @@
 #endif
 #endif
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr int k_exit_refused = 3;  // the result file holds the reason, in words
@@ -202,4 +202,4 @@ int import_child_main(int argc, char** argv) {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -5,13 +5,13 @@
 
 #include <filesystem>
 
-#include "io/import/character.h"
+#include "io/import/character/character.h"
 #include "io/import/import.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Runs `/proc/self/exe --import-child file result` and checks what comes back. The program's main() must call
 /// import_child_main() first.
 Result<Character> import_in_child(const std::filesystem::path& file, const ImportLimits& limits);
 
-}  // namespace ft
+}  // namespace ft::inline io

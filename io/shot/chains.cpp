@@ -4,7 +4,7 @@
 
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 /// Indices of those that can only be solved together with it.
@@ -124,4 +124,4 @@ std::vector<int> stages_of(const Secondaries& all) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,7 +8,7 @@
 #include "io/shot/shot.h"
 #include "io/shot/shot_judge.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// The secondaries that one is on or names in `meets`: indices into all, ascending.
 std::vector<std::size_t> references_of(const SecondarySpec& secondary, const Secondaries& all);
@@ -20,4 +20,4 @@ void judge_chains(const Value& root, const Shot& shot, FaultList& faults);
 /// those that it is solved together with.
 std::vector<int> stages_of(const Secondaries& all);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -5,7 +5,7 @@
 #include "io/shot/shot_keys.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 bool has(std::string_view words, std::string_view word) {
@@ -42,4 +42,4 @@ const Value* section_of(const Value& root, std::string_view kind, std::string_vi
   return one && one->value.kind == Value::Kind::k_table ? &one->value : nullptr;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -7,7 +7,7 @@
 
 #include "io/shot/shot_values.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// What goes with one choice of a key: keys that it needs, and that it takes. Keys of no row go with all.
 struct ChoiceKeys {
@@ -23,4 +23,4 @@ void judge_choice(const std::string& owner, const Value& table, std::string_view
 /// The section of that kind and name; null where the file's own fault has been reported.
 const Value* section_of(const Value& root, std::string_view kind, std::string_view name);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,7 +6,7 @@
 
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Of each part its number in the file; an empty list: the number that it has. Of joined vertices the first counts.
 struct FileNumbers {
@@ -22,4 +22,4 @@ struct FileNumbers {
   static int number(const std::vector<int>& list, int i) { return list.empty() ? i : list[at(i)]; }
 };
 
-}  // namespace ft
+}  // namespace ft::inline io

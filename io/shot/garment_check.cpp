@@ -8,7 +8,7 @@
 
 #include "io/shot/mesh_file.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 /// Twice the area of a triangle over its longest edge squared; below it the rest shape cannot be inverted in double
@@ -317,4 +317,4 @@ Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& n
   return {};
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

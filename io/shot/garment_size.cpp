@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr double k_smallest = 0.02, k_largest = 10;  ///< of what is not doubted [m]
@@ -32,4 +32,4 @@ std::string doubt_of_size(double size, double unit_scale) {
   return out + ": is unit_scale right?";
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

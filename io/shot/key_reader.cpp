@@ -2,7 +2,7 @@
 
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 
 void KeyReader::refuse(const std::string& owner, const Member& member, const std::vector<std::string>& known,
                        const std::string& other) const {
@@ -39,4 +39,4 @@ std::optional<std::vector<std::string>> KeyReader::words(const ValueReader& read
   return good ? out : std::nullopt;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,7 +6,7 @@
 
 #include "io/shot/shot_keys.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Keys of a section beside its table, such as numbers of a fabric.
 struct OtherKeys {
@@ -115,4 +115,4 @@ class KeyReader {
   FaultList& faults_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -7,7 +7,7 @@
 #include "io/shot/shot_keys.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// TOML's basic string: what differs in the shot differs in the text.
 std::string toml_text(std::string_view text);
@@ -95,4 +95,4 @@ void append_reference(std::string& out, std::string_view heading, std::span<cons
   out.append("\n");
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

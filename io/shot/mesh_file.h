@@ -12,7 +12,7 @@
 #include "baker/core/result.h"
 #include "io/shot/file_numbers.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Reads v, vt, f (negative and v/vt/vn indices), g/o (face groups become vertex groups), vertex colours (groups "red",
 /// "green", "blue" with the channel as weight), seam and stitch lines (see obj_read.cpp). Unknown lines are skipped.
@@ -48,4 +48,4 @@ int panel_count(const Mesh& mesh);
 /// is good. `notes` says what looks wrong: a pattern of quite another size than the mesh, at `scale` m per unit of uvs.
 Status check_pattern(const Mesh& mesh, double scale, std::vector<std::string>& notes, const FileNumbers& in_file = {});
 
-}  // namespace ft
+}  // namespace ft::inline io

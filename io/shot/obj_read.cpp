@@ -14,7 +14,7 @@
 #include "io/shot/vertex_colours.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_max_obj_bytes = std::uint64_t{1} << 30;
@@ -316,4 +316,4 @@ Result<Mesh> read_obj(const std::filesystem::path& path, std::vector<std::string
   return mesh;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cstdlib>
 
-namespace ft {
+namespace ft::inline io {
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -40,4 +40,4 @@ std::string shown(std::string_view word) {
   return word.size() > 24 ? out + "..." : out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

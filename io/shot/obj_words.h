@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace ft {
+namespace ft::inline io {
 
 bool is_blank(char c);
 /// Cuts the next word off the front of `line`; empty at the end.
@@ -15,4 +15,4 @@ bool parse_index(std::string_view word, long long& out);
 /// A word of a file inside a message: printable and short.
 std::string shown(std::string_view word);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,7 +6,7 @@
 #include "baker/core/file.h"
 #include "io/shot/mesh_file.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 void put(std::string& out, double value) {
@@ -103,4 +103,4 @@ Status write_obj(const std::filesystem::path& path, const Mesh& mesh) {
   return write_text_durably(path, out);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

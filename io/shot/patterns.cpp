@@ -5,7 +5,7 @@
 #include "io/shot/shot_values.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 
 Result<std::vector<int>> indices_like(std::span<const std::string> patterns, std::span<const std::string> names,
                                       std::string_view key, std::string_view what) {
@@ -26,4 +26,4 @@ Result<std::vector<int>> indices_like(std::span<const std::string> patterns, std
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,7 +8,7 @@
 
 #include "baker/core/result.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Indices of the names that are what one of the patterns says, ascending. Error (k_usage): the first pattern that
 /// names none, with what may have been meant. key: "ignore", of the shot file. what: "part of \"ann\"", for the
@@ -16,4 +16,4 @@ namespace ft {
 Result<std::vector<int>> indices_like(std::span<const std::string> patterns, std::span<const std::string> names,
                                       std::string_view key, std::string_view what);
 
-}  // namespace ft
+}  // namespace ft::inline io

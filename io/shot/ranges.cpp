@@ -6,7 +6,7 @@
 
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr long long k_last_frame = 9'999'999;
@@ -115,4 +115,4 @@ std::string vertices_text(const std::vector<int>& ascending) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

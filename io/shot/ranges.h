@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ft {
+namespace ft::inline io {
 
 struct FrameRange {
   int first = 0, last = 0;
@@ -24,4 +24,4 @@ bool parse_vertices(std::string_view text, std::vector<int>& out, std::string& f
 std::string frames_text(const FrameRange& range);
 std::string vertices_text(const std::vector<int>& ascending);
 
-}  // namespace ft
+}  // namespace ft::inline io

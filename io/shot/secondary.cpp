@@ -1,6 +1,6 @@
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline io {
 
 std::string_view SecondarySpec::kind() const {
   return section->name();
@@ -14,4 +14,4 @@ std::string SecondarySpec::reference() const {
   return std::string(kind()).append(".").append(name);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

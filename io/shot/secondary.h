@@ -11,7 +11,7 @@
 
 #include "io/shot/shot_values.h"
 
-namespace ft {
+namespace ft::inline io {
 
 class KeyReader;
 class SecondarySection;
@@ -84,4 +84,4 @@ std::vector<const Spec*> specs_of(const Secondaries& all) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -18,7 +18,7 @@
 #include "baker/core/types.h"
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// What is done about a primary that jumps to another place between two frames.
 enum class Teleports { k_detect, k_ignore, k_frames };
@@ -175,4 +175,4 @@ std::vector<std::string> changed_settings(const Settings& before, const Settings
 /// The keys of the shot file as Markdown tables, from the table that the reader uses.
 std::string shot_file_reference(const ShotVocabulary& vocabulary);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,7 +6,7 @@
 #include "io/shot/secondary.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr int k_most_frames = 100'000;
@@ -148,4 +148,4 @@ void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary
   judge_chains(root, shot, faults);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -11,7 +11,7 @@
 #include "io/shot/shot.h"
 #include "io/shot/shot_values.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// "1001-1121" or 1001; at most 100 000 frames.
 std::optional<FrameRange> read_frames(const ValueReader& reader, const Value& value);
@@ -30,4 +30,4 @@ void judge_couplings(const Value& root, Shot& shot, FaultList& faults);
 /// primary.
 void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary, FaultList& faults);
 
-}  // namespace ft
+}  // namespace ft::inline io

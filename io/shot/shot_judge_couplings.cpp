@@ -7,7 +7,7 @@
 #include "io/shot/shot_judge.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr ChoiceKeys k_primary_shapes[] = {
@@ -166,4 +166,4 @@ void judge_couplings(const Value& root, Shot& shot, FaultList& faults) {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,7 +8,7 @@
 #include "io/shot/shot_judge.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 
 namespace {
 
@@ -217,4 +217,4 @@ bool is_synonym(std::string_view also, std::string_view word) {
   return false;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

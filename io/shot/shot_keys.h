@@ -9,7 +9,7 @@
 #include "io/shot/shot.h"
 #include "io/shot/shot_values.h"
 
-namespace ft {
+namespace ft::inline io {
 
 class KeyReader;
 
@@ -73,4 +73,4 @@ std::string home_of(const ShotVocabulary& vocabulary, std::string_view key);
 /// True when `word` is one of the other words for a key.
 bool is_synonym(std::string_view also, std::string_view word);
 
-}  // namespace ft
+}  // namespace ft::inline io

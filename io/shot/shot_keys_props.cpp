@@ -3,7 +3,7 @@
 #include "io/shot/shot_judge.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 void read_release_key(const KeyReader&, const ValueReader& reader, const Value& value, const Allowed& allowed,
@@ -48,4 +48,4 @@ std::span<const ShotKey<PrimarySpec>> prop_keys() {
   return keys;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -1,6 +1,6 @@
 #include "io/shot/shot_keys.h"
 
-namespace ft {
+namespace ft::inline io {
 
 std::span<const ShotKey<PrimarySpec>> yield_keys() {
   static const ShotKey<PrimarySpec> keys[] = {
@@ -77,4 +77,4 @@ std::span<const ShotKey<StandInKeys>> standin_keys() {
   return keys;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -5,7 +5,7 @@
 #include "io/shot/shot_keys.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 
 void apply_override(Value& root, const std::string& text, const ShotVocabulary& vocabulary, FaultList& faults) {
   std::vector<std::string> path;
@@ -45,4 +45,4 @@ void apply_override(Value& root, const std::string& text, const ShotVocabulary& 
     table->members.push_back({path.back(), place, std::move(value)});
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,9 +6,9 @@
 #include "io/shot/shot.h"
 #include "io/shot/shot_values.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// "cloth.dress.fabric=denim". Named sections need to exist; other sections are made when they are missing.
 void apply_override(Value& root, const std::string& text, const ShotVocabulary& vocabulary, FaultList& faults);
 
-}  // namespace ft
+}  // namespace ft::inline io

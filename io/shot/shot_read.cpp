@@ -11,7 +11,7 @@
 #include "io/shot/shot_values.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_max_shot_bytes = 16 << 20;
@@ -187,4 +187,4 @@ Result<Shot> read_shot(const std::filesystem::path& file, const ShotVocabulary& 
   return parse_shot(*text, file, vocabulary, overrides, faults);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

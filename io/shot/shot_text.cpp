@@ -7,7 +7,7 @@
 #include "io/shot/secondary.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 std::string toml_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -138,4 +138,4 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -7,7 +7,7 @@
 
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 /// A unit that people write instead of ours: value in `unit` times `factor` is in `our_unit`.
@@ -307,4 +307,4 @@ std::string similar_file(const std::filesystem::path& missing) {
   return near.empty() ? near : std::string("did you mean \"").append(near).append("\"?");
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -12,7 +12,7 @@
 #include "baker/core/types.h"
 #include "io/shot/value_tree.h"
 
-namespace ft {
+namespace ft::inline io {
 
 /// Faults with their places, in any order; texts() brings them into the order of the file.
 class FaultList {
@@ -72,4 +72,4 @@ std::string unit_slip(double value, const Allowed& allowed);
 /// "did you mean \"dress.obj\"?" for a path that does not exist; empty when nothing there is similar.
 std::string similar_file(const std::filesystem::path& missing);
 
-}  // namespace ft
+}  // namespace ft::inline io

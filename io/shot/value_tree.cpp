@@ -10,7 +10,7 @@
 
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 Place place_of(const toml::source_region& region) {
@@ -183,4 +183,4 @@ bool parse_override(std::string_view text, std::vector<std::string>& path, Value
   return true;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -8,7 +8,7 @@
 
 #include "baker/core/result.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct Place {
   int line = 0, column = 0;  ///< from 1; 0: nowhere in the file
@@ -53,4 +53,4 @@ bool parse_tree(std::string_view text, Value& root, ParseFault& fault);
 /// One override "cloth.dress.fabric=denim": path of keys and the value, which may be TOML or bare words.
 bool parse_override(std::string_view text, std::vector<std::string>& path, Value& value, std::string& fault);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -4,7 +4,7 @@
 
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 /// A colour above it is no 1 that was rounded.
@@ -38,4 +38,4 @@ std::vector<VertexGroup> groups_of_colours(const std::vector<Vec3>& colours) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

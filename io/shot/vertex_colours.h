@@ -6,7 +6,7 @@
 
 #include "baker/core/mesh.h"
 
-namespace ft {
+namespace ft::inline io {
 
 inline constexpr double k_largest_colour = 255;
 
@@ -17,4 +17,4 @@ std::string scale_colours(std::vector<Vec3>& colours, double largest);
 /// "red", "green", "blue": the vertices with some of it, and how much; groups without a vertex are left out.
 std::vector<VertexGroup> groups_of_colours(const std::vector<Vec3>& colours);
 
-}  // namespace ft
+}  // namespace ft::inline io

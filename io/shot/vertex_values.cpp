@@ -10,7 +10,7 @@
 #include "io/shot/shot_values.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_max_bytes = std::uint64_t{1} << 30;
@@ -143,4 +143,4 @@ Result<std::vector<double>> vertex_column(const std::filesystem::path& path, con
   return std::move(values);
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -11,7 +11,7 @@
 
 #include "baker/core/result.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct VertexValues {
   std::vector<std::string> columns;         ///< names; empty ones where the file has no line of names
@@ -29,4 +29,4 @@ Result<VertexValues> parse_vertex_values(std::string_view text, std::string_view
 Result<std::vector<double>> vertex_column(const std::filesystem::path& path, const std::string& column,
                                           int vertex_count, double lowest, double highest, std::string_view unit);
 
-}  // namespace ft
+}  // namespace ft::inline io

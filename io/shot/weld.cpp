@@ -8,7 +8,7 @@
 #include "baker/core/check.h"
 #include "baker/core/triangle_corners.h"
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 using Cell = std::array<long long, 3>;
@@ -111,4 +111,4 @@ void spread_welded(std::span<const int> joined_of, std::span<const Vec3> joined,
   for (std::size_t i = 0; i < joined_of.size(); ++i) file_order[i] = joined[at(joined_of[i])];
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -9,7 +9,7 @@
 #include "baker/core/mesh.h"
 #include "io/shot/file_numbers.h"
 
-namespace ft {
+namespace ft::inline io {
 
 struct WeldedMesh {
   Mesh mesh;
@@ -29,4 +29,4 @@ Mesh with_triangles_of(const Mesh& file, const Mesh& simulated, const FileNumber
 /// Positions of the joined mesh, handed back to all vertices of the file.
 void spread_welded(std::span<const int> joined_of, std::span<const Vec3> joined, std::span<Vec3> file_order);
 
-}  // namespace ft
+}  // namespace ft::inline io

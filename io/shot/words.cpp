@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline io {
 namespace {
 
 std::string folded(std::string_view word) {
@@ -115,4 +115,4 @@ std::string number_text(double value) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline io

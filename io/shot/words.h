@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ft {
+namespace ft::inline io {
 
 /// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment); case, '-' and '_' do not
 /// count.
@@ -31,4 +31,4 @@ std::string printable(std::string_view text, std::size_t longest = 60);
 /// Shortest digits that name the same double.
 std::string number_text(double value);
 
-}  // namespace ft
+}  // namespace ft::inline io

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
-#include "collision/checked_surface.h"
-#include "collision/winding_number.h"
+#include "collision/check/checked_surface.h"
+#include "collision/geometry/winding_number.h"
 
 namespace ft::garments {
 namespace {

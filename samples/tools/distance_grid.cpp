@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
-#include "collision/checked_surface.h"
-#include "collision/winding_number.h"
+#include "collision/check/checked_surface.h"
+#include "collision/geometry/winding_number.h"
 
 namespace ft::garments {
 namespace {

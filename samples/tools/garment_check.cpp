@@ -7,9 +7,9 @@
 #include <numbers>
 #include <optional>
 
-#include "collision/crossings.h"
-#include "collision/penetration.h"
-#include "collision/winding_number.h"
+#include "collision/check/crossings.h"
+#include "collision/check/penetration.h"
+#include "collision/geometry/winding_number.h"
 
 namespace ft::garments {
 namespace {

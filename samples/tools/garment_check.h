@@ -25,7 +25,8 @@ struct Fit {
   std::string text() const;
 };
 
-/// Crossings are exact (collision/crossings.h), inside is by the generalized winding number (collision/penetration.h).
+/// Crossings are exact (collision/check/crossings.h), inside is by the generalized winding number
+/// (collision/check/penetration.h).
 Fit fit_of(std::span<const Vec3> garment, std::span<const Triangle> triangles, const Body& body);
 
 /// Pushes vertices that are inside the body or nearer than `clearance` [m] out of it, and their neighbours along with

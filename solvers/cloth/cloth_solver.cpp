@@ -13,24 +13,24 @@
 #include <mutex>
 
 #include "baker/core/give_back.h"
-#include "baker/core/volume.h"
-#include "solvers/cloth/body_advance.h"
-#include "solvers/cloth/body_ahead.h"
-#include "solvers/cloth/certificate.h"
-#include "solvers/cloth/cloth_model.h"
-#include "solvers/cloth/coarse_solver.h"
-#include "solvers/cloth/first_state.h"
-#include "solvers/cloth/frame_incidents.h"
-#include "solvers/cloth/pins.h"
-#include "solvers/cloth/riding_solver.h"
-#include "solvers/cloth/settling.h"
-#include "solvers/cloth/sewing.h"
-#include "solvers/cloth/substep_count.h"
-#include "solvers/cloth/tangles.h"
-#include "solvers/cloth/torn_body.h"
-#include "solvers/cloth/work_limit.h"
+#include "solvers/cloth/advance/body_advance.h"
+#include "solvers/cloth/advance/body_ahead.h"
+#include "solvers/cloth/advance/substep_count.h"
+#include "solvers/cloth/advance/tangles.h"
+#include "solvers/cloth/advance/work_limit.h"
+#include "solvers/cloth/certify/certificate.h"
+#include "solvers/cloth/certify/frame_incidents.h"
+#include "solvers/cloth/embed/coarse_solver.h"
+#include "solvers/cloth/embed/riding_solver.h"
+#include "solvers/cloth/model/cloth_model.h"
+#include "solvers/cloth/model/first_state.h"
+#include "solvers/cloth/model/pins.h"
+#include "solvers/cloth/model/settling.h"
+#include "solvers/cloth/model/sewing.h"
+#include "solvers/cloth/model/torn_body.h"
+#include "solvers/cloth/solve/forces_on_bodies.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_rewinds = 3;
@@ -108,8 +108,6 @@ class ClothSolver final : public Solver {
  private:
   struct Frame;
   FrameReport advance(Frame frame, State& state);
-  void add_forces(const AdvanceReport& step, double duration, FrameReport& report) const;
-  Vec3 centre_of_wearer(std::size_t garment) const;
   double walk(const Frame& frame, int substeps, ClothMotion& motion, FrameReport& report);
   void take_along(const Frame& frame, ClothMotion& motion, FrameReport& report) const;
   void find_torn(const Teleport* teleport, Frame& frame) const;
@@ -141,28 +139,6 @@ struct ClothSolver::Frame {
   }
 };
 
-/// Adds what a substep did to the body; torques are about the origin until the frame is over.
-void ClothSolver::add_forces(const AdvanceReport& step, double duration, FrameReport& report) const {
-  report.forces.resize(step.on_body.size());
-  for (std::size_t g = 0; g < step.on_body.size(); ++g) {
-    InteractionForce& sum = report.forces[g];
-    sum.system = model_->setup.garments[g].name;
-    sum.mean += (1 / duration) * step.on_body[g].impulse;
-    sum.peak = std::max(sum.peak, step.on_body[g].peak);
-    sum.contact_share = std::min(1.0, sum.contact_share + step.on_body[g].contact_time / duration);
-  }
-}
-
-/// Of the body that wears a garment, at the frame's end [m].
-Vec3 ClothSolver::centre_of_wearer(std::size_t garment) const {
-  const auto& wearer = model_->setup.garments[garment].wearer;
-  if (!wearer) return volume_centre(body_.end().feasible, collider_triangles());
-  std::vector<Triangle> own;
-  for (const Triangle& t : collider_triangles())
-    if (wearer->has(model_->collider->part_of_vertex()[at(t[0])])) own.push_back(t);
-  return volume_centre(body_.end().feasible, own);
-}
-
 /// Returns the mean of StepResult::lost_weight.
 double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, FrameReport& report) {
   if (frame.wrecked()) return take_along(frame, m, report), 0.0;
@@ -170,6 +146,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
   double lost = 0;
   WorkLimit limit(std::max({substeps, model_->setup.max_substeps, k_least_counted}), !frame.torn.empty());
   bool hurried = false, slowed = false;
+  int releases = 0;
   std::vector<Vec3> body = body_.start().feasible, pins(model_->pins.size()), pins_next(pins.size()), push;
   pin_targets(*model_, body_.start().drawn, pins);
   std::vector<char> deep = frame.not_met(body_.start().absent), deep_next;
@@ -201,9 +178,11 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
       slowed = true;
     }
     in.friction_share = sewing_friction(*model_, t0 + h);
+    in.earlier_releases = releases;
     in.patience = limit.patience(substeps - 1 - k);
     const AdvanceReport step = advance_.substep(in, m);
     limit.spend(step.work);
+    releases += step.releases;
     hurried = hurried || step.impatient;
     report.substeps += step.pieces;
     report.newton_iterations += step.newton_iterations;
@@ -211,7 +190,7 @@ double ClothSolver::walk(const Frame& frame, int substeps, ClothMotion& m, Frame
     report.smallest_gap = std::min(report.smallest_gap, step.smallest_gap);
     report.finite = report.finite && step.finite;
     lost += step.lost_weight / substeps;
-    add_forces(step, frame.t1 - frame.t0, report);
+    add_forces(*model_, step.on_body, frame.t1 - frame.t0, report);
     report.profile.candidates += step.seconds_candidates;
     report.profile.assembly += step.seconds_assembly;
     report.profile.linear += step.seconds_linear;
@@ -232,9 +211,8 @@ void ClothSolver::take_along(const Frame& frame, ClothMotion& m, FrameReport& re
   const Vec3 v = (speed > k_fastest_wreck ? k_fastest_wreck / speed : 1.0) / duration * way;
   take_along_with(way, v, m);
   report.substeps = 1;
-  AdvanceReport nothing;
-  nothing.on_body.resize(model_->setup.garments.size());
-  add_forces(nothing, duration, report);
+  const std::vector<OnBody> nothing(model_->setup.garments.size() * model_->body_count());
+  add_forces(*model_, nothing, duration, report);
 }
 
 void ClothSolver::find_torn(const Teleport* teleport, Frame& frame) const {
@@ -319,8 +297,7 @@ FrameReport ClothSolver::advance(Frame frame, State& state) {
   report = std::move(best_report);
   motion = std::move(best);
   report.profile = spent;
-  for (std::size_t g = 0; g < report.forces.size(); ++g)
-    report.forces[g].mean = report.forces[g].mean.moved(centre_of_wearer(g));
+  finish_forces(*model_, body_.end().feasible, report);
   if (!std::isfinite(report.smallest_gap))
     report.smallest_gap = model_->contact.radius.empty() ? 0 : model_->contact.radius[0];
   const auto certificate = std::chrono::steady_clock::now();
@@ -342,11 +319,11 @@ FrameReport ClothSolver::advance(Frame frame, State& state) {
 
 Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup) {
   if (!setup.keep_short_edges)
-    if (auto riding = make_riding_solver(setup); !riding || *riding) return riding;
-  if (setup.coarsen > 1) return make_coarse_solver(std::move(setup));
+    if (auto riding = make_riding_solver(setup, make_cloth_solver); !riding || *riding) return riding;
+  if (setup.coarsen > 1) return make_coarse_solver(std::move(setup), make_cloth_solver);
   auto model = build_cloth_model(std::move(setup));
   if (!model) return model.error();
   return std::unique_ptr<Solver>(std::make_unique<ClothSolver>(std::move(*model)));
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

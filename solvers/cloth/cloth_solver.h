@@ -5,86 +5,12 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "baker/core/mesh.h"
-#include "baker/core/result.h"
-#include "baker/core/teleport.h"
-#include "baker/core/trajectory.h"
-#include "collision/feasible_poses.h"
-#include "solvers/energies/cloth_topology.h"
-#include "solvers/energies/hold_span.h"
-#include "solvers/solver.h"
+#include "solvers/cloth/model/cloth_setup.h"
 
-namespace ft {
-
-/// Vertices that are held to the body, each following the nearest point of the body's bind pose; or to a garment, each
-/// hanging on the nearest point of its surface by a cord, see attach.h.
-struct ClothPin {
-  std::vector<int> vertices;    ///< garment's file order
-  std::vector<double> weights;  ///< 0..1 each, scales the stiffness; empty: all 1
-  double stiffness = 1e6;       ///< N/m3: spring per garment area and displacement
-  double max_pull = 5e3;        ///< Pa: force limit per garment area; contact wins over pins
-  HoldSpan hold{};              ///< when
-  int to = -1;                  ///< garment of the setup, perhaps its own, which holds it; -1: the body
-  bool to_world = false;        ///< holds where the mesh is; the garment then starts there, too
-  /// Not zero: its vertices let go one after another in this direction, and take hold the other way round, the last of
-  /// them when hold.fade is over.
-  Vec3 opens = Vec3::Zero();
-};
-
-struct ClothGarment {
-  std::string name;
-  Mesh mesh;  ///< bind-pose placement, m; its positions are the rest shape unless pattern_scale says otherwise
-  double pattern_scale = 0;  ///< m per unit of uvs, which are the rest shape then; 0: the positions are
-  double sewing_time = 0;  ///< s from the start of the pre-roll until its stitches are closed; 0: half of the pre-roll
-  Fabric fabric;
-  std::vector<ClothPin> pins;
-  double thickness = 3e-3;     ///< contact begins at this distance from the body [m], 0.5e-3..10e-3
-  double friction = 0.4;       ///< Coulomb, against the body [1]
-  double self_friction = 0.3;  ///< among cloths [1]
-  bool self_collision = true;
-  std::vector<int> ignores;  ///< parts of the primary that it does not meet
-  /// Where the primary is several bodies in one: the parts of the body that wears it, first and count, and what takes
-  /// it to where that starts. Without a value the primary is one body, and the garment starts with it.
-  struct Wearer {
-    int first_part = 0, part_count = 0;
-    Eigen::Isometry3d to_start = Eigen::Isometry3d::Identity();
-    bool has(int part) const { return part >= first_part && part < first_part + part_count; }
-  };
-  std::optional<Wearer> wearer;
-  VertexMaps maps;  ///< one value per vertex of `mesh`, or empty
-};
-
-struct ClothSetup {
-  std::vector<ClothGarment> garments;
-  std::shared_ptr<const Trajectory> primary;  ///< may be null: cloth alone
-  int first_frame = 1;
-  double fps = 24;
-  int preroll_frames = 24;
-  Vec3 gravity = Vec3(0, -k_gravity, 0);    ///< m/s2
-  Vec3 wind = Vec3::Zero();                 ///< m/s
-  double air_density = 1.225;               ///< kg/m3; 0: vacuum
-  int min_substeps = 3, max_substeps = 32;  ///< a frame
-  double travel = 5.5;  ///< most that the body goes against the cloth in a substep, in contact radii; 16 is coarse
-  int newton_iterations = 3;
-  double linear_tolerance = 1e-2;  ///< of the first linear solve of a step; later ones may leave as much
-  /// A linear system of so many blocks and more, 4 MB, is freed when it is solved: what truncation needs is as large,
-  /// and it is seldom asked for again. To have a smaller one freed and filled all the time costs more than it saves.
-  std::size_t large_system = 100'000;
-  /// What moves has edges this many times as long as the garments', 1..4; their vertices ride on it. For previews.
-  double coarsen = 1;
-  /// Edges that are absurdly short (coarse_garment.h) move like all others, and often blow up. For tests.
-  bool keep_short_edges = false;
-  bool bdf2 = true;  ///< with a quarter of BDF3; false: implicit Euler
-  FeasibleSettings feasible;
-  std::shared_ptr<FeasiblePoses> poses;  ///< of `primary` and `feasible`; null: the solver's own
-  std::vector<Teleport> teleports;       ///< of the primary: the cloth goes along
-};
+namespace ft::inline solvers {
 
 /// Checks the setup (pins in range, garments not empty) and builds the model.
 Result<std::unique_ptr<Solver>> make_cloth_solver(ClothSetup setup);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

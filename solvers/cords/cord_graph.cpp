@@ -5,7 +5,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 void add_side(CordGraph& graph, int a, int b, int pieces) {
   CHECK(pieces >= 1);
@@ -34,4 +34,4 @@ std::vector<double> lumped_masses(const CordGraph& graph, double total) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

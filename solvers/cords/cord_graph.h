@@ -6,7 +6,7 @@
 
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct CordGraph {
   std::vector<Vec3> points;               ///< at rest [m]
@@ -26,4 +26,4 @@ void join_strands(CordGraph& graph);
 /// Mass of each point [kg], of `total` > 0: half of each cord's, by length, and `heavier` in units of all cords' mass.
 std::vector<double> lumped_masses(const CordGraph& graph, double total);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

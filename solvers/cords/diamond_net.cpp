@@ -5,7 +5,7 @@
 #include "baker/core/check.h"
 #include "solvers/cords/generators.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 CordGraph diamond_net(const NetMeasures& m) {
   CHECK(m.columns >= 3 && m.rows >= 1);
@@ -31,4 +31,4 @@ CordGraph diamond_net(const NetMeasures& m) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

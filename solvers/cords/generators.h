@@ -7,7 +7,7 @@
 #include "baker/core/result.h"
 #include "solvers/cords/cord_graph.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A net of diamonds that hangs from a rim: knots in rings, each ring turned by half a column against the one above it.
 /// The defaults are a basketball net's: 12 loops, a ring of 18 inches, and a lower opening that checks the ball.
@@ -40,4 +40,4 @@ CordGraph rope(const RopeMeasures& measures);
 /// such group, an edge without length, more than a million cords.
 Result<CordGraph> cords_of_mesh(const Mesh& mesh, std::string_view held_group, int pieces);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

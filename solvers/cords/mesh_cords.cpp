@@ -3,7 +3,7 @@
 #include "baker/core/check.h"
 #include "solvers/cords/generators.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_most_cords = 1e6;
@@ -74,4 +74,4 @@ Result<CordGraph> cords_of_mesh(const Mesh& mesh, std::string_view held_group, i
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

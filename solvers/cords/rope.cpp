@@ -3,7 +3,7 @@
 #include "baker/core/check.h"
 #include "solvers/cords/generators.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 CordGraph rope(const RopeMeasures& m) {
   CHECK(m.pieces >= 1 && m.knots >= 0 && m.from != m.to);
@@ -21,4 +21,4 @@ CordGraph rope(const RopeMeasures& m) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 
 #include "solvers/cords/cord_graph.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_least_cosine =
@@ -70,4 +70,4 @@ void join_strands(CordGraph& graph) {
     if (!taken[c]) follow(end_of(c, 0));
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

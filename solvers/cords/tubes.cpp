@@ -10,7 +10,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/rigid.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_most_stretch =
@@ -170,4 +170,4 @@ void CordTubes::place(std::span<const Vec3> points, std::span<Vec3> out) const {
   });
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include "baker/core/mesh.h"
 #include "solvers/cords/cord_graph.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class CordTubes {
  public:
@@ -50,4 +50,4 @@ class CordTubes {
   Mesh mesh_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

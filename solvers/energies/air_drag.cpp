@@ -5,7 +5,7 @@
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_block = 512;
@@ -126,4 +126,4 @@ void AirDrag::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   });
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -14,7 +14,7 @@
 #include "solvers/energies/energy.h"
 #include "solvers/energies/triangle_slots.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct AirSettings {
   double density = 1.225;    ///< kg/m3; 0 vacuum, 1.225 air at sea level
@@ -62,4 +62,4 @@ class AirDrag final : public Energy {
   double rate_time_ = 1;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -2,7 +2,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 namespace {
 
@@ -32,4 +32,4 @@ void Attachments::begin_step(const StepContext& context) {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -1,6 +1,6 @@
 // Buttons, hooks and zips: a vertex hangs by a cord (cords.h) on a point of a triangle, of another garment or of its
 // own, as long as its hold_span.h says. Nothing is left out of contact for it, so that what opens meets as any cloth; a
-// cord is therefore no shorter than the distance at which the two touch (solvers/cloth/attach.cpp).
+// cord is therefore no shorter than the distance at which the two touch (solvers/cloth/model/attach.cpp).
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/cords.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class Attachments final : public Cords {
  public:
@@ -21,4 +21,4 @@ class Attachments final : public Cords {
   std::vector<AttachPoint> points_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -12,7 +12,7 @@
 #include "solvers/energies/block_scatter.h"
 #include "solvers/energies/hinge_math.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// A triangle pressed below this share of its rest area counts as degenerate.
@@ -323,4 +323,4 @@ void Bending::add_group_hessian(std::size_t group, const HingeShape& shape, Bloc
     }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

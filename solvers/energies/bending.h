@@ -19,7 +19,7 @@
 #include "solvers/energies/energy.h"
 #include "solvers/energies/group_indices.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class Bending final : public Energy {
  public:
@@ -74,4 +74,4 @@ class Bending final : public Energy {
   mutable double energy_ = 0;           ///< J
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -15,7 +15,7 @@
 #include "solvers/energies/element_schedule.h"
 #include "solvers/linear/block_matrix.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Slots hold elements, k_lanes of them a group; a block of corners a and b of a slot is in the row of the lower of the
 /// two vertices.
@@ -83,4 +83,4 @@ class BlockPositions {
   std::vector<Group> groups_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

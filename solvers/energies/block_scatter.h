@@ -9,12 +9,12 @@
 #include "baker/core/types.h"
 #include "solvers/energies/element_schedule.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 using Lanes = float __attribute__((vector_size(4 * k_lanes)));   ///< one number of k_lanes elements
 using LaneInts = int __attribute__((vector_size(4 * k_lanes)));  ///< or one integer; of a comparison, -1 or 0
 
-namespace detail {
+namespace lanes {
 
 /// out[l][k] = in[k][l].
 inline void transpose(const Lanes* in, Lanes* out) {
@@ -34,13 +34,13 @@ inline void transpose(const Lanes* in, Lanes* out) {
   }
 }
 
-}  // namespace detail
+}  // namespace lanes
 
 /// block: nine numbers, column by column, of k_lanes blocks, of which the first `used` go to those places.
 inline void add_blocks(const Lanes* block, std::size_t used, Mat3f* blocks, const LaneInts& place) {
   static_assert(k_lanes == 8 && sizeof(Mat3f) == 9 * sizeof(float));
   Lanes by_lane[8];
-  detail::transpose(block, by_lane);
+  lanes::transpose(block, by_lane);
   for (std::size_t l = 0; l < used; ++l) {
     float* target = blocks[place[l]].data();
     Lanes sum;
@@ -69,4 +69,4 @@ inline void transpose_where(const LaneInts& turned, Lanes* block) {
     }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// Height of the highest cap in its longest edges, and in its shortest.
@@ -125,4 +125,4 @@ void flip_caps(ClothTopology& topology, std::vector<std::array<Vec2, 3>>& uvs,
     if (is_cap(t)) flips.flip(t);  // else it was the other one of another
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -13,7 +13,7 @@
 
 #include "solvers/energies/cloth_topology.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Share of its stiffness that a triangle keeps [1], from its area [m2] and ClothTopology::rest_inverse: 1 unless it is
 /// a cap; then (h / s L)^2. With the share it is as soft across as a strip of cloth that is s^2 L^2 / h wide, for h =
@@ -26,4 +26,4 @@ double cap_stiffness(double rest_area, const std::array<double, 4>& rest_inverse
 void flip_caps(ClothTopology& topology, std::vector<std::array<Vec2, 3>>& uvs,
                const std::function<void(std::size_t)>& measure);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -8,7 +8,7 @@
 #include "solvers/energies/caps.h"
 #include "solvers/energies/cloth_topology_bending.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// A triangle lower than this share of its longest edge carries nothing.
@@ -148,4 +148,4 @@ ClothTopology make_cloth_topology(std::span<const Vec3> rest, std::span<const Tr
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

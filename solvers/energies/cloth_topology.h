@@ -14,7 +14,7 @@
 #include "solvers/energies/fabric.h"
 #include "solvers/energies/hold_span.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// What varies over a garment, one value per vertex of it; an empty list changes nothing. Between vertices values run
 /// linearly: a triangle takes the mean of its corners.
@@ -133,4 +133,4 @@ double rest_length(const ClothTopology& topology, std::size_t triangle, std::siz
 /// Signed angle between the normals of (x0, x1, x2) and (x1, x0, x3), about x1 - x0 [rad]; 0 when flat or degenerate.
 double hinge_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

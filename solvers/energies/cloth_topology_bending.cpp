@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 struct EdgeUse {
@@ -110,4 +110,4 @@ void add_bend_elements(ClothTopology& out) {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -3,7 +3,7 @@
 
 #include "solvers/energies/cloth_topology.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Fills hinges from triangles, rest shape and areas.
 void add_hinges(ClothTopology& topology);
@@ -11,4 +11,4 @@ void add_hinges(ClothTopology& topology);
 /// Fills bends from hinges, rest shape and fabrics.
 void add_bend_elements(ClothTopology& topology);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -2,7 +2,7 @@
 
 #include "solvers/energies/limited_spring.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_no_length = 1e-12;  ///< a cord shorter than this has no direction [m]
@@ -71,4 +71,4 @@ void Cords::add_hessian(std::span<const Vec3> x, BlockMatrix& hessian) const {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -11,7 +11,7 @@
 #include "solvers/energies/block_positions.h"
 #include "solvers/energies/energy.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A vertex at the first place, weight 1; the others are a point of an edge or a triangle with weights below 0.
 struct Cord {
@@ -38,4 +38,4 @@ class Cords : public Energy {
   mutable BlockPositions<4> positions_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

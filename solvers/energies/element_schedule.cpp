@@ -5,7 +5,7 @@
 
 #include "baker/core/give_back.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// Spreads the lower 10 bits, two zeros between each.
@@ -72,4 +72,4 @@ ElementSchedule make_element_schedule(std::span<const int> vertices, std::size_t
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -11,7 +11,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 inline constexpr int k_lanes = 8;
 
@@ -56,4 +56,4 @@ double sum_over_chunks(const ElementSchedule& schedule, Body&& body) {
   return parallel_sum(schedule.group_count(), k_chunk_groups, 0.0, body);
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

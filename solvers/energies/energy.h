@@ -12,7 +12,7 @@
 #include "baker/core/types.h"
 #include "solvers/linear/block_matrix.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// What a step knows besides positions. Lagged quantities (damping, wind) use the start of the substep. The positions
 /// and velocities must live as long as the step.
@@ -51,4 +51,4 @@ class Energy {
   }
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

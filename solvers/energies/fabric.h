@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct Fabric {
   std::string name;
@@ -52,4 +52,4 @@ struct FabricKey {
 };
 std::span<const FabricKey> fabric_keys();
 
-}  // namespace ft
+}  // namespace ft::inline solvers

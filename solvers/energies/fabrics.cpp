@@ -21,7 +21,7 @@
 
 #include "solvers/energies/fabric.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_gf_cm2_per_cm = 9.80665e-5;  ///< N m
@@ -170,4 +170,4 @@ std::span<const FabricKey> fabric_keys() {
   return keys;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

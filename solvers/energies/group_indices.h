@@ -11,7 +11,7 @@
 #include "baker/core/types.h"
 #include "solvers/energies/element_schedule.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 template <int Columns>
 class GroupIndices {
@@ -86,4 +86,4 @@ GroupIndices<Columns> group_indices(const ElementSchedule& schedule, Numbers&& n
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -7,7 +7,7 @@
 
 #include "solvers/energies/element_schedule.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 using HingeLane = double[k_lanes];
 
@@ -70,4 +70,4 @@ inline void hinge_gradient_lanes(const HingeLane* e, const HingeLane* a, const H
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

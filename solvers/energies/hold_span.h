@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct HoldSpan {
   double from = -std::numeric_limits<double>::infinity();  ///< s of the shot's time; nothing is held up to this instant
@@ -25,4 +25,4 @@ struct HoldSpan {
   static constexpr double k_instant = 1e-9;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

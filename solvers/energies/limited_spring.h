@@ -2,7 +2,7 @@
 // tearing.
 #pragma once
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct LimitedSpring {
   double energy = 0;  ///< J
@@ -19,4 +19,4 @@ inline LimitedSpring limited_spring(double stretch, double stiffness, double lim
   return {limit * (stretch - 0.5 * elastic), limit, limit / stretch};
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

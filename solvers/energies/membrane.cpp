@@ -9,7 +9,7 @@
 #include "solvers/energies/caps.h"
 #include "solvers/energies/membrane_element.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 using namespace membrane;
 
@@ -207,4 +207,4 @@ void Membrane::add_group_hessian(std::size_t group, const Stressed& stressed, Bl
   scatter(blocks, stressed.vertices, positions_, group, slots_->schedule.used(group), hessian);
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -17,7 +17,7 @@
 #include "solvers/energies/energy.h"
 #include "solvers/energies/triangle_slots.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Plane-stress stiffness in weft (1) and warp (2) axes: C11, C22, C12, C33 [N/m]. Positive definite for poisson in [0,
 /// 1).
@@ -69,4 +69,4 @@ class Membrane final : public Energy {
   mutable BlockPositions<3> positions_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include "solvers/energies/block_scatter.h"
 #include "solvers/energies/membrane.h"
 
-namespace ft::membrane {
+namespace ft::inline solvers::membrane {
 
 using Lane = double[k_lanes];
 
@@ -187,4 +187,4 @@ inline void scatter(ElementBlocks& e, const Membrane::Vertices& vertices, const 
   add(b00, 0, 0), add(b01, 0, 1), add(b02, 0, 2), add(e.b11, 1, 1), add(e.b12, 1, 2), add(e.b22, 2, 2);
 }
 
-}  // namespace ft::membrane
+}  // namespace ft::inline solvers::membrane

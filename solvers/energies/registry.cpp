@@ -5,7 +5,7 @@
 #include "solvers/energies/membrane.h"
 #include "solvers/energies/seams.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 template <class T>
@@ -37,4 +37,4 @@ std::vector<std::unique_ptr<Energy>> make_cloth_energies(const ClothTopology& to
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

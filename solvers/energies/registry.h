@@ -11,7 +11,7 @@
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/energy.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct ClothEnergyKind {
   std::string_view name;
@@ -25,4 +25,4 @@ std::span<const ClothEnergyKind> cloth_energy_kinds();
 /// One of each kind. They copy what they need of the topology.
 std::vector<std::unique_ptr<Energy>> make_cloth_energies(const ClothTopology& topology, const AirSettings& air);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 std::vector<Cord> cords_of(std::span<const SeamPoint> points) {
@@ -31,4 +31,4 @@ void Seams::begin_step(const StepContext& context) {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -1,7 +1,7 @@
 // Sewing: a vertex of one panel is drawn to a point on another's edge and kept there, by a cord (cords.h) whose length
 // shrinks evenly from the distance at the start to nothing while the seam closes; from then on it has no length and a
 // far higher limit. The limit keeps a panel that is caught behind an arm from being torn. For panels that are cut from
-// a pattern. Caution: the two sides must not feel each other's contact, see collision/sewn_pairs.h.
+// a pattern. Caution: the two sides must not feel each other's contact, see collision/check/sewn_pairs.h.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/cords.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Constants of a seam per metre of its length, so that they do not depend on the mesh.
 struct SeamSettings {
@@ -28,4 +28,4 @@ class Seams final : public Cords {
   std::vector<SeamPoint> points_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

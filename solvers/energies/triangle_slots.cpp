@@ -5,7 +5,7 @@
 #include "baker/core/check.h"
 #include "solvers/energies/cloth_topology.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 const TriangleOrder& triangle_order(const ClothTopology& topology) {
   if (topology.order) return *topology.order;
@@ -34,4 +34,4 @@ const TriangleOrder& triangle_order(const ClothTopology& topology) {
   return *topology.order;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include "solvers/energies/element_schedule.h"
 #include "solvers/energies/group_indices.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct ClothTopology;
 
@@ -30,4 +30,4 @@ struct TriangleOrder {
 /// Worked out once per topology, whose triangles must not change afterwards.
 const TriangleOrder& triangle_order(const ClothTopology& topology);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

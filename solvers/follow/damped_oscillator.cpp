@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// sin(a) / a and sinh(a) / a, exact at 0.
@@ -34,4 +34,4 @@ void DampedOscillator::advance(Lag& lag, double dt) const {
   lag.velocity = fall * (c * v - s * (decay * v + omega * omega * x));
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -5,7 +5,7 @@
 
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct DampedOscillator {
   double omega = 1;   ///< undamped angular frequency [rad/s], > 0
@@ -23,4 +23,4 @@ struct DampedOscillator {
   void advance(Lag& lag, double dt) const;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -7,7 +7,7 @@
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_block = 8192;  ///< blocks of the matrix per block of a loop
@@ -84,4 +84,4 @@ BlockPattern make_pattern(std::vector<int> diagonal, std::vector<int> column) {
   return pattern;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Who couples to whom. The matrix has the blocks on and above the diagonal alone, row by row; a place is an index into
 /// them. What a row has below the diagonal are transposed blocks of earlier rows.
@@ -63,4 +63,4 @@ struct PairTerm {
   Mat3f stiffness = Mat3f::Zero();  ///< N/m, positive semidefinite
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_most_vertices = 400;  ///< above it the coarsest level is only smoothed
@@ -33,4 +33,4 @@ void DenseFactor::solve(Level& level) const {
   for (int i = 0; i < level.size(); ++i) level.x[at(i)] << b.segment<3>(3 * i).cast<float>(), 0;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -6,7 +6,7 @@
 
 #include "solvers/linear/level.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class DenseFactor {
  public:
@@ -22,4 +22,4 @@ class DenseFactor {
   bool exists_ = false;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -5,7 +5,7 @@
 
 #include "baker/core/parallel.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_rows = 1024;  ///< per block of a loop
@@ -86,4 +86,4 @@ void ExtraRows::gather(std::span<const ExtraBlock> blocks, std::span<const PairT
   });
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -8,7 +8,7 @@
 
 #include "solvers/linear/block_matrix.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A block above the diagonal, and the one that mirrors it: of two vertices of a term, by their place in it. Its value
 /// is the same for both.
@@ -38,4 +38,4 @@ struct ExtraRows {
   std::vector<int> order_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

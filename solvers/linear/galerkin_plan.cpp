@@ -10,7 +10,7 @@
 #include "baker/core/parallel.h"
 #include "solvers/linear/row_product.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_rows = 64;  ///< coarse rows per block of a loop
@@ -112,7 +112,7 @@ BlockPattern GalerkinPlan::build(const BlockPattern& fine, const Interpolation& 
 }
 
 inline Mat3f GalerkinPlan::take_sum(const Word*& next, const Mat3f* first) {
-  using namespace detail;
+  using namespace products;
   Eight eight{};
   float ninth = 0;
   const std::uint32_t distance = take_distance(next);
@@ -150,4 +150,4 @@ void GalerkinPlan::apply(const BlockMatrix& fine, BlockMatrix& coarse) const {
   });
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include "solvers/linear/block_matrix.h"
 #include "solvers/linear/interpolation.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class GalerkinPlan {
  public:
@@ -38,4 +38,4 @@ class GalerkinPlan {
   std::vector<Word> words_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

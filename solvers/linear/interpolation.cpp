@@ -6,7 +6,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_max_candidates = 10;
@@ -178,4 +178,4 @@ Interpolation make_interpolation(const BlockPattern& p, std::span<const Vec3> re
   return result;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -12,7 +12,7 @@
 
 #include "solvers/linear/block_matrix.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct Interpolation {
   /// Of a fine vertex. Supports are met to a hundredth of their distance, and exactly in regular meshes, where weights
@@ -40,4 +40,4 @@ struct Interpolation {
 /// rest: one position per row of the pattern [m].
 Interpolation make_interpolation(const BlockPattern& pattern, std::span<const Vec3> rest);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

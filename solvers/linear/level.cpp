@@ -7,7 +7,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_rows = 256;  ///< rows per block of work
@@ -161,4 +161,4 @@ void add_interpolated(Level& fine, const Level& coarse) {
   interpolate_onto<true>(fine, coarse);
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -14,7 +14,7 @@
 #include "solvers/linear/row_product.h"
 #include "solvers/linear/stiff_clusters.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A symmetric 3x3 block: xx, xy, xz, yy, yz, zz.
 struct SymmetricBlock {
@@ -22,7 +22,7 @@ struct SymmetricBlock {
 
   /// The fourth entry is zero.
   Vec4f operator*(const Vec4f& v) const {
-    using namespace detail;
+    using namespace products;
     const Four low = load_four(entries.data()), high = load_four(entries.data() + 2);
     const Four first = low * v[0], second = __builtin_shufflevector(low, high, 1, 3, 6, 6) * v[1];
     const Four sum = first + second + __builtin_shufflevector(high, high, 0, 2, 3, 3) * v[2];
@@ -90,4 +90,4 @@ void interpolate(Level& fine, const Level& coarse);
 /// fine x += P coarse x.
 void add_interpolated(Level& fine, const Level& coarse);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -5,7 +5,7 @@
 #include "baker/core/parallel.h"
 #include "solvers/linear/linear_system_impl.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_rows = 256;  ///< per block of a loop
@@ -121,4 +121,4 @@ Products LinearSystem::Impl::precondition(double most_norm_squared) {
   return second;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -6,7 +6,7 @@
 #include "baker/core/parallel.h"
 #include "solvers/linear/linear_system_impl.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_coarsest_size = 64;  ///< a level of no more vertices has no coarser one
@@ -216,4 +216,4 @@ LinearReport LinearSystem::solve(std::span<const Vec3> right_side, std::span<con
   return report;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

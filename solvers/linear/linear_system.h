@@ -10,7 +10,7 @@
 
 #include "solvers/linear/block_matrix.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct LinearSettings {
   enum class Preconditioner { k_block_jacobi, k_multigrid };
@@ -61,4 +61,4 @@ class LinearSystem {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include "solvers/linear/level.h"
 #include "solvers/linear/linear_system.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Of what the preconditioner makes of the residual.
 struct Products {
@@ -55,4 +55,4 @@ struct LinearSystem::Impl {
   Products apply_jacobi();
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -8,14 +8,14 @@
 
 #include "solvers/linear/block_matrix.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 using Vec4f = Eigen::Vector4f;  ///< a 3-vector padded for aligned loads; the fourth entry is always zero or ignored
 
 /// Row times x (one per vertex). The fourth entry is zero.
 Vec4f row_product(const BlockMatrix& matrix, std::size_t row, const Vec4f* x);
 
-namespace detail {
+namespace products {
 
 using Four = float __attribute__((vector_size(16), may_alias));
 using Eight = float __attribute__((vector_size(32), may_alias));
@@ -95,14 +95,14 @@ inline Eight multiply_add(const Eight& a, const Eight& b, const Eight& c) {
          __builtin_shufflevector(high, sum[2], 0, 1, 6, 7);
 }
 
-}  // namespace detail
+}  // namespace products
 
 [[gnu::always_inline]] inline Vec4f row_product(const BlockMatrix& matrix, std::size_t row, const Vec4f* x) {
-  using namespace detail;
+  using namespace products;
   const Four whole = upper_product(matrix, row, x) + lower_product(matrix, row, x);
   Vec4f out;
   *reinterpret_cast<Four*>(out.data()) = __builtin_shufflevector(whole, Four{}, 0, 1, 2, 4);
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -8,7 +8,7 @@
 #include "baker/core/disjoint_sets.h"
 #include "baker/core/parallel.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_couplings = 1024;  ///< couplings, or rows of them
@@ -141,4 +141,4 @@ void StiffClusters::solve(int cluster, std::span<const Vec4f> r, std::span<Vec4f
   for (std::size_t a = 0; a < count; ++a) out[a] = Vec4f(sum[3 * a], sum[3 * a + 1], sum[3 * a + 2], 0);
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -12,7 +12,7 @@
 #include "solvers/linear/extra_rows.h"
 #include "solvers/linear/row_product.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class StiffClusters {
  public:
@@ -55,4 +55,4 @@ class StiffClusters {
   std::vector<char> clustered_;  ///< per vertex; empty without any cluster
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_drag_coefficient = 1.2;  ///< of a long cylinder across the flow, Re 1e2 to 1e5 (Hoerner 1965)
@@ -94,4 +94,4 @@ Vec3 CordElements::hold_force(std::span<const Vec3> x) const {
   return sum;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

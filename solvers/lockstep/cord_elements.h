@@ -12,7 +12,7 @@
 
 #include "solvers/lockstep/node_system.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct CordSpring {
   int a = 0, b = 0;
@@ -76,4 +76,4 @@ struct CordElements {
   double h_ = 0;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "baker/core/parallel.h"
-#include "collision/ccd_li2021.h"
-#include "collision/crossings.h"
-#include "collision/triangle_tree.h"
+#include "collision/check/crossings.h"
+#include "collision/geometry/ccd_li2021.h"
+#include "collision/geometry/triangle_tree.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// Slip speed below which friction grows to its full force [m/s].
@@ -265,4 +265,4 @@ std::vector<Crossing> LockstepContact::crossings(std::span<const Vec3> x) const 
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

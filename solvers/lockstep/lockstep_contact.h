@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "baker/core/wrench.h"
-#include "collision/crossings.h"
-#include "collision/pair_finder.h"
-#include "collision/pair_geometry.h"
+#include "collision/broad_phase/pair_finder.h"
+#include "collision/check/crossings.h"
+#include "collision/geometry/pair_geometry.h"
 #include "solvers/lockstep/lockstep_model.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class LockstepContact {
  public:
@@ -81,4 +81,4 @@ class LockstepContact {
   std::vector<VertexBox> boxes_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

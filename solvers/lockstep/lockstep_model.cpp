@@ -7,7 +7,7 @@
 
 #include "solvers/cords/generators.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// Springs that keep the prop's frame in shape, against its inertia in a step: it yields by so small a share of what
@@ -133,4 +133,4 @@ Result<LockstepModel> build_lockstep_model(LockstepSetup setup) {
   return m;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

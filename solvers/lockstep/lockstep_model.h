@@ -11,7 +11,7 @@
 #include "solvers/lockstep/cord_elements.h"
 #include "solvers/lockstep/lockstep_solver.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct LockstepModel {
   LockstepSetup setup;
@@ -41,4 +41,4 @@ struct LockstepModel {
 
 Result<LockstepModel> build_lockstep_model(LockstepSetup setup);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

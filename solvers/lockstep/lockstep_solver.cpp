@@ -14,7 +14,7 @@
 #include "solvers/cords/tubes.h"
 #include "solvers/lockstep/lockstep_step.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 double number_of(const State& state, const char* name) {
@@ -308,4 +308,4 @@ Result<std::unique_ptr<Solver>> make_lockstep_solver(LockstepSetup setup) {
   return std::unique_ptr<Solver>(std::make_unique<LockstepSolver>(std::move(*model)));
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -16,10 +16,10 @@
 
 #include "baker/core/result.h"
 #include "baker/core/rigid.h"
+#include "solvers/base/solver.h"
 #include "solvers/cords/cord_graph.h"
-#include "solvers/solver.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A net, a rope, a chain of knots.
 struct CordSystem {
@@ -67,4 +67,4 @@ struct LockstepSetup {
 /// what the held points were given so far [N s].
 Result<std::unique_ptr<Solver>> make_lockstep_solver(LockstepSetup setup);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

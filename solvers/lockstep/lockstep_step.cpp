@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "baker/core/stopwatch.h"
-#include "solvers/integrator.h"
+#include "solvers/base/integrator.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_most_iterations = 30;        ///< of one look at friction; what takes more wants a shorter step
@@ -154,4 +154,4 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   return report;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -7,7 +7,7 @@
 
 #include "solvers/lockstep/lockstep_contact.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct LockstepMotion {
   std::vector<Vec3> x, v, x_previous, v_previous;  ///< of the nodes
@@ -46,4 +46,4 @@ class LockstepStep {
   std::vector<NodeTerm> terms_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct NodeSystem::Solver {
   Eigen::SparseMatrix<double> matrix;
@@ -78,4 +78,4 @@ bool NodeSystem::solve(std::span<const Vec3> rhs, std::span<Vec3> x) {
   return s.ldlt.info() == Eigen::Success;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -10,7 +10,7 @@
 
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A force and its stiffness on u = sum w_k x_k: adds w_k force to a node's gradient and w_k w_l stiffness to a block.
 struct NodeTerm {
@@ -45,4 +45,4 @@ class NodeSystem {
   std::unique_ptr<Solver> solver_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

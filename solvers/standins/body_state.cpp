@@ -5,7 +5,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 std::vector<ShapeSample> sphere_shape(double radius, int across) {
   CHECK(radius > 0 && across >= 1);
@@ -72,4 +72,4 @@ std::vector<ShapeSample> surface_shape(std::span<const Vec3> positions, std::spa
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -7,7 +7,7 @@
 
 #include "baker/core/rigid.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// A piece of the body. Pieces of its surface have an area, pieces of its inside a volume; a piece may have both.
 struct ShapeSample {
@@ -42,4 +42,4 @@ std::vector<ShapeSample> box_shape(const Vec3& size, int across = 8);
 /// The surface of a mesh whose vertices are given from the centre of mass, one sample for each triangle.
 std::vector<ShapeSample> surface_shape(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

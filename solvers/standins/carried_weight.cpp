@@ -1,6 +1,6 @@
 #include "solvers/standins/carried_weight.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 Result<std::unique_ptr<StandIn>> CarriedWeight::make(const StandInSpec& s) {
   if (!(s.mass > 0)) return usage_error("a carried weight needs a mass above 0", s.name, "mass [kg]");
@@ -18,4 +18,4 @@ StandInForce CarriedWeight::law(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

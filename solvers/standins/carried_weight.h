@@ -4,7 +4,7 @@
 
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Reads mass and anchor.
 class CarriedWeight final : public StandIn {
@@ -19,4 +19,4 @@ class CarriedWeight final : public StandIn {
   using StandIn::StandIn;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/penetration.h"
+#include "collision/check/penetration.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 double box_depth(const Vec3& p, const Vec3& size) {
@@ -106,4 +106,4 @@ StandInForce DampingVolume::law(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

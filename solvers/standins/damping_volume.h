@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "collision/checked_surface.h"
+#include "collision/check/checked_surface.h"
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Reads shape and its measures, soft_edge, damping, damping_axes, damping_quadratic, damping_spin.
 class DampingVolume : public StandIn {
@@ -35,4 +35,4 @@ class DampingVolume : public StandIn {
   std::optional<CheckedSurface> surface_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -8,7 +8,7 @@
 
 #include "solvers/standins/rigid_flight.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr int k_halvings = 12;                ///< of the longest step, at most: 1 microsecond
@@ -300,4 +300,4 @@ Result<DeviationStep> Deviation::advance(DeviationState& state, double until) co
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

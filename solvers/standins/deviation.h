@@ -20,7 +20,7 @@
 
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// What is imported: the motion of the centre of mass and the axes of the body at any time [s]. For a character that is
 /// its whole mass, and the samples move against the axes.
@@ -106,4 +106,4 @@ class Deviation {
   DeviationSettings settings_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace ft {
+namespace ft::inline solvers {
 
 StandInFit fit_stand_in(std::span<const ForceSample> samples) {
   StandInFit out;
@@ -41,4 +41,4 @@ std::string StandInFit::text() const {
                      damping > 0 && stiffness > 0 ? "explain" : "explains", 100 * r2, r2, samples);
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

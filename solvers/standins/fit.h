@@ -7,7 +7,7 @@
 
 #include "baker/core/types.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct ForceSample {
   Vec3 force = Vec3::Zero();         ///< on the body [N]
@@ -27,4 +27,4 @@ struct StandInFit {
 
 StandInFit fit_stand_in(std::span<const ForceSample> samples);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -1,6 +1,6 @@
 #include "solvers/standins/fitted_field.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 Result<std::unique_ptr<StandIn>> FittedField::make(const StandInSpec& s) {
   if (!(s.stiffness >= 0)) return usage_error("stiffness of a fitted stand-in must be 0 or more", s.name);
@@ -16,4 +16,4 @@ StandInForce FittedField::law(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

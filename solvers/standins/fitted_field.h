@@ -5,7 +5,7 @@
 
 #include "solvers/standins/damping_volume.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Reads what a damping volume does, and stiffness. Its position is where the recoil is nothing.
 class FittedField final : public DampingVolume {
@@ -20,4 +20,4 @@ class FittedField final : public DampingVolume {
   using DampingVolume::DampingVolume;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

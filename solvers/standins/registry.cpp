@@ -8,7 +8,7 @@
 #include "solvers/standins/unilateral_spring.h"
 #include "solvers/standins/water_plane.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr StandInKind k_kinds[] = {
@@ -58,4 +58,4 @@ Result<std::unique_ptr<StandIn>> make_stand_in(const StandInSpec& spec) {
   return usage_error("no stand-in is called \"" + spec.kind + "\"", spec.name, "one of " + names);
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

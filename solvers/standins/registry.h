@@ -8,7 +8,7 @@
 
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 struct StandInKind {
   std::string_view name;
@@ -21,4 +21,4 @@ std::span<const StandInKind> stand_in_kinds();
 /// and a supporting kind that would be added to the support of the clip.
 Result<std::unique_ptr<StandIn>> make_stand_in(const StandInSpec& spec);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

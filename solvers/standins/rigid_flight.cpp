@@ -5,7 +5,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_angle_per_step = 0.01;  ///< rad; an error of 1e-10 rad in a turn
@@ -70,4 +70,4 @@ RigidMotion RigidFlight::at(double time) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

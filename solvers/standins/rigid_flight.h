@@ -5,7 +5,7 @@
 
 #include "baker/core/rigid.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 class RigidFlight {
  public:
@@ -29,4 +29,4 @@ Quat rotation_by(const Vec3& vector);
 /// The vector of a rotation, at most half a turn [rad].
 Vec3 rotation_vector(const Quat& rotation);
 
-}  // namespace ft
+}  // namespace ft::inline solvers

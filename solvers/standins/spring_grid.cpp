@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline solvers {
 
 Result<std::unique_ptr<StandIn>> SpringGrid::make(const StandInSpec& s) {
   if (!(s.size.x() > 0 && s.size.z() > 0)) return usage_error("a mat needs a size above 0 in x and z", s.name);
@@ -52,4 +52,4 @@ StandInForce SpringGrid::law(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

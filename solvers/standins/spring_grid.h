@@ -7,7 +7,7 @@
 
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Reads position (of its top), heading, size (x and z), soft_edge, stiffness, stiffness_cubic, damping, damping_ratio.
 class SpringGrid final : public StandIn {
@@ -25,4 +25,4 @@ class SpringGrid final : public StandIn {
   double cover(const Vec3& place) const;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -1,6 +1,6 @@
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 void StandInForce::add(const Vec3& arm, const Vec3& force, const Mat3& stiffness_there, const Mat3& damping_there,
                        const Vec3& own) {
@@ -49,4 +49,4 @@ StandInForce StandIn::act(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -13,7 +13,7 @@
 #include "baker/core/wrench.h"
 #include "solvers/standins/body_state.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< translation and rotation, or force and torque
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -116,4 +116,4 @@ inline Mat3 cross_matrix(const Vec3& a) {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

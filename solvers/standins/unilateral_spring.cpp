@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline solvers {
 
 Result<std::unique_ptr<StandIn>> UnilateralSpring::make(const StandInSpec& s) {
   if (!(s.stiffness > 0)) return usage_error("a spring needs a stiffness above 0", s.name, "stiffness [N/m]");
@@ -32,4 +32,4 @@ StandInForce UnilateralSpring::law(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

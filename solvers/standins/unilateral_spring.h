@@ -4,7 +4,7 @@
 
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Reads position (in the world), anchor (on the body), length, stiffness, damping, damping_ratio.
 class UnilateralSpring final : public StandIn {
@@ -19,4 +19,4 @@ class UnilateralSpring final : public StandIn {
   using StandIn::StandIn;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

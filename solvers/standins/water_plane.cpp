@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 double extent(const ShapeSample& s) {
@@ -50,4 +50,4 @@ StandInForce WaterPlane::law(const BodyState& body) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 
 #include "solvers/standins/standin.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// Reads position (of its surface), density, drag, slam.
 class WaterPlane final : public StandIn {
@@ -25,4 +25,4 @@ class WaterPlane final : public StandIn {
   using StandIn::StandIn;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -12,7 +12,7 @@
 #include "solvers/standins/registry.h"
 #include "solvers/validation/scenes.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_g = 9.81;
@@ -166,4 +166,4 @@ std::vector<ValidationCase> validate_follow() {
                           "logarithmic decrement")};
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -5,7 +5,7 @@
 #include "solvers/validation/scene_parts.h"
 #include "solvers/validation/scenes.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 std::vector<double> masses(const Mesh& mesh, const Fabric& fabric) {
@@ -149,4 +149,4 @@ std::vector<ValidationCase> validate_terminal_velocity() {
                           "rho Cn A v^2 / 2 = m g")};
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -5,7 +5,7 @@
 #include "solvers/validation/scene_parts.h"
 #include "solvers/validation/scenes.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_degree = std::numbers::pi / 180;
@@ -80,4 +80,4 @@ std::vector<ValidationCase> validate_incline_inner_edge() {
   return {sliding("incline_inner_edge", 30, 1.8)};
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 
 #include "baker/core/check.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 class Boxes final : public Trajectory {
@@ -124,4 +124,4 @@ std::vector<Vec3> ClothRun::velocities() const {
   return {view.begin(), view.end()};
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

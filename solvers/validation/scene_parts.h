@@ -10,7 +10,7 @@
 #include "baker/core/trajectory.h"
 #include "solvers/cloth/cloth_solver.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// columns x rows cells, alternating diagonals; vertex (i, j) is i + (columns + 1) j, placed by s = i / columns, t = j
 /// / rows.
@@ -51,4 +51,4 @@ class ClothRun {
   State state_;
 };
 
-}  // namespace ft
+}  // namespace ft::inline solvers

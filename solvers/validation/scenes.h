@@ -3,7 +3,7 @@
 
 #include "solvers/validation/validation.h"
 
-namespace ft {
+namespace ft::inline solvers {
 
 // statics.cpp
 std::vector<ValidationCase> validate_hanging_sheet();
@@ -30,4 +30,4 @@ std::vector<ValidationCase> validate_prop_flight();
 std::vector<ValidationCase> validate_mat();
 std::vector<ValidationCase> validate_follow();
 
-}  // namespace ft
+}  // namespace ft::inline solvers

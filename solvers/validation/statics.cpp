@@ -6,7 +6,7 @@
 #include "solvers/validation/scene_parts.h"
 #include "solvers/validation/scenes.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 /// Advances until nothing moves faster than `speed` [m/s], at most `frames`.
@@ -142,4 +142,4 @@ std::vector<ValidationCase> validate_heavy_elastica() {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -5,7 +5,7 @@
 #include "solvers/validation/scene_parts.h"
 #include "solvers/validation/scenes.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr double k_degree = std::numbers::pi / 180;
@@ -123,4 +123,4 @@ std::vector<ValidationCase> validate_hanging_chain() {
                           "Bernoulli: 1.20241 sqrt(g / L)")};
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -4,7 +4,7 @@
 
 #include "solvers/validation/scenes.h"
 
-namespace ft {
+namespace ft::inline solvers {
 namespace {
 
 constexpr ValidationScene k_scenes[] = {
@@ -61,4 +61,4 @@ std::vector<ValidationCase> run_validation(std::string_view filter,
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ft {
+namespace ft::inline solvers {
 
 /// One row: a value and what it should be.
 struct ValidationCase {
@@ -41,4 +41,4 @@ std::span<const ValidationScene> validation_scenes();
 std::vector<ValidationCase> run_validation(std::string_view filter = {},
                                            const std::function<void(const ValidationScene&)>& before = {});
 
-}  // namespace ft
+}  // namespace ft::inline solvers

@@ -1,11 +1,11 @@
 // What of the collider a cloth does not meet: from marks to the manifest and back, and left out of what is judged.
-#include "baker/absent_runs.h"
+#include "baker/systems/interface/absent_runs.h"
 
 #include <gtest/gtest.h>
 
-#include "baker/judge_caches.h"
-#include "baker/manifest.h"
-#include "baker/report_json.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
+#include "baker/record/report_json.h"
 #include "tests/baker/fake_bake.h"
 
 namespace ft {

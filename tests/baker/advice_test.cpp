@@ -1,10 +1,10 @@
 // The decision tree and the pass that feeds it: the paper's own table gives the paper's choices, evidence follows
 // closed forms, and neither depends on the frame rate.
-#include "baker/advice.h"
+#include "baker/judge/advice.h"
 
 #include <gtest/gtest.h>
 
-#include "baker/advice_pass.h"
+#include "baker/judge/advice_pass.h"
 #include "tests/baker/fake_bake.h"
 
 namespace ft {

@@ -2,7 +2,7 @@
 // and is unbuttoned from one end.
 #include <csignal>
 
-#include "baker/judge_caches.h"
+#include "baker/judge/judge_caches.h"
 #include "io/cache/cache.h"
 #include "solvers/validation/scene_parts.h"
 #include "tests/baker/fake_bake.h"

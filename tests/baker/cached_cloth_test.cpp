@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "baker/manifest.h"
+#include "baker/record/manifest.h"
 #include "io/import/import.h"
 #include "io/shot/mesh_file.h"
 #include "tests/baker/fake_bake.h"

@@ -4,12 +4,12 @@
 #include <csignal>
 #include <fstream>
 
-#include "baker/bake.h"
 #include "baker/core/parallel.h"
-#include "baker/judge_caches.h"
-#include "baker/manifest.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
+#include "baker/run/bake.h"
 #include "baker/systems/cloth/pins.h"
-#include "collision/crossings.h"
+#include "collision/check/crossings.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
 #include "tests/baker/fake_bake.h"

@@ -4,9 +4,9 @@
 
 #include <csignal>
 
-#include "baker/judge_caches.h"
-#include "baker/manifest.h"
-#include "collision/crossings.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
+#include "collision/check/crossings.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"

@@ -2,8 +2,8 @@
 // cloth is cut from one, however its panels were laid out.
 #include <gtest/gtest.h>
 
-#include "baker/judge_caches.h"
-#include "baker/manifest.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
 #include "tests/baker/fake_bake.h"
 
 namespace ft::test {

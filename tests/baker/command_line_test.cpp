@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "baker/core/file.h"
-#include "baker/manifest.h"
+#include "baker/record/manifest.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "baker/core/equimomental.h"
-#include "baker/plan.h"
-#include "baker/prop.h"
+#include "baker/plan/plan.h"
+#include "baker/plan/prop.h"
 
 namespace ft {
 namespace {

@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "baker/bake.h"
-#include "baker/bake_folder.h"
+#include "baker/record/bake_folder.h"
+#include "baker/run/bake.h"
 #include "baker/systems/cloth/cloth_group.h"
 #include "baker/systems/cords/cords_group.h"
 #include "tests/support/assets.h"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "baker/cache_track.h"
+#include "baker/record/cache_track.h"
 #include "baker/systems/follow/follow_group.h"
 #include "tests/baker/fake_bake.h"
 #include "tests/support/scripted_body.h"

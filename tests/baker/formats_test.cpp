@@ -2,9 +2,9 @@
 // reports.
 #include <limits>
 
-#include "baker/checkpoint.h"
-#include "baker/manifest.h"
-#include "baker/report_json.h"
+#include "baker/record/manifest.h"
+#include "baker/record/report_json.h"
+#include "baker/run/checkpoint.h"
 #include "tests/baker/fake_bake.h"
 #include "tests/support/damage.h"
 
@@ -37,7 +37,8 @@ FrameReport example_report(int frame) {
   f.mean = {Vec3(1.0 / 3, -5, 0), Vec3(0, 1e-17, 2)};
   f.peak = 6;
   f.contact_share = 0.75;
-  r.forces = {f};
+  r.forces = {f, f};
+  r.forces[1].primary = "chair";
   return r;
 }
 

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "baker/core/file.h"
-#include "baker/manifest.h"
-#include "baker/report_json.h"
+#include "baker/record/manifest.h"
+#include "baker/record/report_json.h"
 #include "tests/baker/fake_bake.h"
 #include "tests/support/block_person.h"
 

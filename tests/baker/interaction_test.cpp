@@ -1,5 +1,5 @@
 // The table of forces: what it takes together, with which mass, and who is told.
-#include "baker/interaction.h"
+#include "baker/run/interaction.h"
 
 #include <gtest/gtest.h>
 
@@ -74,6 +74,35 @@ TEST(Interaction, Lines_name_the_mass_and_what_never_touched) {
   EXPECT_EQ(interaction_lines(interactions(m, runner(50)), runner(50)).size(), 2u) << "neither touches anything";
 }
 
+TEST(Interaction, Has_a_row_for_each_primary_that_is_met) {
+  Manifest m = manifest_of_two();
+  std::vector<PrimaryPlan> both = runner(50);
+  both.push_back(both[0]);
+  both[1].name = "chair";
+  for (FrameReport& frame : m.frames) {
+    for (InteractionForce& f : frame.forces) f.primary = "runner";
+    frame.forces.push_back(force_of("vest", {0, -20, 0}, 30, frame.frame == 3 ? 1 : 0));
+    frame.forces.back().primary = "chair";
+    frame.forces.push_back(force_of("belt", {0, 0, 0}, 0, 0));
+    frame.forces.back().primary = "chair";
+  }
+  m.frames[3].forces[1].contact_share = 0;
+  const auto rows = interactions(m, both);
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(rows[0].primary, "runner");
+  EXPECT_DOUBLE_EQ(rows[0].force.mean, 5);
+  EXPECT_EQ(rows[3].primary, "chair");
+  EXPECT_EQ(rows[3].secondary, "vest");
+  EXPECT_EQ(rows[3].frames, 1);
+  EXPECT_DOUBLE_EQ(rows[3].force.mean, 20);
+  EXPECT_EQ(
+      untouched_lines(rows),
+      (std::vector<std::string>{"\"belt\" touches nothing in any frame: is it where \"runner\", \"chair\" are?"}));
+  const auto compared = compare_forces(m, m);
+  ASSERT_EQ(compared.size(), 2u) << "of the belt nothing touches";
+  EXPECT_EQ(compared[1].primary == "chair" ? compared[1].max_a : compared[0].max_a, 20);
+}
+
 TEST(Interaction, Without_a_mass_there_is_no_acceleration_and_a_word_about_it) {
   const auto rows = interactions(manifest_of_two(), runner(0));
   EXPECT_EQ(rows[0].acceleration.max, 0);
@@ -123,6 +152,7 @@ TEST(Interaction, Is_in_the_report_of_a_bake_and_in_what_is_said_at_its_end) {
   const auto report = parse_json(read_text(scene.folder().report()).value(), "report");
   ASSERT_TRUE(report);
   const Json& row = report->at("interaction").at("rows").at(0);
+  EXPECT_TRUE(read_manifest(scene.folder().path)->notes.empty());
   EXPECT_EQ(row.at("secondary"), "sheet");
   EXPECT_EQ(row.at("frames"), 6);
   EXPECT_EQ(row.at("force").at("mean"), 3);

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "baker/core/shapes.h"
-#include "baker/judge_caches.h"
-#include "baker/manifest.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
 #include "solvers/cords/generators.h"

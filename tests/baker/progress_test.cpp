@@ -5,7 +5,7 @@
 #include <regex>
 
 #include "baker/core/file.h"
-#include "baker/writer_thread.h"
+#include "baker/run/writer_thread.h"
 #include "tests/baker/fake_bake.h"
 
 namespace ft::test {

@@ -1,5 +1,5 @@
 // Rigid props: what a shape weighs, and what is read off an imported surface that moves as one.
-#include "baker/prop.h"
+#include "baker/plan/prop.h"
 
 #include <gtest/gtest.h>
 

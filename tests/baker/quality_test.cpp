@@ -1,5 +1,5 @@
 // Preview and final: what the user is told, and that one is not taken for the other.
-#include "baker/quality.h"
+#include "baker/plan/quality.h"
 
 #include "baker/systems/cloth/cloth_quality.h"
 #include "tests/baker/fake_bake.h"

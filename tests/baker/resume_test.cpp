@@ -10,7 +10,7 @@
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
-#include "baker/lock_file.h"
+#include "baker/run/lock_file.h"
 #include "io/cache/cache.h"
 #include "tests/baker/fake_bake.h"
 

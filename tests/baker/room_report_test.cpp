@@ -1,5 +1,5 @@
 // The clip is looked at before the bake: which parts leave the cloth no room, in which frames, and who is told.
-#include "baker/room_report.h"
+#include "baker/plan/room_report.h"
 
 #include <gtest/gtest.h>
 

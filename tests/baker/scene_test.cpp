@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "baker/plan.h"
+#include "baker/plan/plan.h"
 #include "baker/systems/cloth/cloth_group.h"
 #include "baker/systems/cloth/meeting.h"
 #include "io/shot/mesh_file.h"
@@ -46,12 +46,12 @@ class BallScene {
   std::string text_;
 };
 
-/// All frames; the last report, with the sums of what must never be.
 /// The cloths of a plan's group.
 ClothGroup& cloths(const Result<BakePlan>& plan, std::size_t group) {
   return dynamic_cast<ClothGroup&>(*plan->groups.at(group));
 }
 
+/// All frames; the last report, with the sums of what must never be.
 FrameReport bake_of(ClothGroup& group, int last_frame, std::vector<Vec3>& x) {
   auto solver = make_cloth_solver(std::move(group.setup));
   EXPECT_TRUE(solver) << solver.error().text();
@@ -120,6 +120,63 @@ TEST(Scene, What_is_near_is_solved_together_and_what_is_far_apart_alone) {
     bake_of(cloths(alone_plan, 0), 24, y);
     EXPECT_EQ(x, y);
   }
+}
+
+/// A flat sheet of half a metre, at rest on two boxes side by side: the mean forces of the last second, on each.
+struct OnTwoBoxes {
+  double weight = 0;            ///< N
+  std::vector<Wrench> mean;     ///< on "left", whose top is all x < -0.01, and on "right", all x > 0.01
+  std::vector<double> touched;  ///< seconds
+};
+
+OnTwoBoxes sheet_on_boxes(double x) {
+  BallScene scene;
+  for (const char* box : {"left", "right"})
+    scene.add(std::string("[primary.") + box +
+              "]\nshape = \"box\"\nsize = [1, 0.3, 0.8]\nrelease = 9999\nposition = [" +
+              (box == std::string("left") ? "-" : "") + "0.51, 0.445, 0]\n");
+  scene.add_sheet("sheet", "left", x, "self_collision = false");
+  auto plan = scene.plan(144);
+  EXPECT_TRUE(plan) << plan.error().text();
+  OnTwoBoxes out;
+  out.weight = 0.25 * cloths(plan, 0).setup.garments[0].fabric.mass_per_area * k_gravity;
+  auto solver = make_cloth_solver(std::move(cloths(plan, 0).setup));
+  EXPECT_TRUE(solver) << solver.error().text();
+  State state = (*solver)->initial_state();
+  out.mean.resize(2);
+  out.touched.resize(2);
+  while (state.frame < 144) {
+    const FrameReport report = (*solver)->advance_frame(state);
+    EXPECT_EQ(report.forces.size(), 2u);
+    for (std::size_t b = 0; b < 2; ++b) {
+      EXPECT_EQ(report.forces[b].system, "sheet");
+      EXPECT_EQ(report.forces[b].primary, b == 0 ? "left" : "right");
+      out.touched[b] += report.forces[b].contact_share / 24;
+      if (report.frame > 120) out.mean[b] += (1.0 / 24) * report.forces[b].mean;
+    }
+  }
+  return out;
+}
+
+TEST(Scene, A_sheet_on_two_boxes_presses_on_both_with_its_weight_in_all) {
+  for (const double x : {0.0, 0.12}) {
+    const OnTwoBoxes sheet = sheet_on_boxes(x);
+    EXPECT_NEAR(sheet.mean[0].force.y() + sheet.mean[1].force.y(), -sheet.weight, 0.01 * sheet.weight) << x;
+    // What lies on the right box, and half of what bridges the gap: a flat sheet that bends little.
+    const double share = 0.5 + x / 0.5;
+    EXPECT_NEAR(sheet.mean[1].force.y(), -share * sheet.weight, 0.05 * sheet.weight) << x;
+    // Its middle is where what lies there has its own, seen from the box's.
+    const double arm = sheet.mean[1].torque.z() / sheet.mean[1].force.y(), middle = 0.5 * (x + 0.25) - 0.51;
+    EXPECT_NEAR(arm, middle, 0.02) << x;
+  }
+}
+
+TEST(Scene, A_sheet_that_lies_on_one_box_does_nothing_to_the_other) {
+  const OnTwoBoxes sheet = sheet_on_boxes(-0.4);
+  EXPECT_NEAR(sheet.mean[0].force.y(), -sheet.weight, 0.01 * sheet.weight);
+  EXPECT_EQ(sheet.mean[1].force, Vec3(Vec3::Zero()));
+  EXPECT_EQ(sheet.mean[1].torque, Vec3(Vec3::Zero()));
+  EXPECT_EQ(sheet.touched[1], 0);
 }
 
 TEST(Scene, Cloths_of_two_wearers_meet_each_other) {

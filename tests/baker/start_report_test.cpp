@@ -1,5 +1,5 @@
 // How garments lie where a bake starts is said before it: crossings, how deep, where, and what is done about them.
-#include "baker/start_report.h"
+#include "baker/plan/start_report.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

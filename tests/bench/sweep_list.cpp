@@ -10,7 +10,7 @@
 
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
-#include "io/import/clips.h"
+#include "io/import/character/clips.h"
 #include "io/import/import_cache.h"
 #include "tests/bench/sweep_retarget.h"
 

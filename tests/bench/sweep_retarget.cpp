@@ -6,9 +6,9 @@
 
 #include "baker/core/file.h"
 #include "io/export/glb_from_character.h"
-#include "io/import/bind.h"
-#include "io/import/placement.h"
-#include "io/import/pose.h"
+#include "io/import/body/bind.h"
+#include "io/import/character/pose.h"
+#include "io/import/motion/placement.h"
 
 namespace ft::bench {
 namespace {

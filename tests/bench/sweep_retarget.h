@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "baker/core/result.h"
-#include "io/import/character.h"
+#include "io/import/character/character.h"
 
 namespace ft::bench {
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "baker/core/file.h"
+#include "baker/core/types.h"
 
 namespace ft::bench {
 namespace {
@@ -15,6 +16,7 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr double k_good_strain = 0.1;  ///< p99 [1]
+constexpr double k_slow_frame = 10;    ///< over the median one [1]
 
 Json read_json(const fs::path& file) {
   const auto text = read_text(file);
@@ -45,7 +47,9 @@ void take_times(const MeasuredRun& run, SweepRow& row) {
   if (run.frame_cpu_seconds.empty()) return;
   row.cpu_seconds = run.cpu_seconds / static_cast<double>(run.frame_cpu_seconds.size());
   const std::vector<double> frames(run.frame_cpu_seconds.begin() + 1, run.frame_cpu_seconds.end());  // after the import
-  if (const double middle = median(frames); middle > 0)
+  const auto shot = std::min(frames.size(), at(row.frame_count));
+  if (const double middle = median(std::vector<double>(frames.end() - static_cast<std::ptrdiff_t>(shot), frames.end()));
+      middle > 0)
     row.worst_frame_ratio = *std::max_element(frames.begin(), frames.end()) / middle;
 }
 
@@ -59,7 +63,6 @@ double share(const std::vector<SweepRow>& rows, bool (*good)(const SweepRow&)) {
 Result<SweepRow> row_of_bake(const fs::path& folder, const MeasuredRun& run) {
   SweepRow row;
   row.exit_code = run.exit_code;
-  take_times(run, row);
   if (!fs::exists(folder / "manifest.json")) return row;
   const Json manifest = read_json(folder / "manifest.json"), report = read_json(folder / "report.json");
   if (!manifest.is_object() || !manifest.contains("frames"))
@@ -82,6 +85,7 @@ Result<SweepRow> row_of_bake(const fs::path& folder, const MeasuredRun& run) {
     if (body + self > most || (body + self == most && strain > most_strain))
       most = body + self, most_strain = strain, row.worst_frame = number;
   }
+  take_times(run, row);
   if (row.frame_count > 0) row.absent_share = static_cast<double>(absent) / row.frame_count;
   return row;
 }
@@ -137,25 +141,24 @@ std::string table_of(const std::vector<SweepRow>& rows) {
   const double clean = share(rows, [](const SweepRow&r) { return r.complete && r.crossings() == 0; }),
                clean_last = share(rows, [](const SweepRow&r) { return r.complete && r.crossings_last == 0; }),
                not_late = share(rows, [](const SweepRow&r) { return r.complete && r.late_frames == 0; }),
-               p99_ok = share(rows, [](const SweepRow&r) { return r.complete && r.strain_p99 < k_good_strain; });
+               p99_ok = share(rows, [](const SweepRow&r) { return r.complete && r.strain_p99 < k_good_strain; }),
+               quick = share(rows, [](const SweepRow&r) { return r.worst_frame_ratio <= k_slow_frame; });
   if (!rows.empty()) cpu /= static_cast<double>(rows.size());
   out += fmt::format(
       "\nbody, cloth: crossings with the feasible collider and among cloth, sums over the frames; frames: with any; "
       "last: "
       "in the last frame;\nlate: frames with any although there has been room for {} frames; p99: worst frame's; "
       "absent: "
-      "share of the frames;\ncpu: mean, with import, pre-roll and caches; worst: the slowest frame over the median one "
-      "of "
-      "that bake\n\n",
+      "share of the frames;\ncpu: mean, with import, pre-roll and caches; worst: the slowest frame, of the pre-roll "
+      "too, over the shot's median one\n\n",
       k_room_frames);
   out += fmt::format(
       "{} bakes: {:.1f} % without a crossing in any frame, {:.1f} % in the last frame, {:.1f} % where there is room; "
       "p99 "
       "strain below {:g} % in {:.1f} %;\n{} not complete, {} with another exit code than 0; {:.3f} s of CPU a frame; "
-      "the "
-      "slowest frame took {:.1f} times the median one\n",
+      "no frame over {:g} times the median one in {:.1f} %, the slowest took {:.1f} times it\n",
       rows.size(), 100 * clean, 100 * clean_last, 100 * not_late, 100 * k_good_strain, 100 * p99_ok, unfinished, failed,
-      cpu, ratio);
+      cpu, k_slow_frame, 100 * quick, ratio);
   out += fmt::format(
       "RESULT scene=sweep bakes={} clean={:.4f} clean_last={:.4f} not_late={:.4f} p99_ok={:.4f} unfinished={} "
       "failed={} "

@@ -24,7 +24,7 @@ struct SweepRow {
   double strain_p99 = 0;         ///< the worst frame's, 1
   double absent_share = 0;       ///< of the frames: something was absent
   double cpu_seconds = 0;        ///< a frame, the pre-roll's counted, import and caches included
-  double worst_frame_ratio = 0;  ///< slowest frame over the median one [CPU], pre-roll included
+  double worst_frame_ratio = 0;  ///< slowest frame, of the pre-roll too, over the shot's median one [CPU]
   int worst_frame = 0;           ///< with most crossings; without any, most strained
   std::string garments;          ///< "skirt+top"
 

@@ -1,7 +1,7 @@
 // Conservative CCD: a missed hit fails, a needless one is only counted. Hits come from constructions whose instant is
 // known and from the sample of the NYU collision detection benchmark (Wang et al. 2021), whose truth was found in
 // rationals.
-#include "collision/ccd_li2021.h"
+#include "collision/geometry/ccd_li2021.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a pair's retreat moves of the clumps that its corners are in.
-#include "collision/clump_retreat.h"
+#include "collision/step_bound/clump_retreat.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A body with fewer triangles around the one that was given.
-#include "collision/coarse_body.h"
+#include "collision/simplify/coarse_body.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // What neighbours have in common of a step may be made at once: nothing crosses, and patches keep their motion.
-#include "collision/common_motion.h"
+#include "collision/step_bound/common_motion.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "baker/core/parallel.h"
-#include "collision/truncate_dat.h"
+#include "collision/step_bound/truncate_dat.h"
 #include "tests/collision/pair_scene.h"
 
 namespace ft {

@@ -1,7 +1,7 @@
 // The certificate against slow and exact ones: orientation against rationals, edge-triangle against a vertex
 // enumeration of the exact linear programme, the trees against all pairs. Lattice inputs make every degenerate case
 // common.
-#include "collision/crossings.h"
+#include "collision/check/crossings.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "baker/core/random.h"
 #include "capsule_scene.h"
-#include "collision/crossing_predicates.h"
+#include "collision/check/crossing_predicates.h"
 
 namespace ft {
 namespace {

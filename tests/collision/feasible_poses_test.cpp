@@ -1,5 +1,5 @@
 // What a search of the clip has kept is what an evaluation gives, and stays in bounds.
-#include "collision/feasible_poses.h"
+#include "collision/body/feasible_poses.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "baker/core/random.h"
 #include "capsule_scene.h"
-#include "collision/mesh_refine.h"
+#include "collision/geometry/mesh_refine.h"
 
 namespace ft {
 namespace {

@@ -10,9 +10,9 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "capsule_scene.h"
-#include "collision/crossings.h"
-#include "collision/feasible_collider.h"
-#include "collision/triangle_tree.h"
+#include "collision/body/feasible_collider.h"
+#include "collision/check/crossings.h"
+#include "collision/geometry/triangle_tree.h"
 
 namespace ft {
 namespace {

@@ -1,6 +1,6 @@
 // Flat patches against brute force: whatever shape the cloth has, no two features of a flat patch come nearer than half
 // their distance at rest, at the states that were looked at and between them.
-#include "collision/flat_patches.h"
+#include "collision/broad_phase/flat_patches.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "collision/pair_geometry.h"
+#include "collision/geometry/pair_geometry.h"
 #include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"
 

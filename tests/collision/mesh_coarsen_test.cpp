@@ -1,5 +1,5 @@
 // Coarser meshes: fewer vertices, the same surface.
-#include "collision/mesh_coarsen.h"
+#include "collision/simplify/mesh_coarsen.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "collision/pair_finder.h"
+#include "collision/broad_phase/pair_finder.h"
 #include "tests/collision/grid.h"
 #include "tests/collision/pair_scene.h"
 #include "tests/support/numbered_pairs.h"

@@ -1,6 +1,6 @@
 // The pair finder against brute force over all features, on tame and untamed meshes: the same list, element for
 // element.
-#include "collision/pair_finder.h"
+#include "collision/broad_phase/pair_finder.h"
 
 #include <gtest/gtest.h>
 

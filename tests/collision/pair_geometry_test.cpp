@@ -1,6 +1,6 @@
 // Closest points against a slow solution that shares nothing with the fast one: the quadratic program solved by
 // enumerating every active set with a pivoted long double solve, and the optimality conditions of the answer itself.
-#include "collision/pair_geometry.h"
+#include "collision/geometry/pair_geometry.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a node of the pair search's trees says is below it.
-#include "collision/pair_node.h"
+#include "collision/broad_phase/pair_node.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // What is in the way of a displacement is what truncation cuts, and nothing else.
-#include "collision/pair_obstacles.h"
+#include "collision/step_bound/pair_obstacles.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/truncate_dat.h"
+#include "collision/step_bound/truncate_dat.h"
 #include "tests/collision/pair_scene.h"
 
 namespace ft {

@@ -1,4 +1,4 @@
-#include "collision/pair_runs.h"
+#include "collision/broad_phase/pair_runs.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "baker/core/random.h"
 #include "baker/core/types.h"
-#include "collision/pair_geometry.h"
+#include "collision/geometry/pair_geometry.h"
 
 namespace ft::test {
 

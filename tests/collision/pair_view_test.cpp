@@ -1,4 +1,4 @@
-#include "collision/pair_view.h"
+#include "collision/broad_phase/pair_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What PairWay proves holds for every way that it speaks of, and it proves most of what there is to prove.
-#include "collision/pair_way.h"
+#include "collision/broad_phase/pair_way.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Penetration depths: inside against the winding number by solid angles, depth against all triangles, holes.
-#include "collision/penetration.h"
+#include "collision/check/penetration.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "capsule_scene.h"
-#include "collision/triangle_tree.h"
-#include "collision/winding_number.h"
+#include "collision/geometry/triangle_tree.h"
+#include "collision/geometry/winding_number.h"
 #include "open_body.h"
 #include "tests/collision/grid.h"
 

@@ -1,6 +1,6 @@
 // Where a pose has no room, against closed forms: two parallel capsules at a known distance, one that bends back on its
 // own body.
-#include "collision/room_scan.h"
+#include "collision/body/room_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "collision/sewn_pairs.h"
+#include "collision/check/sewn_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "collision/feasible_collider.h"
+#include "collision/body/feasible_collider.h"
 #include "tests/collision/capsule_scene.h"
 
 namespace ft {

@@ -1,4 +1,4 @@
-#include "collision/short_edges.h"
+#include "collision/simplify/short_edges.h"
 
 #include <gtest/gtest.h>
 

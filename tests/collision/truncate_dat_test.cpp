@@ -2,7 +2,7 @@
 // random steps, again and again. After every update the features must still be separated by a plane: not the one that
 // was used to truncate but, independently, any plane that the moved features admit. Without such a plane the count goes
 // up.
-#include "collision/truncate_dat.h"
+#include "collision/step_bound/truncate_dat.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "baker/core/random.h"
 #include "capsule_scene.h"
-#include "collision/crossings.h"
-#include "collision/fcl_validator.h"
+#include "collision/check/crossings.h"
+#include "collision/check/fcl_validator.h"
 
 namespace ft {
 namespace {

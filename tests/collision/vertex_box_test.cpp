@@ -1,5 +1,5 @@
 // Boxes of short numbers hold what they must, no matter how the numbers round, and little more.
-#include "collision/vertex_box.h"
+#include "collision/broad_phase/vertex_box.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Vertices that lie very near each other are found along the edges, and share values.
-#include "collision/vertex_clumps.h"
+#include "collision/step_bound/vertex_clumps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Winding numbers: whole in closed surfaces, the tree against all solid angles on open ones.
-#include "collision/winding_number.h"
+#include "collision/geometry/winding_number.h"
 
 #include <gtest/gtest.h>
 

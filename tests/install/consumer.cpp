@@ -1,7 +1,7 @@
 // Uses a little of every floor: reads a mesh, lets crossings be counted, names the fabrics, lists the formats.
 #include <cstdio>
 
-#include "collision/crossings.h"
+#include "collision/check/crossings.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
 #include "solvers/energies/fabric.h"

@@ -1,11 +1,12 @@
 // The yielding character, from deviation to channels: nothing deviates and nothing changes, the whole is moved as asked
 // (also through the written file), planted feet stay while the body sinks, and legs keep their length.
-#include "io/import/adjust.h"
+#include "io/import/motion/adjust.h"
 
 #include <cmath>
 
 #include "baker/core/file.h"
 #include "io/export/gltf_export.h"
+#include "io/import/import.h"
 #include "tests/io_export/moved.h"
 
 namespace ft::test {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "io/import/adjust.h"
-#include "io/import/placed_character.h"
-#include "io/import/pose.h"
+#include "io/import/character/pose.h"
+#include "io/import/motion/adjust.h"
+#include "io/import/motion/placed_character.h"
 #include "tests/support/assets.h"
 
 namespace ft::test {

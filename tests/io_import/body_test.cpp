@@ -1,5 +1,5 @@
 // Bodies built on motion capture: closed, evenly meshed, human-sized, and skinned without leaks between limbs.
-#include "io/import/body.h"
+#include "io/import/body/body.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/random.h"
+#include "io/import/body/surface_nets.h"
 #include "io/import/import.h"
 #include "io/import/import_cache.h"
-#include "io/import/surface_nets.h"
 #include "tests/support/assets.h"
 
 namespace ft {

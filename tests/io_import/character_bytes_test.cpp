@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/core/random.h"
-#include "io/import/character.h"
+#include "io/import/character/character.h"
 #include "tests/support/damage.h"
 
 namespace ft {

@@ -1,5 +1,5 @@
 // Bodies that are inside out are turned, piece by piece, and that is said.
-#include "io/import/facing.h"
+#include "io/import/repair/facing.h"
 
 #include <gtest/gtest.h>
 

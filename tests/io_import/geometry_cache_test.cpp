@@ -1,6 +1,4 @@
 // Geometry caches as primaries: PC2, MDD, OBJ sequences; exact at the samples, smooth between, and refused when cut.
-#include "io/import/geometry_cache.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -9,8 +7,9 @@
 
 #include "baker/core/file.h"
 #include "io/cache/cache.h"
+#include "io/import/files/read_geometry_cache.h"
 #include "io/import/import.h"
-#include "io/import/sampled_trajectory.h"
+#include "io/import/motion/sampled_trajectory.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
 

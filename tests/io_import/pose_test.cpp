@@ -1,13 +1,13 @@
 // Keys, interpolation, decomposition: closed forms.
-#include "io/import/pose.h"
+#include "io/import/character/pose.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "baker/core/random.h"
-#include "io/import/character.h"
-#include "io/import/character_trajectory.h"
+#include "io/import/character/character.h"
+#include "io/import/motion/character_trajectory.h"
 
 namespace ft {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "io/import/sampled_trajectory.h"
+#include "io/import/motion/sampled_trajectory.h"
 
 namespace ft {
 namespace {

@@ -1,5 +1,5 @@
 // Which geometry caches are sheets: by how large their openings are.
-#include "io/import/sheet.h"
+#include "io/import/motion/sheet.h"
 
 #include <gtest/gtest.h>
 

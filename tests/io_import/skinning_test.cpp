@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/core/file.h"
-#include "io/import/bind.h"
+#include "io/import/body/bind.h"
+#include "io/import/body/skin.h"
+#include "io/import/character/pose.h"
 #include "io/import/import_cache.h"
-#include "io/import/pose.h"
-#include "io/import/skin.h"
 #include "tests/support/assets.h"
 
 namespace ft {

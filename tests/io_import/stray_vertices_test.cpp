@@ -1,12 +1,13 @@
 // Vertices of body caches that leave the body for a few samples, or are no numbers there: put back, named; and what
 // moves wildly and is right stays as it is, to the bit.
-#include "io/import/stray_vertices.h"
+#include "io/import/repair/stray_vertices.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "io/import/files/read_geometry_cache.h"
 #include "tests/support/assets.h"
 #include "tests/support/scripted_body.h"
 

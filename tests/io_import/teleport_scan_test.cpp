@@ -1,6 +1,6 @@
 // What counts as a teleport: jumps without a motion that leads there; and what never does: everything quick that bodies
 // really do.
-#include "io/import/teleport_scan.h"
+#include "io/import/repair/teleport_scan.h"
 
 #include <gtest/gtest.h>
 

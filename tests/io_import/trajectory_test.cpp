@@ -7,10 +7,10 @@
 #include <map>
 
 #include "baker/core/parallel.h"
-#include "io/import/bind.h"
+#include "io/import/body/bind.h"
+#include "io/import/character/pose.h"
 #include "io/import/import.h"
 #include "io/import/import_cache.h"
-#include "io/import/pose.h"
 #include "tests/support/assets.h"
 
 namespace ft {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "baker/core/file.h"
-#include "baker/inputs.h"
+#include "baker/plan/inputs.h"
 #include "baker/systems/cloth/cloth_keys.h"
 #include "baker/systems/cords/cords_keys.h"
 #include "io/shot/shot.h"

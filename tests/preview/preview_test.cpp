@@ -11,7 +11,7 @@
 
 #include "baker/commands/preview_bake.h"
 #include "baker/core/file.h"
-#include "baker/manifest.h"
+#include "baker/record/manifest.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"

@@ -1,11 +1,11 @@
 // What cloth does not meet, decided at the end of a frame.
-#include "solvers/cloth/absence.h"
+#include "solvers/cloth/model/absence.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/model/cloth_model.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {
@@ -87,6 +87,40 @@ TEST(Absence, What_only_lies_on_a_part_has_not_been_caught) {
   CaughtScene scene;
   for (Vec3& x : scene.motion.x) x += Vec3(0, CaughtScene::k_height + 0.053 - 0.305, 0);
   EXPECT_EQ(scene.absent(1), 0);
+}
+
+/// Lets go of a vertex that is still there and borders on what is not; returns how many go.
+int grow_hole(CaughtScene& scene, std::span<const char> deep) {
+  const auto is_absent = [&](int b) { return scene.motion.absent[scene.model->absence.place(0, b)] != 0; };
+  for (const Edge& e : unique_edges(scene.model->collider->triangles()))
+    if (is_absent(e[0]) != is_absent(e[1])) {
+      const int rim = is_absent(e[0]) ? e[1] : e[0];
+      return scene.model->absence.let_go(*scene.model, 0, std::span(&rim, 1), scene.body, deep, scene.motion.absent);
+    }
+  return 0;
+}
+
+TEST(Absence, A_hole_that_has_to_grow_does_so_by_its_half) {
+  CaughtScene scene;
+  const std::vector<char> deep(scene.body.size(), 0);
+  const int first = 100;
+  int hole = scene.model->absence.let_go(*scene.model, 0, std::span(&first, 1), scene.body, deep, scene.motion.absent);
+  EXPECT_LT(hole, 10) << "at first what blocks and what is next to it";
+  for (int k = 0; k < 4; ++k) {
+    const int more = grow_hole(scene, deep);
+    EXPECT_GE(more, hole / 2) << k;
+    EXPECT_LE(more, hole / 2 + 10) << "not more than it takes: " << k;
+    hole += more;
+  }
+}
+
+TEST(Absence, A_hole_next_to_what_was_planned_is_no_larger_for_it) {
+  CaughtScene scene;
+  std::vector<char> deep(scene.body.size(), 0);
+  for (std::size_t b = 0; b < deep.size(); ++b)
+    deep[b] = scene.model->collider->part_of_vertex()[b] == 0 && scene.body[b].y() < 0 ? 1 : 0;
+  scene.motion.absent = scene.model->absence.at_start(deep);
+  EXPECT_LT(grow_hole(scene, deep), 10);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Cloth that would meet something on its carried way keeps apart from it, at the cost of little motion.
-#include "solvers/cloth/approach_limits.h"
+#include "solvers/cloth/advance/approach_limits.h"
 
 #include <gtest/gtest.h>
 
-#include "collision/ccd_li2021.h"
+#include "collision/geometry/ccd_li2021.h"
 
 namespace ft {
 namespace {

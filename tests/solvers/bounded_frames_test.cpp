@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "solvers/cloth/advance/work_limit.h"
 #include "solvers/cloth/cloth_solver.h"
-#include "solvers/cloth/torn_body.h"
-#include "solvers/cloth/work_limit.h"
+#include "solvers/cloth/model/torn_body.h"
 #include "tests/support/scripted_body.h"
 #include "tests/support/torture/shapes.h"
 

@@ -1,6 +1,6 @@
 // The pairs of one piece of a substep: complete for all that the solve may do, also after it got more room; what was
 // let pass stays out.
-#include "solvers/cloth/candidates.h"
+#include "solvers/cloth/advance/candidates.h"
 
 #include <gtest/gtest.h>
 
@@ -213,7 +213,7 @@ TEST(Candidates, that_were_let_pass_stay_out_when_vertices_get_other_room) {
   Candidates candidates(*s.model);
   ASSERT_LT(s.collect(candidates), 1);
   const ContactPairs all = sorted(pairs_of(candidates));
-  EXPECT_EQ(candidates.release_blocked(s.cloth, s.piece), 0) << "there is no body to be let through";
+  EXPECT_EQ(candidates.release_blocked(s.cloth, s.piece, {}), 0) << "there is no body to be let through";
   const ContactPairs left = sorted(pairs_of(candidates));
   ASSERT_LT(left.vertex_face.size(), all.vertex_face.size());
   ASSERT_LT(left.edge_edge.size(), all.edge_edge.size());

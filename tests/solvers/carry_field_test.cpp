@@ -1,5 +1,5 @@
 // How cloth is carried along by a surface that moves beneath it.
-#include "solvers/cloth/carry_field.h"
+#include "solvers/cloth/advance/carry_field.h"
 
 #include <gtest/gtest.h>
 

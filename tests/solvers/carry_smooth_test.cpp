@@ -1,4 +1,4 @@
-#include "solvers/cloth/carry_smooth.h"
+#include "solvers/cloth/model/carry_smooth.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solvers/cloth/cloth_solver.h"
-#include "solvers/cloth/contact_potential.h"
+#include "solvers/cloth/model/contact_potential.h"
 #include "tests/support/numbered_pairs.h"
 #include "tests/support/scripted_body.h"
 

@@ -1,4 +1,4 @@
-#include "solvers/cloth/cloth_motion.h"
+#include "solvers/cloth/model/cloth_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -183,7 +183,7 @@ TEST(ClothSolver, refuses_a_setup_that_cannot_be_solved) {
   ClothSetup none;
   EXPECT_FALSE(make_cloth_solver(none));
   ClothSetup bad_pin = sheet_on(nullptr, 4, 0);
-  bad_pin.garments[0].pins.push_back({{25}, {}, 1e6, 5e3});
+  bad_pin.garments[0].pins.push_back({{}, {25}, {}});
   EXPECT_FALSE(make_cloth_solver(bad_pin));
   ClothSetup not_finite = sheet_on(nullptr, 4, 0);
   not_finite.garments[0].mesh.positions[3].x() = std::nan("");

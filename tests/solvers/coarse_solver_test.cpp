@@ -2,7 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "baker/core/parallel.h"
-#include "solvers/cloth/coarse_garment.h"
+#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/embed/coarse_garment.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {

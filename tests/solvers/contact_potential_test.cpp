@@ -1,5 +1,5 @@
 // Pairs that come while a solve is under way count as if they had been there from its start.
-#include "solvers/cloth/contact_potential.h"
+#include "solvers/cloth/model/contact_potential.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The multistep formulas on y' = i w y: order, loss of amplitude, stability with changing steps.
-#include "solvers/integrator.h"
+#include "solvers/base/integrator.h"
 
 #include <gtest/gtest.h>
 

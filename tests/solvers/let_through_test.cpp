@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "solvers/cloth/body_advance.h"
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/advance/body_advance.h"
 #include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/model/cloth_model.h"
 #include "tests/support/torture/shapes.h"
 
 namespace ft {

@@ -1,5 +1,5 @@
 // A pin pulls no harder than its limit, and what it has lost comes back without a swing.
-#include "solvers/cloth/pin_pull.h"
+#include "solvers/cloth/model/pin_pull.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,14 @@
 // Garments with edges so short that nobody sees them move: what moves has none, and the given vertices ride on it.
-#include "solvers/cloth/riding_solver.h"
+#include "solvers/cloth/embed/riding_solver.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "baker/core/parallel.h"
-#include "solvers/cloth/coarse_garment.h"
-#include "solvers/cloth/riders.h"
+#include "solvers/cloth/cloth_solver.h"
+#include "solvers/cloth/embed/coarse_garment.h"
+#include "solvers/cloth/embed/riders.h"
 #include "tests/support/exact_crossings.h"
 #include "tests/support/scripted_body.h"
 
@@ -94,7 +95,7 @@ std::vector<Vec3> positions(const Solver& solver, const State& state, int system
 
 TEST(RidingSolver, Garments_without_such_edges_are_solved_as_they_are) {
   const ClothSetup setup = over_balls(false, false);
-  auto none = make_riding_solver(setup);
+  auto none = make_riding_solver(setup, make_cloth_solver);
   ASSERT_TRUE(none);
   EXPECT_EQ(*none, nullptr);
   ClothSetup keeps = setup;
@@ -166,7 +167,7 @@ TEST(RidingSolver, Goes_on_from_a_saved_state_as_if_nothing_had_been) {
 TEST(RidingSolver, A_pin_on_a_tiny_vertex_holds_the_vertex_that_stands_for_it) {
   ClothGarment given = garment("g", 0, true);
   const int last = given.mesh.vertex_count() - 1;
-  given.pins.push_back({{last, 0, last - 1}, {0.25, 0.5, 1}});
+  given.pins.push_back({{}, {last, 0, last - 1}, {0.25, 0.5, 1}});
   const auto moves = without_short_edges(given);
   ASSERT_TRUE(moves);
   const ClothPin& pin = moves->garment.pins[0];

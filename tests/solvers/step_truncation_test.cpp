@@ -1,5 +1,5 @@
 // What lies very near each other is not thrown past each other by an iteration.
-#include "solvers/cloth/step_truncation.h"
+#include "solvers/cloth/solve/step_truncation.h"
 
 #include "tests/solvers/strips.h"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "solvers/cloth/attach.h"
-#include "solvers/cloth/cloth_model.h"
+#include "solvers/cloth/model/attach.h"
+#include "solvers/cloth/model/cloth_model.h"
 #include "solvers/validation/scene_parts.h"
 
 namespace ft {

@@ -1,5 +1,5 @@
 // How many substeps a frame takes for a body that comes along.
-#include "solvers/cloth/substep_count.h"
+#include "solvers/cloth/advance/substep_count.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "baker/core/random.h"
-#include "collision/crossings.h"
+#include "collision/check/crossings.h"
 #include "solvers/cloth/cloth_solver.h"
-#include "solvers/cloth/untangle.h"
+#include "solvers/cloth/solve/untangle.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {

@@ -1,7 +1,7 @@
 // A body that is cut to another place: the cloth goes along, and nothing else of it changes.
 #include <gtest/gtest.h>
 
-#include "solvers/cloth/body_advance.h"
+#include "solvers/cloth/advance/body_advance.h"
 #include "solvers/cloth/cloth_solver.h"
 #include "tests/support/scripted_body.h"
 

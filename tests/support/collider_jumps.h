@@ -8,7 +8,7 @@
 
 #include "baker/core/parallel.h"
 #include "baker/core/trajectory.h"
-#include "collision/feasible_collider.h"
+#include "collision/body/feasible_collider.h"
 
 namespace ft::test {
 

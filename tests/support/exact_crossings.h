@@ -1,4 +1,4 @@
-// A second, independent opinion on the certificate's crossings: no code is shared with collision/crossings.cpp.
+// A second, independent opinion on the certificate's crossings: no code is shared with collision/check/crossings.cpp.
 // Candidates come from a uniform grid instead of trees; the decision from signs in extended precision with an error
 // bound, and where that does not decide, from rational arithmetic that computes the intersection itself instead of
 // orientations. Exact; touching counts as crossing. For the torture scenes, where it looks at every frame. Slower than

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "collision/pair_finder.h"
+#include "collision/broad_phase/pair_finder.h"
 
 namespace ft::test {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "collision/contact_pairs.h"
-#include "collision/vertex_box.h"
+#include "collision/broad_phase/contact_pairs.h"
+#include "collision/broad_phase/vertex_box.h"
 
 namespace ft::test {
 

@@ -6,7 +6,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/random.h"
-#include "collision/crossings.h"
+#include "collision/check/crossings.h"
 
 namespace ft {
 namespace {

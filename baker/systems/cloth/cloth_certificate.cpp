@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "baker/systems/cloth/cloth_group.h"
-#include "collision/crossings.h"
+#include "collision/check/crossings.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 void ClothGroup::add_certificate(const BakePlan& plan, const Solver& solver, const State& state,
                                  FrameReport& report) const {
@@ -39,4 +39,4 @@ void ClothGroup::add_certificate(const BakePlan& plan, const Solver& solver, con
   report.incidents.push_back(std::move(incident));
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -7,15 +7,16 @@
 #include <limits>
 #include <map>
 
-#include "baker/absent_runs.h"
 #include "baker/core/corner_uvs.h"
-#include "collision/crossings.h"
-#include "collision/penetration.h"
-#include "collision/sewn_pairs.h"
+#include "baker/record/cache_track.h"
+#include "baker/systems/interface/absent_runs.h"
+#include "collision/check/crossings.h"
+#include "collision/check/penetration.h"
+#include "collision/check/sewn_pairs.h"
 #include "io/shot/weld.h"
-#include "solvers/cloth/sewing.h"
+#include "solvers/cloth/model/sewing.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// A cloth as it was simulated: vertices that its bake joined are one.
@@ -240,4 +241,4 @@ Result<std::vector<std::unique_ptr<JudgedGroup>>> judge_cloths(const CachedBake&
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "baker/core/edge_strain.h"
-#include "baker/systems/system.h"
+#include "baker/systems/interface/system.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// Garments that were solved together are judged together.
 Result<std::vector<std::unique_ptr<JudgedGroup>>> judge_cloths(const CachedBake& bake);
@@ -13,4 +13,4 @@ Result<std::vector<std::unique_ptr<JudgedGroup>>> judge_cloths(const CachedBake&
 /// into; pattern_scale as in CacheTrack.
 RestEdges rest_edges_of(const Mesh& rest, std::span<const Triangle> triangles, double pattern_scale);
 
-}  // namespace ft
+}  // namespace ft::inline baker

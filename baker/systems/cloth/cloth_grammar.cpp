@@ -6,7 +6,7 @@
 #include "io/shot/ranges.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// A pin that never holds, or fades without an end to do it at.
@@ -150,4 +150,4 @@ std::string maps_text(const ClothSpec& cloth, const std::filesystem::path& folde
   return out.empty() ? out : out.append("]");
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -4,7 +4,7 @@
 #include "baker/systems/cloth/cloth_spec.h"
 #include "io/shot/key_reader.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 void read_pins(const KeyReader& keys, const ValueReader& reader, const Value& value, const Allowed& allowed,
                ClothSpec& cloth);
@@ -19,4 +19,4 @@ void read_maps(const KeyReader& keys, const ValueReader& reader, const Value& va
 std::string pins_text(const ClothSpec& cloth, const std::filesystem::path& folder);
 std::string maps_text(const ClothSpec& cloth, const std::filesystem::path& folder);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ft {
+namespace ft::inline baker {
 
 Result<std::unique_ptr<Solver>> ClothGroup::make_solver() {
   poses_ = setup.poses;
@@ -35,4 +35,4 @@ std::vector<ColliderSlice> ClothGroup::slices(const BakePlan& plan, std::span<co
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

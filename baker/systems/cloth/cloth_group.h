@@ -1,11 +1,11 @@
 // Cloths that may meet are solved together and feel each other, with all primaries that they may meet (meeting.h).
 #pragma once
 
-#include "baker/plan.h"
+#include "baker/plan/plan.h"
 #include "baker/systems/cloth/joint_body.h"
 #include "solvers/cloth/cloth_solver.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 class ClothGroup final : public SystemGroup {
  public:
@@ -29,4 +29,4 @@ class ClothGroup final : public SystemGroup {
   std::shared_ptr<FeasiblePoses> poses_;  ///< of the setup, once the solver has that
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -2,7 +2,7 @@
 
 #include "baker/systems/cloth/cloth_grammar.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 std::string no_text(const ClothSpec&, const std::filesystem::path&) {
@@ -124,4 +124,4 @@ std::span<const ShotKey<MapSpec>> map_keys() {
   return keys;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

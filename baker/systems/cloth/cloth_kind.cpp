@@ -1,10 +1,11 @@
 #include "baker/systems/cloth/cloth_kind.h"
 
+#include "baker/record/cache_track.h"
 #include "baker/systems/cloth/cloth_check.h"
 #include "baker/systems/cloth/cloth_section.h"
 #include "baker/systems/cloth/plan_cloths.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 class ClothKind final : public SystemKind {
@@ -33,4 +34,4 @@ const SystemKind* cloth_kind() {
   return &kind;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

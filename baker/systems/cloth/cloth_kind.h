@@ -1,10 +1,10 @@
 // `[cloth.NAME]`: garments and other sheets.
 #pragma once
 
-#include "baker/systems/system.h"
+#include "baker/systems/interface/system.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 const SystemKind* cloth_kind();
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,7 +6,7 @@
 #include "io/shot/shot_keys.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 // The range of mass_per_area is the fabric key's; the stiffness of real garments varies by less than the factors here.
@@ -89,4 +89,4 @@ void judge_maps(const std::string& owner, const Value& list, std::span<const Map
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -10,7 +10,7 @@
 #include "baker/systems/cloth/cloth_spec.h"
 #include "io/shot/shot_values.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 struct MapKind {
   std::string_view name;
@@ -33,4 +33,4 @@ void judge_maps(const std::string& owner, const Value& list, std::span<const Map
 /// A column is named and no file (in a map or a pin).
 void judge_column(const std::string& owner, const Value& value, FaultList& faults);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "baker/quality.h"
-#include "collision/coarse_body.h"
+#include "baker/plan/quality.h"
+#include "collision/simplify/coarse_body.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 // Tuned for less than a quarter of a final bake's time in the benchmark's scene S2 and in the samples: longer steps
@@ -44,4 +44,4 @@ std::shared_ptr<const Trajectory> with_quality(const Shot& shot, const ClothSetu
   return coarse_body(std::move(primary), k_coarsen_body, setup.feasible.max_edge, k_deviation * thinnest);
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

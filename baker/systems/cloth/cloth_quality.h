@@ -5,7 +5,7 @@
 #include "io/shot/shot.h"
 #include "solvers/cloth/cloth_solver.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// Makes a setup a preview's; a final one stays as it is. Its primary is with_quality()'s.
 void apply_quality(const Shot& shot, ClothSetup& setup);
@@ -13,4 +13,4 @@ void apply_quality(const Shot& shot, ClothSetup& setup);
 std::shared_ptr<const Trajectory> with_quality(const Shot& shot, const ClothSetup& setup,
                                                std::shared_ptr<const Trajectory> primary);
 
-}  // namespace ft
+}  // namespace ft::inline baker

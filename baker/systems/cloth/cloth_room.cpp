@@ -4,11 +4,11 @@
 #include <map>
 
 #include "baker/core/parallel.h"
-#include "baker/room_report.h"
+#include "baker/plan/room_report.h"
 #include "baker/systems/cloth/cloth_group.h"
-#include "collision/room_scan.h"
+#include "collision/body/room_scan.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr int k_bridged_frames = 2;
@@ -130,4 +130,4 @@ void ClothGroup::add_room(const BakePlan& plan, RoomReport& report) const {
   absences.finish();
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

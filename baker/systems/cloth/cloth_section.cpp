@@ -5,12 +5,12 @@
 
 #include "baker/systems/cloth/cloth_keys.h"
 #include "baker/systems/cloth/cloth_maps.h"
-#include "baker/systems/section_of.h"
+#include "baker/systems/interface/section_of.h"
 #include "io/shot/shot_judge.h"
 #include "io/shot/words.h"
 #include "solvers/energies/fabric.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// Pins that hold to a cloth: only what one primary wears is solved together.
@@ -116,4 +116,4 @@ const SecondarySection& cloth_section() {
   return section;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

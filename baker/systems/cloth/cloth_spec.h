@@ -9,25 +9,23 @@
 
 #include "baker/core/types.h"
 #include "io/shot/secondary.h"
+#include "solvers/cloth/model/cloth_settings.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// One way to hold a garment to its primary, or to a garment.
 inline constexpr std::string_view k_pin_world = "world";  ///< PinSpec::to: a place that does not move
-struct PinSpec {
+struct PinSpec : ClothPinSettings {
   enum class Select { k_group, k_within, k_vertices, k_file };
   Select select = Select::k_group;
-  std::string group;           ///< vertex group of the garment's mesh
-  double within = 0;           ///< garment vertices nearer than this to the body in the bind pose [m]
-  std::vector<int> vertices;   ///< garment vertices, from 0, file order
-  std::filesystem::path file;  ///< values file with a weight per vertex, see vertex_values.h
-  std::string column;          ///< of `file`; empty: the only one
-  double stiffness = 1e6;  ///< N/m3: spring stiffness per garment area and displacement. 1e5 loose, 1e6 firm, 1e8 hard
-  double max_pull = 5e3;   ///< Pa: force limit per garment area, so that contact wins over pins
+  std::string group;                  ///< vertex group of the garment's mesh
+  double within = 0;                  ///< garment vertices nearer than this to the body in the bind pose [m]
+  std::vector<int> vertices;          ///< garment vertices, from 0, file order
+  std::filesystem::path file;         ///< values file with a weight per vertex, see vertex_values.h
+  std::string column;                 ///< of `file`; empty: the only one
   std::optional<double> from, until;  ///< frames of the shot: it holds after the one, and up to and including the other
   double fade = 0;                    ///< frames that its force takes to come after `from` and to go after `until`
   std::string to;  ///< name of the cloth that it holds to, on the same primary, or "world"; empty: the primary
-  Vec3 opens = Vec3::Zero();  ///< direction in which its vertices let go one after another; zero: all together
 };
 
 /// What varies over a garment, and where its values come from: see cloth_maps.h for what can vary.
@@ -42,7 +40,7 @@ struct MapSpec {
 inline constexpr std::string_view k_faces_triangles = "triangles";  ///< ClothSpec::faces
 
 /// [cloth.NAME]: what follows.
-struct ClothSpec final : SecondarySpec {
+struct ClothSpec final : SecondarySpec, ClothSettings {
   std::filesystem::path mesh;     ///< OBJ (own reader, file's vertex order)
   std::string fabric = "cotton";  ///< name of a measured fabric
   std::vector<PinSpec> pins;
@@ -55,14 +53,9 @@ struct ClothSpec final : SecondarySpec {
   std::string faces = "file";  ///< of the caches: those of the file, or the "triangles" that are simulated
   std::string rest;  ///< "mesh": rest lengths of the placed mesh; "pattern": of the flat pattern in vt; "": pattern if
                      ///< it is sewn
-  double pattern_scale = 1;    ///< m per unit of vt
-  double sewing_time = 0;      ///< s from the start of the pre-roll until seams are closed; 0: half of the pre-roll
-  double thickness = 3e-3;     ///< m: contact begins at this distance from the body, 0.5e-3..10e-3
-  double friction = 0.4;       ///< Coulomb coefficient against the body, 0..2
-  double self_friction = 0.3;  ///< among cloths
-  bool self_collision = true;
+  double pattern_scale = 1;             ///< m per unit of vt
   std::vector<std::string> ignores;     ///< patterns (* and ?) of parts of its primary that it does not meet
   std::vector<std::string> meets{"*"};  ///< patterns of primaries that it meets beside its own
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <map>
 
-#include "baker/start_report.h"
+#include "baker/plan/start_report.h"
 #include "baker/systems/cloth/cloth_group.h"
-#include "collision/crossings.h"
-#include "collision/penetration.h"
-#include "collision/sewn_pairs.h"
+#include "collision/check/crossings.h"
+#include "collision/check/penetration.h"
+#include "collision/check/sewn_pairs.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// All garments of a group where the bake puts them first, in one numbering.
@@ -114,4 +114,4 @@ void ClothGroup::add_start(const BakePlan& plan, StartReport& report) const {
   }
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

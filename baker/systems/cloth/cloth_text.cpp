@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "baker/plan_text.h"
+#include "baker/plan/plan_text.h"
 #include "baker/systems/cloth/cloth_group.h"
 #include "baker/systems/cloth/cloth_maps.h"
 #include "io/shot/shot_values.h"
 #include "io/shot/words.h"
-#include "solvers/cloth/attach.h"
+#include "solvers/cloth/model/attach.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// "8 vertices held to "skirt", 2.1 to 7.9 mm from it".
@@ -92,4 +92,4 @@ std::vector<std::string> ClothGroup::lines(const BakePlan& plan) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ft {
+namespace ft::inline baker {
 
 JointBody::JointBody(std::vector<Member> members) : members_(std::move(members)) {
   for (const Member& member : members_) {
@@ -60,4 +60,4 @@ std::size_t JointBody::member_of_part(int part) const {
   return static_cast<std::size_t>(next - first_part_.begin()) - 1;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -8,7 +8,7 @@
 
 #include "baker/core/trajectory.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 class JointBody final : public Trajectory {
  public:
@@ -45,4 +45,4 @@ class JointBody final : public Trajectory {
   double preroll_ = 0;
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,7 +6,7 @@
 #include "baker/core/disjoint_sets.h"
 #include "io/shot/patterns.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// Cloth that nothing holds may slide and swing so much farther than its own size [m].
@@ -120,4 +120,4 @@ Result<std::vector<char>> meets_of(const ClothSpec& cloth, std::span<const Prima
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

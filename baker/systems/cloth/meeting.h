@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "baker/core/result.h"
-#include "baker/plan.h"
+#include "baker/plan/plan.h"
 #include "baker/systems/cloth/cloth_spec.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// Cloths that are solved together; indices into BakePlan::primaries, ascending.
 struct Meeting {
@@ -40,4 +40,4 @@ std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan
 /// What a cloth's `meets` says of each primary; its own is always met. Error: a pattern that names none.
 Result<std::vector<char>> meets_of(const ClothSpec& cloth, std::span<const PrimaryPlan> primaries);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
-#include "collision/pair_geometry.h"
+#include "collision/geometry/pair_geometry.h"
 #include "io/shot/vertex_values.h"
-#include "solvers/cloth/attach.h"
+#include "solvers/cloth/model/attach.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr std::size_t k_bundle = 32;  // triangles per box: neighbours in the file are neighbours in space, mostly
@@ -64,8 +64,7 @@ std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span
 Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span<const Vec3> body,
                              std::span<const Triangle> triangles) {
   ClothPin pin;
-  pin.stiffness = spec.stiffness;
-  pin.max_pull = spec.max_pull;
+  static_cast<ClothPinSettings&>(pin) = spec;
   switch (spec.select) {
     case PinSpec::Select::k_group: {
       const auto group = std::find_if(garment.groups.begin(), garment.groups.end(),
@@ -138,4 +137,4 @@ Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, 
   return {};
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -8,7 +8,7 @@
 #include "baker/systems/cloth/cloth_spec.h"
 #include "solvers/cloth/cloth_solver.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// body: what it holds to, the primary's bind pose or another garment, and its triangles. A pin that selects nothing is
 /// an error that says what there is.
@@ -24,4 +24,4 @@ Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, 
 std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span<const Vec3> body,
                                          std::span<const Triangle> triangles);
 
-}  // namespace ft
+}  // namespace ft::inline baker

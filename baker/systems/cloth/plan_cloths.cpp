@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <map>
 
-#include "baker/located.h"
+#include "baker/plan/located.h"
 #include "baker/systems/cloth/pins.h"
 #include "baker/systems/cloth/vertex_maps.h"
-#include "baker/systems/plan_common.h"
+#include "baker/systems/interface/plan_common.h"
 #include "io/shot/garment_size.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/patterns.h"
 #include "io/shot/shot_values.h"
 #include "io/shot/weld.h"
 #include "io/shot/words.h"
-#include "solvers/cloth/coarse_garment.h"
+#include "solvers/cloth/embed/coarse_garment.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 namespace {
 
@@ -86,8 +86,7 @@ ClothPin on_joined(const ClothPin& pin, std::span<const int> joined_of) {
     weight = std::max(weight, pin.weights.empty() ? 1.0 : pin.weights[i]);
   }
   ClothPin out;
-  out.stiffness = pin.stiffness;
-  out.max_pull = pin.max_pull;
+  static_cast<ClothPinSettings&>(out) = pin;
   for (const auto& [vertex, weight] : weight_of) out.vertices.push_back(vertex), out.weights.push_back(weight);
   return out;
 }
@@ -130,7 +129,7 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
     for (const std::string& note : pattern_notes) notes.push_back("cloth \"" + spec.name + "\": " + note);
     garment.pattern_scale = spec.pattern_scale;
   }
-  garment.sewing_time = spec.sewing_time;
+  static_cast<ClothSettings&>(garment) = spec;
   if (!garment.mesh.stitches.empty() && spec.sewing_time > shot.preroll / shot.fps)
     notes.push_back(fmt::format(
         "cloth \"{}\": its seams close {:.3g} s after the shot's first frame: sewing_time is longer than the pre-roll",
@@ -149,10 +148,6 @@ Status add_garment(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& p
   if (!maps) return at_cloth(maps.error());
   garment.maps =
       output.joined_of.empty() ? std::move(*maps) : on_joined(*maps, output.joined_of, garment.mesh.vertex_count());
-  garment.thickness = spec.thickness;
-  garment.friction = spec.friction;
-  garment.self_friction = spec.self_friction;
-  garment.self_collision = spec.self_collision;
 
   const Box cloth_box = bounds(garment.mesh.positions);
   Box body_box = bounds(bind_pose_of(*primary.trajectory));
@@ -189,7 +184,6 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
     if (!resolved) return at_cloth(resolved.error());
     ClothPin pin = output.joined_of.empty() ? std::move(*resolved) : on_joined(*resolved, output.joined_of);
     pin.hold = hold_span(pin_spec, shot);
-    pin.opens = pin_spec.opens;
     pin.to_world = to_world;
     if (to_cloth) {
       pin.to = static_cast<int>(target - garments.begin());
@@ -246,4 +240,4 @@ Result<std::unique_ptr<ClothGroup>> cloths_of(const Shot& shot, std::size_t p, B
   return made;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -4,7 +4,7 @@
 #include "baker/systems/cloth/cloth_group.h"
 #include "baker/systems/cloth/cloth_spec.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// The cloths of one primary, as if they met nothing else; without poses.
 Result<std::unique_ptr<ClothGroup>> cloths_of(const Shot& shot, std::size_t primary, BakePlan& plan);
@@ -16,4 +16,4 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
 /// What all groups of a shot have in common.
 ClothSetup common_setup(const Shot& shot);
 
-}  // namespace ft
+}  // namespace ft::inline baker

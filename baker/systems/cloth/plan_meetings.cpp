@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "baker/located.h"
+#include "baker/plan/located.h"
 #include "baker/systems/cloth/cloth_quality.h"
 #include "baker/systems/cloth/meeting.h"
 #include "baker/systems/cloth/plan_cloths.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// shot: all of it, whatever its stages. Why no other primary's cloth can meet a primary, nor its own cloth another
@@ -73,6 +73,10 @@ void join_bodies(const Shot& shot, const BakePlan& plan, const Meeting& meeting,
   }
   group.joint = std::make_shared<const JointBody>(std::move(members));
   group.bodies = meeting.bodies;
+  for (std::size_t m = 0; m < group.bodies.size(); ++m) {
+    const int first = group.joint->first_part(m), end = group.joint->first_part(m + 1);
+    group.setup.bodies.push_back({{first, end - first}, group.joint->members()[m].name});
+  }
   for (std::size_t g = 0; g < group.setup.garments.size(); ++g) {
     ClothGarment& garment = group.setup.garments[g];
     const auto reach = std::find_if(reaches.begin(), reaches.end(),
@@ -82,7 +86,7 @@ void join_bodies(const Shot& shot, const BakePlan& plan, const Meeting& meeting,
       const int first = group.joint->first_part(m), end = group.joint->first_part(m + 1);
       if (group.bodies[m] == group.outputs[g].primary) {
         for (int& part : garment.ignores) part += first;
-        garment.wearer = {first, end - first, plan.primaries[group.bodies[m]].trajectory->bind_to_start()};
+        garment.wearer = {{first, end - first}, plan.primaries[group.bodies[m]].trajectory->bind_to_start()};
       }
     }
     for (std::size_t m = 0; m < group.bodies.size(); ++m) {
@@ -129,4 +133,4 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

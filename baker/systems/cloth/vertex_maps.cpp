@@ -6,7 +6,7 @@
 #include "io/shot/vertex_values.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// "colour.r", "Color.Red", "r" -> "red"; empty for what is no channel.
@@ -101,4 +101,4 @@ VertexMaps on_joined(const VertexMaps& maps, std::span<const int> joined_of, int
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -10,7 +10,7 @@
 #include "baker/systems/cloth/cloth_spec.h"
 #include "solvers/energies/cloth_topology.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// `mesh` as it was read. Names vertex and file in messages; never a value outside of the map's range (cloth_maps.h).
 Result<VertexMaps> resolve_maps(std::span<const MapSpec> maps, const Mesh& mesh);
@@ -18,4 +18,4 @@ Result<VertexMaps> resolve_maps(std::span<const MapSpec> maps, const Mesh& mesh)
 /// Values on vertices of the file -> on joined ones, which take the mean.
 VertexMaps on_joined(const VertexMaps& maps, std::span<const int> joined_of, int joined_count);
 
-}  // namespace ft
+}  // namespace ft::inline baker

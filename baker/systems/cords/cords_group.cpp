@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace ft {
+namespace ft::inline baker {
 
 std::vector<std::string> CordsGroup::lines(const BakePlan& plan) const {
   std::vector<std::string> out;
@@ -13,4 +13,4 @@ std::vector<std::string> CordsGroup::lines(const BakePlan& plan) const {
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

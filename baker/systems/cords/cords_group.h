@@ -1,10 +1,10 @@
 // All cords of one primary, which is their prop: one system in lock step. Cloth and cords do not feel each other.
 #pragma once
 
-#include "baker/plan.h"
+#include "baker/plan/plan.h"
 #include "solvers/lockstep/lockstep_solver.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 class CordsGroup final : public SystemGroup {
  public:
@@ -17,4 +17,4 @@ class CordsGroup final : public SystemGroup {
   std::vector<std::string> lines(const BakePlan& plan) const override;
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

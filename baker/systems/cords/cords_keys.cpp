@@ -1,6 +1,6 @@
 #include "baker/systems/cords/cords_keys.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 std::span<const ShotKey<CordsSpec>> cords_keys() {
   static const ShotKey<CordsSpec> keys[] = {
@@ -53,4 +53,4 @@ std::span<const ShotKey<CordsSpec>> cords_keys() {
   return keys;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -4,8 +4,8 @@
 #include "baker/systems/cords/cords_spec.h"
 #include "io/shot/shot_keys.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 std::span<const ShotKey<CordsSpec>> cords_keys();
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -4,11 +4,12 @@
 
 #include <limits>
 
+#include "baker/record/cache_track.h"
 #include "baker/systems/cords/cords_section.h"
 #include "baker/systems/cords/judge_cords.h"
 #include "baker/systems/cords/plan_cords.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 /// Cords and their prop, which is its own collider, as drawn.
@@ -107,4 +108,4 @@ const SystemKind* cords_kind() {
   return &kind;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -1,10 +1,10 @@
 // `[cords.NAME]`: ropes and nets.
 #pragma once
 
-#include "baker/systems/system.h"
+#include "baker/systems/interface/system.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 const SystemKind* cords_kind();
 
-}  // namespace ft
+}  // namespace ft::inline baker

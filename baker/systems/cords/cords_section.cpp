@@ -1,10 +1,10 @@
 #include "baker/systems/cords/cords_section.h"
 
 #include "baker/systems/cords/cords_keys.h"
-#include "baker/systems/section_of.h"
+#include "baker/systems/interface/section_of.h"
 #include "io/shot/choice_keys.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr ChoiceKeys k_cords_shapes[] = {
@@ -63,4 +63,4 @@ const SecondarySection& cords_section() {
   return section;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -3,8 +3,8 @@
 
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 const SecondarySection& cords_section();
 
-}  // namespace ft
+}  // namespace ft::inline baker

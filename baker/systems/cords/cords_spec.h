@@ -7,7 +7,7 @@
 #include "baker/core/types.h"
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// [cords.NAME]: what follows, of cords: a net, a rope, a chain of knots, the edges of a mesh.
 struct CordsSpec final : SecondarySpec {
@@ -34,4 +34,4 @@ struct CordsSpec final : SecondarySpec {
   double hold_stiffness = 2e4;  ///< of the springs that hold points [N/m]
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/crossings.h"
-#include "collision/pair_geometry.h"
-#include "collision/penetration.h"
-#include "collision/triangle_tree.h"
+#include "collision/check/crossings.h"
+#include "collision/check/penetration.h"
+#include "collision/geometry/pair_geometry.h"
+#include "collision/geometry/triangle_tree.h"
 #include "solvers/cords/tubes.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr int k_sides = CordTubes::k_sides;
@@ -87,4 +87,4 @@ CordsAndBody judge_cords(std::span<const Edge> cords, std::span<const Vec3> poin
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -8,9 +8,9 @@
 #include "baker/core/edge_strain.h"
 #include "baker/core/mesh.h"
 #include "baker/core/result.h"
-#include "solvers/solver.h"
+#include "solvers/base/solver.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// Middle lines of tubes of solvers/cords/tubes.h: a point in every ring, a cord from ring to ring.
 struct MiddleLines {
@@ -37,4 +37,4 @@ struct CordsAndBody {
 CordsAndBody judge_cords(std::span<const Edge> cords, std::span<const Vec3> points, std::span<const Vec3> surface,
                          std::span<const Triangle> triangles);
 
-}  // namespace ft
+}  // namespace ft::inline baker

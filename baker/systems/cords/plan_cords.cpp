@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "baker/located.h"
-#include "baker/quality.h"
-#include "baker/systems/plan_common.h"
+#include "baker/plan/located.h"
+#include "baker/plan/quality.h"
+#include "baker/systems/interface/plan_common.h"
 #include "io/shot/mesh_file.h"
 #include "solvers/cords/generators.h"
 #include "solvers/cords/tubes.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 // Of a preview.
@@ -128,4 +128,4 @@ Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, co
   return group;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -5,7 +5,7 @@
 #include "baker/systems/cords/cords_spec.h"
 #include "solvers/cords/generators.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// The cords of one primary, with it as their prop; null where there are none.
 Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t primary, const BakePlan& plan);
@@ -13,4 +13,4 @@ Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t prima
 /// The graph that a shot file's table means [m].
 Result<CordGraph> cord_graph(const CordsSpec& spec);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/import/pose.h"
+#include "io/import/character/pose.h"
 #include "io/shot/patterns.h"
 #include "solvers/follow/damped_oscillator.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr double k_step = 1.0 / 480;  ///< longest over which a target is taken to keep its velocity [s]
@@ -194,4 +194,4 @@ FollowedBones follow_bones(const PlacedCharacter& placed, const Eigen::Isometry3
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

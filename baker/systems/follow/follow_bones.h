@@ -7,10 +7,10 @@
 
 #include "baker/core/teleport.h"
 #include "baker/systems/follow/follow_spec.h"
-#include "io/import/motion_change.h"
-#include "io/import/placed_character.h"
+#include "io/import/character/motion_change.h"
+#include "io/import/motion/placed_character.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 /// When a shot looks at a clip.
 struct FollowTiming {
@@ -35,4 +35,4 @@ Result<std::vector<int>> joints_like(const std::vector<std::string>& patterns, c
 FollowedBones follow_bones(const PlacedCharacter& placed, const Eigen::Isometry3d& place, std::span<const int> joints,
                            const FollowSpec& spec, const FollowTiming& timing, std::span<const Teleport> teleports);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "baker/known_motion.h"
-#include "baker/located.h"
-#include "baker/placed_trajectory.h"
+#include "baker/plan/known_motion.h"
+#include "baker/plan/located.h"
+#include "baker/plan/placed_trajectory.h"
 #include "baker/systems/follow/follow_points.h"
 #include "io/export/motion_files.h"
 #include "io/shot/vertex_values.h"
 #include "io/shot/words.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 class FollowSolver final : public KnownMotionSolver {
@@ -157,4 +157,4 @@ Result<std::vector<WrittenFile>> FollowGroup::files(const BakePlan& plan, std::v
   return out;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -2,10 +2,10 @@
 // frame; its solver only walks along it.
 #pragma once
 
-#include "baker/plan.h"
+#include "baker/plan/plan.h"
 #include "baker/systems/follow/follow_bones.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 class FollowGroup final : public SystemGroup {
  public:
@@ -32,4 +32,4 @@ class FollowGroup final : public SystemGroup {
 Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowSpec& spec, std::size_t primary,
                                                  BakePlan& plan, const FollowGroup* before);
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -3,7 +3,7 @@
 #include "baker/systems/follow/follow_group.h"
 #include "baker/systems/follow/follow_section.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 class FollowKind final : public SystemKind {
@@ -41,4 +41,4 @@ const SystemKind* follow_kind() {
   return &kind;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

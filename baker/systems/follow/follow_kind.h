@@ -1,10 +1,10 @@
 // `[follow.NAME]`: joints and vertices of a primary that follow their animation with a spring's lag.
 #pragma once
 
-#include "baker/systems/system.h"
+#include "baker/systems/interface/system.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 const SystemKind* follow_kind();
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -6,7 +6,7 @@
 
 #include "solvers/follow/damped_oscillator.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 constexpr double k_step = 1.0 / 240;  ///< longest over which the middle is taken to keep its velocity [s]
@@ -70,4 +70,4 @@ void FollowedPoints::sample(double time, std::span<Vec3> positions) const {
   for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += weights_[v] * by;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -10,7 +10,7 @@
 #include "baker/core/trajectory.h"
 #include "baker/systems/follow/follow_bones.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 class FollowedPoints final : public Trajectory {
  public:
@@ -36,4 +36,4 @@ class FollowedPoints final : public Trajectory {
   std::vector<Vec3> displaced_;  ///< by what a vertex of weight 1 is displaced [m]
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -1,10 +1,10 @@
 #include "baker/systems/follow/follow_section.h"
 
 #include "baker/systems/follow/follow_spec.h"
-#include "baker/systems/section_of.h"
+#include "baker/systems/interface/section_of.h"
 #include "io/shot/choice_keys.h"
 
-namespace ft {
+namespace ft::inline baker {
 namespace {
 
 std::span<const ShotKey<FollowSpec>> follow_keys() {
@@ -71,4 +71,4 @@ const SecondarySection& follow_section() {
   return section;
 }
 
-}  // namespace ft
+}  // namespace ft::inline baker

@@ -7,7 +7,7 @@
 
 #include "io/shot/secondary.h"
 
-namespace ft {
+namespace ft::inline baker {
 
 struct FollowSpec final : SecondarySpec {
   std::vector<std::string> bones;  ///< patterns (* and ?) of joints that turn
@@ -20,4 +20,4 @@ struct FollowSpec final : SecondarySpec {
   double max_distance = 0.1;       ///< of vertices, from the animation [m]
 };
 
-}  // namespace ft
+}  // namespace ft::inline baker

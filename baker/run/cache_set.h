@@ -1,0 +1,81 @@
+// All caches of one bake: every garment in every format, the feasible collider and the drawn body of each primary in
+// the first format. The walk takes a snapshot of a frame; the writer thread writes it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/plan/plan.h"
+#include "baker/record/manifest.h"
+#include "io/cache/cache.h"
+
+namespace ft::inline baker {
+
+using Solvers = std::vector<std::unique_ptr<Solver>>;
+
+/// Positions of every cached system at one frame, as the files will have them [m].
+struct Snapshot {
+  int frame = 0;
+  std::vector<std::vector<Vec3f>> positions;
+};
+
+class CacheSet {
+ public:
+  /// earlier: systems of earlier stages, whose names are taken.
+  CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder,
+           std::vector<ManifestSystem> earlier = {});
+
+  /// Once. last_kept: last frame that files of an interrupted bake keep. Files that keep none are new, and so is the
+  /// OBJ of each system beside them.
+  Status open(int last_kept);
+  Snapshot take(std::span<const State> states) const;
+  /// What a group's systems do not meet, in the numbers of the cached colliders.
+  std::vector<AbsentRuns> as_cached(std::size_t group, std::vector<AbsentRuns> absent) const;
+  /// Frames of the pre-roll go where all are recorded, and into caches if the shot says so. before: the snapshot of the
+  /// frame before, for the velocities of what moves by itself; null: they are zero.
+  Status write(const Snapshot& snapshot, const Snapshot* before);
+  Status close();
+
+  /// For the manifest, with those of earlier stages in front; sizes and content hashes once close() has succeeded.
+  std::vector<ManifestSystem> systems() const;
+  /// Estimate for all frames [bytes].
+  std::uint64_t expected_bytes() const;
+
+ private:
+  struct Source {
+    std::size_t group = 0;
+    int garment = -1;  ///< -1: the collider or the body
+    bool collider = false;
+    std::size_t primary = 0;             ///< whom it belongs to
+    std::vector<int> slice{};            ///< of the collider's vertices; empty: all
+    std::shared_ptr<const Mesh> mesh{};  ///< rest shape; null once the files have it
+  };
+  /// Of a garment, in the order of its file.
+  void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
+  /// Of a garment at `frame` [m/s].
+  std::vector<Vec3> velocities_of(const Source& source, int frame, std::span<const Vec3> x,
+                                  std::span<const Vec3f> before) const;
+  void slice_of(const Source& source, const State& state, std::span<Vec3> x) const;
+  void add_collider(std::size_t group, const ColliderSlice& slice, std::span<const Vec3> collider);
+  void add_body(std::size_t group, std::size_t primary);
+  std::vector<std::string> names() const;
+  void add(Source source, std::string name, const std::string& role, bool all_formats);
+  int begin() const { return plan_.shot().first_frame - plan_.shot().preroll; }
+  Status open_motion(std::size_t system, const CacheInfo& info, int keep_frames);
+
+  const BakePlan& plan_;
+  const Solvers& solvers_;
+  std::filesystem::path folder_;
+  std::vector<std::vector<ColliderSlice>> slices_;  ///< per group; empty without a joint body
+  std::vector<Source> sources_;
+  std::vector<ManifestSystem> systems_;
+  std::vector<ManifestSystem> earlier_;
+  std::vector<std::vector<std::unique_ptr<CacheWriter>>> writers_;
+  /// Per system: of its motion in all frames, for later stages; null: none needs it.
+  std::vector<std::unique_ptr<CacheWriter>> motions_;
+};
+
+}  // namespace ft::inline baker

@@ -1,0 +1,272 @@
+#include "io/import/body/body_bones.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/import/body/bind.h"
+#include "io/import/body/limbs.h"
+
+namespace ft::inline io {
+namespace {
+
+struct Radii {
+  double at_joint, at_end;
+};
+Radii radii(Limb limb) {
+  switch (limb) {
+    case Limb::k_hips: return {0.055, 0.055};
+    case Limb::k_hip_joint: return {0.060, 0.054};
+    case Limb::k_torso: return {0.062, 0.062};
+    case Limb::k_neck: return {0.034, 0.032};
+    case Limb::k_head: return {0.045, 0.052};
+    case Limb::k_thigh: return {0.051, 0.034};
+    case Limb::k_shin: return {0.033, 0.022};
+    case Limb::k_foot: return {0.024, 0.021};
+    case Limb::k_toe: return {0.020, 0.015};
+    case Limb::k_collar: return {0.040, 0.034};
+    case Limb::k_upper_arm: return {0.033, 0.025};
+    case Limb::k_forearm: return {0.026, 0.0175};
+    case Limb::k_hand: return {0.019, 0.018};
+    case Limb::k_finger: return {0.016, 0.013};
+    case Limb::k_other: return {0.025, 0.020};
+  }
+  return {0.025, 0.020};
+}
+
+/// Half depth and half breadth of the torso, from the hip joints (0) to the shoulder joints (1).
+struct Section {
+  double at, depth, breadth;
+};
+constexpr Section k_torso[] = {{0.0, 0.060, 0.096},  {0.22, 0.058, 0.086}, {0.42, 0.053, 0.075},
+                               {0.70, 0.064, 0.087}, {0.87, 0.057, 0.085}, {1.0, 0.040, 0.066}};
+
+/// Where the two sides of a body meet: hip joints, shoulder joints, and the directions they give.
+struct Landmarks {
+  int hips = 0, neck = -1, chest = 0;
+  std::vector<int> thighs, arms;
+  std::vector<int> spine;  ///< joints from the hips up to the chest
+  Vec3 side = Vec3::UnitX(), forward = Vec3::UnitZ();
+  bool complete = false;  ///< two thighs and two arms
+};
+
+bool is_end(const Character& character, std::size_t joint) {
+  return character.nodes[joint].name.starts_with("EndSite");
+}
+
+Landmarks find_landmarks(const Character& character, const BodyFrame& frame, const std::vector<Limb>& limb) {
+  Landmarks out;
+  int hips = -1;
+  Vec3 toes = Vec3::Zero();
+  const auto at = [&](int joint) -> const Vec3& { return frame.joints[static_cast<std::size_t>(joint)]; };
+  for (std::size_t i = 0; i < limb.size(); ++i) {
+    const int joint = static_cast<int>(i), parent = character.nodes[i].parent;
+    if (is_end(character, i)) continue;
+    const bool first_of_kind = parent < 0 || limb[static_cast<std::size_t>(parent)] != limb[i];
+    if (hips < 0 && limb[i] == Limb::k_hips) hips = joint;
+    if (out.neck < 0 && (limb[i] == Limb::k_neck || limb[i] == Limb::k_head)) out.neck = joint;
+    if (limb[i] == Limb::k_thigh && first_of_kind) out.thighs.push_back(joint);
+    if (limb[i] == Limb::k_upper_arm && first_of_kind) out.arms.push_back(joint);
+    if (limb[i] == Limb::k_foot)
+      for (const int child : frame.children[i]) toes += at(child) - at(joint);
+  }
+  out.hips = std::max(hips, 0);
+  out.complete = out.thighs.size() == 2 && out.arms.size() == 2 && at(out.arms[0]).y() > at(out.thighs[0]).y() + 0.1;
+  if (!out.complete) return out;
+  out.side = at(out.thighs[0]) - at(out.thighs[1]);
+  out.side.y() = 0;
+  out.side = out.side.norm() > 1e-6 ? out.side.normalized() : Vec3::UnitX().eval();
+  toes.y() = 0;
+  toes -= toes.dot(out.side) * out.side;
+  out.forward = toes.norm() > 1e-6 ? toes.normalized() : out.side.cross(Vec3::UnitY()).eval();
+  // The chest is the lowest joint above both arms.
+  int a = out.arms[0], b = out.arms[1];
+  while (a != b) (a > b ? a : b) = character.nodes[static_cast<std::size_t>(std::max(a, b))].parent;
+  out.chest = a;
+  for (int joint = a; joint >= 0; joint = character.nodes[static_cast<std::size_t>(joint)].parent) {
+    out.spine.insert(out.spine.begin(), joint);
+    if (joint == out.hips) break;
+  }
+  return out;
+}
+
+class FleshBuilder {
+ public:
+  FleshBuilder(const Character& character, const BodyFrame& frame)
+      : frame_(frame), limb_(limbs_by_name(character)), marks_(find_landmarks(character, frame, limb_)) {}
+
+  std::vector<BodyBone> build() {
+    for (std::size_t i = 0; i < limb_.size(); ++i)
+      for (const int child : frame_.children[i]) add_bone(static_cast<int>(i), child);
+    if (marks_.complete) add_torso();
+    return std::move(out_);
+  }
+
+ private:
+  const Vec3& at(int joint) const { return frame_.joints[static_cast<std::size_t>(joint)]; }
+  Limb limb(int joint) const { return limb_[static_cast<std::size_t>(joint)]; }
+  Vec3 middle(const std::vector<int>& pair) const { return 0.5 * (at(pair[0]) + at(pair[1])); }
+
+  void add_bone(int joint, int child) {
+    const Vec3 &a = at(joint), &b = at(child);
+    if (limb(joint) == Limb::k_head) return add_head(joint, a, b);
+    if ((b - a).norm() < 1e-4) return;
+    Radii r = radii(limb(joint));
+    switch (limb(joint)) {
+      case Limb::k_hips:
+      case Limb::k_torso:
+      case Limb::k_hip_joint:
+        if (!marks_.complete) add(joint, a, b, r.at_joint, r.at_end);
+        return;  // else the torso is built as one
+      case Limb::k_collar: return add_collar(joint, a, b);
+      case Limb::k_thigh:
+        if (marks_.complete) {  // narrow hips: the legs stay apart below the crotch
+          const Vec3 centre = middle(marks_.thighs);
+          r.at_joint = std::min(r.at_joint, 1.15 * std::abs((a - centre).dot(marks_.side)));
+          r.at_end = std::min(r.at_end, 0.8 * std::abs((b - centre).dot(marks_.side)));
+        }
+        break;
+      case Limb::k_shin: {
+        const Vec3 calf = a + 0.28 * (b - a) - 0.004 * marks_.forward;
+        add(joint, a, calf, r.at_joint, 0.035);
+        return add(joint, calf, b, 0.035, r.at_end);
+      }
+      case Limb::k_foot:  // heel
+        add(joint, a, a - 0.018 * marks_.forward - Vec3(0, 0.008, 0), 0.024, 0.022);
+        break;
+      default: break;
+    }
+    add(joint, a, b, r.at_joint, r.at_end);
+  }
+
+  void add_collar(int joint, const Vec3& a, const Vec3& b) {
+    if (!marks_.complete) return add(joint, a, b, 0.040, 0.034);
+    const Vec3 shoulders = middle(marks_.arms);
+    add(joint, shoulders + 0.25 * (b - shoulders) + Vec3(0, 0.010, 0), b, 0.034, 0.034);
+  }
+
+  /// Two lobes side by side from the hip joints to the shoulders, with the bones of the spine each moving its own
+  /// height; the hips between and behind the hip joints.
+  void add_torso() {
+    const Vec3 low = middle(marks_.thighs) - 0.010 * marks_.forward,
+               high = middle(marks_.arms) + 0.012 * marks_.forward;
+    const auto lobe = [&](const Section& s, double sign) -> Vec3 {
+      return low + s.at * (high - low) + sign * (s.breadth - s.depth) * marks_.side;
+    };
+    for (std::size_t k = 0; k + 1 < std::size(k_torso); ++k) {
+      const Section &s = k_torso[k], &t = k_torso[k + 1];
+      const double height = low.y() + 0.5 * (s.at + t.at) * (high.y() - low.y());
+      int owner = marks_.hips;
+      for (const int joint : marks_.spine)
+        if (at(joint).y() <= height) owner = joint;
+      for (const double sign : {1.0, -1.0}) add(owner, lobe(s, sign), lobe(t, sign), s.depth, t.depth);
+    }
+    for (const int thigh : marks_.thighs) {
+      const Vec3 out = (at(thigh) - middle(marks_.thighs)).dot(marks_.side) * marks_.side;
+      const Vec3 inner = middle(marks_.thighs) + out * std::min(1.0, 0.042 / std::max(out.norm(), 1e-6));
+      add(marks_.hips, middle(marks_.thighs), inner, 0.052, 0.052);
+      const Vec3 seat = inner - 0.026 * marks_.forward;
+      add(marks_.hips, seat + Vec3(0, 0.020, 0), seat - Vec3(0, 0.012, 0), 0.048, 0.048);
+    }
+  }
+
+  void add_head(int joint, const Vec3& a, const Vec3& b) {
+    const Vec3 up = (b - a).norm() > 0.01 ? (b - a).normalized() : Vec3::UnitY().eval();
+    const Vec3 front = (marks_.forward - marks_.forward.dot(up) * up).normalized();
+    const Vec3 skull = a + 0.046 * up;
+    add(joint, skull + 0.006 * front, skull - 0.012 * front, 0.049, 0.049);
+    add(joint, a + 0.006 * up + 0.022 * front, skull + 0.018 * front, 0.030, 0.042);
+    add(joint, a - 0.01 * up, a + 0.02 * up, 0.033, 0.036);
+  }
+
+  void add(int node, const Vec3& a, const Vec3& b, double radius_a, double radius_b) {
+    out_.push_back({node, a, b, radius_a, radius_b});
+  }
+
+  const BodyFrame& frame_;
+  std::vector<Limb> limb_;
+  Landmarks marks_;
+  std::vector<BodyBone> out_;
+};
+
+/// Turns an arm that points down by more than 45 degrees about its shoulder until it points sideways.
+void raise_arms(const Character& character, BodyFrame& frame) {
+  const Landmarks marks = find_landmarks(character, frame, limbs_by_name(character));
+  if (!marks.complete) return;
+  for (const int arm : marks.arms) {
+    const auto& below = frame.children[static_cast<std::size_t>(arm)];
+    const Vec3 shoulder = frame.joints[static_cast<std::size_t>(arm)];
+    Vec3 along = Vec3::Zero();
+    for (const int elbow : below) along += frame.joints[static_cast<std::size_t>(elbow)] - shoulder;
+    if (along.norm() < 1e-6 || along.normalized().y() > -0.7) continue;
+    const double sign = (shoulder - 0.5 * (frame.joints[static_cast<std::size_t>(marks.arms[0])] +
+                                           frame.joints[static_cast<std::size_t>(marks.arms[1])]))
+                            .dot(marks.side);
+    const Mat3 turn = Quat::FromTwoVectors(along, sign < 0 ? Vec3(-marks.side) : marks.side).toRotationMatrix();
+    const Mat3 turn_in_file = frame.axes.transpose() * turn * frame.axes;
+    const Vec3 pivot = frame.globals[static_cast<std::size_t>(arm)].topRightCorner<3, 1>();
+    Mat4 move = Mat4::Identity();
+    move.topLeftCorner<3, 3>() = turn_in_file;
+    move.topRightCorner<3, 1>() = pivot - turn_in_file * pivot;
+    std::vector<int> stack{arm};
+    while (!stack.empty()) {
+      const auto joint = static_cast<std::size_t>(stack.back());
+      stack.pop_back();
+      frame.globals[joint] = move * frame.globals[joint];
+      frame.joints[joint] = shoulder + turn * (frame.joints[joint] - shoulder);
+      stack.insert(stack.end(), frame.children[joint].begin(), frame.children[joint].end());
+    }
+    frame.arms_raised = true;
+  }
+}
+
+}  // namespace
+
+Result<BodyFrame> body_frame(const Character& character, const Mat3& axes) {
+  BodyFrame frame;
+  frame.axes = axes;
+  frame.globals = rest_globals(character);
+  frame.children.resize(character.nodes.size());
+  Box box;
+  for (const Mat4& m : frame.globals) {
+    frame.joints.push_back(axes * m.topRightCorner<3, 1>());
+    box.include(frame.joints.back());
+  }
+  for (std::size_t i = 0; i < character.nodes.size(); ++i)
+    if (const int parent = character.nodes[i].parent; parent >= 0)
+      frame.children[static_cast<std::size_t>(parent)].push_back(static_cast<int>(i));
+  const double height = box.size().y();
+  if (!(height > 1e-9) || !(box.size().norm() < 20 * height))
+    return input_error("no body can be built: the skeleton has no height in its rest pose", "",
+                       "check up = ..., or use a file with a mesh");
+  frame.scale = 1 / height;
+  for (Vec3& p : frame.joints) p *= frame.scale;
+  raise_arms(character, frame);
+  return frame;
+}
+
+std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) {
+  return FleshBuilder(character, frame).build();
+}
+
+std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame) {
+  const std::vector<Limb> limb = limbs_by_name(character);
+  std::vector<BodyBone> out;
+  for (std::size_t i = 0; i < limb.size(); ++i)
+    for (const int child : frame.children[i]) {
+      const Vec3 &a = frame.joints[i], &b = frame.joints[static_cast<std::size_t>(child)];
+      if ((b - a).norm() < 0.018) continue;
+      const Radii r = radii(limb[i]);
+      const double fuller = limb[i] == Limb::k_torso || limb[i] == Limb::k_hips ? 1.25 : 1.1;
+      out.push_back({static_cast<int>(i), a, b, fuller * r.at_joint, fuller * r.at_end});
+    }
+  return out;
+}
+
+double capsule_distance(const BodyBone& bone, const Vec3& p) {
+  const Vec3 axis = bone.b - bone.a;
+  const double squared = axis.squaredNorm();
+  const double u = squared > 0 ? std::clamp((p - bone.a).dot(axis) / squared, 0.0, 1.0) : 0;
+  return (p - bone.a - u * axis).norm() - (bone.radius_a + u * (bone.radius_b - bone.radius_a));
+}
+
+}  // namespace ft::inline io

@@ -1,0 +1,41 @@
+// The flesh on a skeleton: tapered capsules by the names of the joints, in a frame where Y is up and the skeleton is 1
+// tall. Proportions: half breadths and depths of an adult as shares of stature (Drillis and Contini 1966; ANSUR 1988
+// medians), rounded.
+#pragma once
+
+#include <vector>
+
+#include "io/import/character/character.h"
+
+namespace ft::inline io {
+
+struct BodyBone {
+  int node = -1;  ///< moves with it
+  Vec3 a, b;      ///< shares of the skeleton's height
+  double radius_a = 0, radius_b = 0;
+};
+
+/// Joints in the normal frame: position = scale * axes * global translation. The pose is the rest pose, with arms that
+/// hang beside the body raised to the side, so that hands do not grow together with thighs.
+struct BodyFrame {
+  std::vector<Mat4> globals;  ///< of all nodes in that pose, file units and axes
+  bool arms_raised = false;
+  std::vector<Vec3> joints;
+  std::vector<std::vector<int>> children;
+  Mat3 axes = Mat3::Identity();
+  double scale = 1;  ///< 1 / (height in file units)
+};
+
+/// Fails when the skeleton has no height.
+Result<BodyFrame> body_frame(const Character& character, const Mat3& axes);
+
+/// Many overlapping capsules that blend into a body: lobes beside the spine, hips, heels, skull.
+std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame);
+
+/// One capsule per bone, as thick as a body is there.
+std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame);
+
+/// Signed distance to a capsule's surface, near enough: exact for equal radii.
+double capsule_distance(const BodyBone& bone, const Vec3& p);
+
+}  // namespace ft::inline io

@@ -1,0 +1,120 @@
+#include "io/import/body/limbs.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "io/import/character/clips.h"
+
+namespace ft::inline io {
+namespace {
+
+struct Word {
+  const char* text;
+  Limb limb;
+};
+/// First match wins; "upleg" stands before "leg", "forearm" before "arm".
+// clang-format off
+constexpr Word k_words[] = {
+    {"hipjoint", Limb::k_hip_joint}, {"upleg", Limb::k_thigh},       {"upperleg", Limb::k_thigh},    {"thigh", Limb::k_thigh},
+    {"femur", Limb::k_thigh},       {"shin", Limb::k_shin},         {"knee", Limb::k_shin},         {"calf", Limb::k_shin},
+    {"lowleg", Limb::k_shin},       {"lowerleg", Limb::k_shin},     {"tibia", Limb::k_shin},        {"leg", Limb::k_shin},
+    {"toe", Limb::k_toe},           {"foot", Limb::k_foot},         {"ankle", Limb::k_foot},        {"thumb", Limb::k_finger},
+    {"finger", Limb::k_finger},     {"index", Limb::k_finger},      {"middle", Limb::k_finger},     {"ring", Limb::k_finger},
+    {"pinky", Limb::k_finger},      {"handend", Limb::k_finger},    {"hand", Limb::k_hand},         {"wrist", Limb::k_hand},
+    {"forearm", Limb::k_forearm},   {"lowerarm", Limb::k_forearm},  {"elbow", Limb::k_forearm},     {"radius", Limb::k_forearm},
+    {"collar", Limb::k_collar},     {"clavicle", Limb::k_collar},   {"uparm", Limb::k_upper_arm},   {"upperarm", Limb::k_upper_arm},
+    {"humerus", Limb::k_upper_arm}, {"shldr", Limb::k_upper_arm},   {"shoulder", Limb::k_collar},   {"arm", Limb::k_upper_arm},
+    {"head", Limb::k_head},         {"neck", Limb::k_neck},         {"spine", Limb::k_torso},       {"chest", Limb::k_torso},
+    {"back", Limb::k_torso},        {"abdomen", Limb::k_torso},     {"torso", Limb::k_torso},       {"thorax", Limb::k_torso},
+    {"hip", Limb::k_hips},          {"pelvis", Limb::k_hips},       {"root", Limb::k_hips},
+};
+// clang-format on
+
+std::string lower(const std::string& text) {
+  std::string out;
+  for (const char c : text) out.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  return out;
+}
+
+Limb limb_by_name(const std::string& name) {
+  const std::string word = lower(name);
+  for (const Word& w : k_words)
+    if (word.find(w.text) != std::string::npos) return w.limb;
+  return Limb::k_other;
+}
+
+bool is_above(const Character& character, int ancestor, int node) {
+  while (node > ancestor) node = character.nodes[at(node)].parent;
+  return node == ancestor;
+}
+
+/// The topmost of the neighbours above `node` that are of a kind; -1 when the first that is none of the kinds comes
+/// before it.
+int topmost(const Character& character, const std::vector<Limb>& limb, int node, Limb kind, Limb below) {
+  while (node >= 0 && limb[at(node)] == below) node = character.nodes[at(node)].parent;
+  int found = -1;
+  for (; node >= 0 && limb[at(node)] == kind; node = character.nodes[at(node)].parent) found = node;
+  return found;
+}
+
+}  // namespace
+
+std::vector<Limb> limbs_by_name(const Character& character) {
+  std::vector<Limb> out;
+  for (const CharacterNode& node : character.nodes) {
+    const bool end = node.name.starts_with("EndSite");
+    out.push_back(end && node.parent >= 0 ? out[at(node.parent)] : limb_by_name(node.name));
+  }
+  // Two habits: "LeftHip - LeftKnee" means the thigh, "LeftShoulder - LeftElbow" the upper arm.
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (character.nodes[i].parent < 0) continue;
+    Limb& above = out[at(character.nodes[i].parent)];
+    if (above == Limb::k_hips && out[i] == Limb::k_shin) above = Limb::k_thigh;
+    if (above == Limb::k_collar && out[i] == Limb::k_forearm) above = Limb::k_upper_arm;
+  }
+  return out;
+}
+
+std::vector<LimbChain> find_limbs(const Character& character) {
+  const std::vector<Limb> limb = limbs_by_name(character);
+  std::vector<LimbChain> out;
+  for (int i = 0; i < static_cast<int>(limb.size()); ++i) {
+    const bool foot = limb[at(i)] == Limb::k_foot, hand = limb[at(i)] == Limb::k_hand;
+    const int parent = character.nodes[at(i)].parent;
+    if ((!foot && !hand) || parent < 0 || limb[at(parent)] == limb[at(i)]) continue;
+    LimbChain chain;
+    chain.end = i;
+    chain.lower = topmost(character, limb, i, foot ? Limb::k_shin : Limb::k_forearm, limb[at(i)]);
+    if (chain.lower < 0) continue;
+    chain.upper =
+        topmost(character, limb, chain.lower, foot ? Limb::k_thigh : Limb::k_upper_arm, limb[at(chain.lower)]);
+    const auto same = [&](const LimbChain& c) { return c.upper == chain.upper; };
+    if (chain.upper >= 0 && std::none_of(out.begin(), out.end(), same)) out.push_back(chain);
+  }
+  return out;
+}
+
+Result<LimbChain> find_limb(const Character& character, const std::string& upper, const std::string& lower_name,
+                            const std::string& end) {
+  LimbChain out;
+  for (const auto& [name, node] : {std::pair{&upper, &out.upper}, {&lower_name, &out.lower}, {&end, &out.end}}) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < character.nodes.size(); ++i) {
+      names.push_back(character.nodes[i].name);
+      if (names.back() != *name) continue;
+      if (*node >= 0) return usage_error("node \"" + *name + "\" exists more than once");
+      *node = static_cast<int>(i);
+    }
+    if (*node < 0) {
+      const std::string guess = nearest_name(*name, names);
+      return usage_error("node \"" + *name + "\" does not exist", "",
+                         guess.empty() ? "" : "did you mean \"" + guess + "\"?");
+    }
+  }
+  if (out.upper == out.lower || out.lower == out.end || !is_above(character, out.upper, out.lower) ||
+      !is_above(character, out.lower, out.end))
+    return usage_error("\"" + upper + "\", \"" + lower_name + "\" and \"" + end + "\" are not one above the other");
+  return out;
+}
+
+}  // namespace ft::inline io

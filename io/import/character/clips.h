@@ -1,0 +1,35 @@
+// Which clip plays, and clips of another file put onto this skeleton.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/import/character/character.h"
+
+namespace ft::inline io {
+
+/// Index of the named clip; empty name: the first, with a note when there are several; -1 when there are none at all.
+/// An unknown name is an error that lists those that exist and the one that was probably meant.
+Result<int> select_clip(const Character& character, const std::string& name, const std::string& file,
+                        std::vector<std::string>& notes);
+
+/// For each node of `source` the one of `target` that has its name, else its name without a namespace or a path; -1:
+/// none.
+std::vector<int> match_names(const Character& source, const Character& target);
+
+/// File units of the target in one of the source; 1 where one of them carries no unit (BVH).
+double unit_ratio(const Character& source, const Character& target);
+
+/// Takes the clips of `source` (a file with the motion only) for `target`, node by name; lengths change from source's
+/// unit to target's. Nodes that are missing here are noted; no match at all is an error.
+Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
+                                         const std::string& source_file, std::vector<std::string>& notes);
+
+/// Refuses a shot that leaves the clip by more than a frame.
+Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps,
+                        const std::string& file);
+
+/// Of the candidates, the one with the fewest letters changed from the word (Levenshtein), if it is near; else empty.
+std::string nearest_name(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace ft::inline io
