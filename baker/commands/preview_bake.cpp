@@ -214,6 +214,8 @@ bool has_prop(const Manifest& manifest) {
 /// Whether a primary is a set that stands still, such as a ground: cloth of others was solved with its drawn body for a
 /// collider.
 bool stands(const Manifest& manifest, const std::string& primary) {
+  if (std::ranges::any_of(manifest.systems, [&](const ManifestSystem& s) { return s.name == primary && s.sheet; }))
+    return false;
   return std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& cloth) {
     return cloth.primary != primary && std::find(cloth.meets.begin(), cloth.meets.end(), primary) != cloth.meets.end();
   });

@@ -1,8 +1,9 @@
-// The primary, as everybody else sees it: one closed (or nearly closed) triangle surface with constant topology and a
-// position for every vertex at every time of the shot. Positions are metres, Y-up, world space. Thread-safe: sampling
-// changes nothing.
+// The primary, as everybody else sees it: one closed (or nearly closed) triangle surface, or sheets, with constant
+// topology and a position for every vertex at every time of the shot. Positions are metres, Y-up, world space.
+// Thread-safe: sampling changes nothing.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct SurfacePart {
   bool folds = true;
   /// It stands still in the whole shot, as a ground or a chair does: what overlaps it gives way, whatever its size.
   bool fixed = false;
+  /// Thin and open, as cloth of an earlier bake is: it has two sides and no inside. It neither gives way to other parts
+  /// nor do they to it, and it makes none of them absent.
+  bool sheet = false;
 };
 
 struct Surface {
@@ -31,6 +35,13 @@ struct Surface {
   std::vector<SurfacePart> parts;   ///< at least one
   int vertex_count() const { return static_cast<int>(part_of_vertex.size()); }
 };
+
+/// What of the surface has an inside: its triangles that belong to no sheet.
+std::vector<Triangle> solid_triangles(std::span<const Triangle> triangles, std::span<const int> part_of_vertex,
+                                      std::span<const SurfacePart> parts);
+inline bool has_sheets(std::span<const SurfacePart> parts) {
+  return std::any_of(parts.begin(), parts.end(), [](const SurfacePart& part) { return part.sheet; });
+}
 
 /// Times are seconds from the first frame of the shot. t < 0 is the pre-roll: at t <= -preroll the bind pose, placed
 /// where the first frame has the character (position and heading), from there blended into the pose at t = 0. A

@@ -161,6 +161,11 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
       out.pairs.push_back(std::move(e));
     }
   }
+  for (const BakePlan& later : plan->later)
+    for (const auto& group : later.groups)
+      for (const SystemOutput& output : group->outputs)
+        out.notes.push_back(
+            fmt::format("\"{}\" is baked after what it refers to, and is not measured here", output.mesh->name));
   const double frames = out.shot_frames + shot.preroll;
   for (Evidence& e : out.pairs) e.cycle_seconds = frames * frame_seconds;
   out.final_seconds = k_final_cost * frames * frame_seconds;

@@ -18,7 +18,7 @@ Result<std::vector<char>> meets_of(std::span<const std::string> patterns, const 
 /// Whether a primary stands still in all frames of the shot, pre-roll included.
 bool stands_still(const Shot& shot, const PrimaryPlan& primary);
 
-/// Why secondaries of other primaries cannot meet a primary; empty: they can.
+/// shot: all of it, whatever its stages. Why secondaries of other primaries cannot meet a primary; empty: they can.
 std::string why_alone(const Shot& shot, const PrimaryPlan& primary);
 
 }  // namespace ft::inline baker

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/plan/carrier.h"
 #include "baker/plan/known_motion.h"
 #include "baker/plan/placed_trajectory.h"
 #include "baker/plan/quality.h"
+#include "io/shot/chains.h"
 
 namespace ft::inline baker {
 namespace {
@@ -37,6 +39,7 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   if (!spec.body.empty()) request.body = spec.body;
   request.height = spec.height.value_or(0);
   request.meshes = spec.meshes;
+  request.surface = spec.surface;
   request.preroll = shot.preroll / shot.fps;
   request.duration = (shot.last_frame - shot.first_frame) / shot.fps;
   request.first_frame = shot.first_frame;
@@ -187,14 +190,30 @@ bool has_secondaries(const BakePlan& plan, std::size_t primary) {
   });
 }
 
+/// What the kinds plan from: of the secondaries those of this stage, with what carries them among the primaries.
+Shot shot_of_stage(const BakePlan& plan) {
+  Shot out = plan.shot();
+  for (std::size_t p = out.primaries.size(); p < plan.primaries.size(); ++p) {
+    out.primaries.emplace_back();
+    out.primaries.back().name = plan.primaries[p].name;
+  }
+  const std::vector<int> stages = stages_of(out.secondaries);
+  Secondaries own;
+  for (std::size_t i = 0; i < stages.size(); ++i)
+    if (stages[i] == plan.stage) own.push_back(out.secondaries[i]);
+  out.secondaries = std::move(own);
+  return out;
+}
+
 /// Groups of all kinds, by their first primary; behind them primaries that yield and have no secondary.
-Status plan_systems(const Shot& shot, BakePlan& plan) {
+Status plan_systems(BakePlan& plan) {
+  const Shot shot = shot_of_stage(plan);
   for (const SystemKind* kind : system_kinds()) {
     auto groups = kind->plan(shot, plan);
     if (!groups) return groups.error();
     for (auto& group : *groups) plan.groups.push_back(std::move(group));
   }
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p)
+  for (std::size_t p = 0; p < plan.primaries.size() && plan.stage == 0; ++p)
     if (plan.primaries[p].hybrid && !has_secondaries(plan, p))
       plan.groups.push_back(std::make_unique<BodyGroup>(p, shot.first_frame, shot.preroll, shot.fps));
   std::stable_sort(plan.groups.begin(), plan.groups.end(),
@@ -202,7 +221,32 @@ Status plan_systems(const Shot& shot, BakePlan& plan) {
   return {};
 }
 
+/// So that what is wrong with a later stage shows now and not when the first is baked.
+Status plan_later_stages(BakePlan& plan) {
+  for (int stage = 1; stage < plan.stage_count; ++stage) {
+    const BakePlan& before = stage == 1 ? plan : plan.later.back();
+    std::vector<PrimaryPlan> carriers;
+    for (const Carrier& carrier : carriers_of(before)) carriers.push_back(standing_carrier(carrier, before));
+    auto next = plan_next_stage(before, std::move(carriers));
+    if (!next) return next.error();
+    plan.later.push_back(std::move(*next));
+  }
+  return {};
+}
+
 }  // namespace
+
+Result<BakePlan> plan_next_stage(const BakePlan& before, std::vector<PrimaryPlan> carriers) {
+  BakePlan plan;
+  plan.inputs = before.inputs;
+  plan.stage = before.stage + 1;
+  plan.stage_count = before.stage_count;
+  plan.primaries = before.primaries;
+  plan.import_seconds = before.import_seconds;
+  for (PrimaryPlan& carrier : carriers) plan.primaries.push_back(std::move(carrier));
+  if (const Status planned = plan_systems(plan); !planned) return planned.error();
+  return plan;
+}
 
 Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache) {
   BakePlan plan;
@@ -224,8 +268,10 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
   if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
-  if (const Status planned = plan_systems(shot, plan); !planned) return planned.error();
+  for (const int stage : stages_of(shot.secondaries)) plan.stage_count = std::max(plan.stage_count, stage + 1);
+  if (const Status planned = plan_systems(plan); !planned) return planned.error();
   if (plan.groups.empty()) return usage_error("no secondary is on any primary", shot.file.string());
+  if (const Status planned = plan_later_stages(plan); !planned) return planned.error();
   return plan;
 }
 

@@ -22,6 +22,7 @@ namespace ft::inline baker {
 
 struct PrimaryPlan {
   std::string name;
+  std::string caches;  ///< of a secondary that was baked in an earlier stage (carrier.h): the name of its system
   std::shared_ptr<const Trajectory> trajectory;
   CharacterInfo info;
   TeleportScan scan;
@@ -35,6 +36,9 @@ struct PrimaryPlan {
   std::shared_ptr<const PlacedCharacter> character;
   ImportRequest request;
   Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+
+  /// The name of the cached body.
+  const std::string& cache_name() const { return caches.empty() ? name : caches; }
 };
 
 struct BakePlan {
@@ -43,7 +47,12 @@ struct BakePlan {
   SystemGroups groups;
   std::vector<std::string> notes;  ///< what is odd and yet allowed; the same for the same inputs
   double import_seconds = 0;       ///< wall
+  /// Of a chain: which stage this is, from 0, and of how many. Its groups are those of this stage alone, and behind the
+  /// shot's primaries stands what was baked in earlier ones.
+  int stage = 0, stage_count = 1;
+  std::vector<BakePlan> later;  ///< of the first stage: those after it, with what they are on standing as it starts
 
+  bool is_last_stage() const { return stage + 1 == stage_count; }
   const Shot& shot() const { return inputs.shot; }
   /// First frame that is written; frames before it are pre-roll.
   int first_written() const { return shot().write_preroll ? shot().first_frame - shot().preroll : shot().first_frame; }
@@ -52,7 +61,10 @@ struct BakePlan {
 
 using Importer = std::function<Result<ImportedPrimary>(const ImportRequest&)>;
 
-/// import_cache: folder for import results, may be empty.
+/// The first stage, of most shots the only one. import_cache: folder for import results, may be empty.
 Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const std::filesystem::path& import_cache);
+
+/// The stage after `before`, in which its systems are bodies, too: `carriers` (carrier.h).
+Result<BakePlan> plan_next_stage(const BakePlan& before, std::vector<PrimaryPlan> carriers);
 
 }  // namespace ft::inline baker

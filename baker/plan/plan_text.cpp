@@ -12,6 +12,7 @@ namespace {
 std::uint64_t cache_bytes(const BakePlan& plan) {
   std::uint64_t sum = 0;
   const auto frames = static_cast<std::uint64_t>(plan.written_count());
+  for (const BakePlan& later : plan.later) sum += cache_bytes(later);
   for (const auto& group : plan.groups) {
     for (const SystemOutput& output : group->outputs)
       for (const std::string& format : plan.shot().cache_formats)
@@ -64,6 +65,18 @@ std::vector<std::string> character_lines(const CharacterInfo& info) {
   return out;
 }
 
+std::string stage_line(const BakePlan& plan) {
+  std::string out = fmt::format("stage {} of {}: ", plan.stage + 1, plan.stage_count);
+  bool first = true;
+  for (const auto& group : plan.groups)
+    for (const SystemOutput& output : group->outputs) {
+      out += fmt::format("{}{} \"{}\" on \"{}\"", first ? "" : ", ", group->role(), output.mesh->name,
+                         plan.primaries[output.primary].name);
+      first = false;
+    }
+  return out;
+}
+
 std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder) {
   const Shot& shot = plan.shot();
   std::vector<std::string> out;
@@ -71,7 +84,7 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
                             shot.file.filename().string(), shot.first_frame, shot.last_frame, shot.fps,
                             (shot.last_frame - shot.first_frame) / shot.fps, shot.preroll,
                             shot.write_preroll ? ", written" : ""));
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+  for (std::size_t p = 0; p < shot.primaries.size(); ++p) {
     const PrimaryPlan& primary = plan.primaries[p];
     const PrimarySpec& spec = shot.primaries[p];
     out.push_back(fmt::format("primary \"{}\": {}{}, {:.3g} m tall, {} parts, {}", primary.name,
@@ -81,9 +94,19 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
                               primary.mass.text()));
     for (const std::string& line : character_lines(primary.info)) out.push_back(line);
   }
-  for (const auto& group : plan.groups)
-    for (std::string& line : group->lines(plan)) out.push_back(std::move(line));
-  for (const std::string& note : plan.notes) out.push_back("note: " + note);
+  std::vector<std::string> notes;
+  const auto add_stage = [&](const BakePlan& stage) {
+    if (stage.stage_count > 1) out.push_back(stage_line(stage));
+    for (const auto& group : stage.groups)
+      for (std::string& line : group->lines(stage)) out.push_back(std::move(line));
+    for (const std::string& note : stage.notes)
+      if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  };
+  add_stage(plan);
+  for (const BakePlan& later : plan.later) add_stage(later);
+  if (!plan.later.empty())
+    out.push_back("how a body that is baked in an earlier stage moves is not known yet: here it stands as it starts");
+  for (const std::string& note : notes) out.push_back("note: " + note);
   std::string formats;
   for (const std::string& f : shot.cache_formats) formats += (formats.empty() ? "" : ", ") + f;
   out.push_back(fmt::format("caches: {} frames as {}, about {}, in {}", plan.written_count(), formats,

@@ -10,6 +10,9 @@
 
 namespace ft::inline baker {
 
+/// Which stage of a chain it is, and what is baked in it: "stage 2 of 2: cloth "badge" on "cloth.robe"".
+std::string stage_line(const BakePlan& plan);
+
 std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem::path& folder);
 /// "0.4 x 0.9 x 0.3 m".
 std::string box_text(const Box& box);

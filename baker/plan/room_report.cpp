@@ -13,16 +13,32 @@ namespace {
 /// Where less of a part is absent, no line is made of it.
 constexpr double k_notable_share = 0.05;
 
+void sort_worst_first(RoomReport& report) {
+  std::stable_sort(report.places.begin(), report.places.end(),
+                   [](const RoomPlace& a, const RoomPlace& b) { return a.clearance < b.clearance; });
+  std::stable_sort(report.absent.begin(), report.absent.end(),
+                   [](const AbsentPlace& a, const AbsentPlace& b) { return a.share > b.share; });
+}
+
 }  // namespace
+
+RoomReport merged(std::span<const RoomReport> stages) {
+  RoomReport out;
+  for (const RoomReport& stage : stages) {
+    out.places.insert(out.places.end(), stage.places.begin(), stage.places.end());
+    out.absent.insert(out.absent.end(), stage.absent.begin(), stage.absent.end());
+    out.frame_count += stage.frame_count;
+    out.seconds += stage.seconds;
+  }
+  sort_worst_first(out);
+  return out;
+}
 
 RoomReport find_room(const BakePlan& plan) {
   const auto clock = std::chrono::steady_clock::now();
   RoomReport report;
   for (const auto& group : plan.groups) group->add_room(plan, report);
-  std::stable_sort(report.places.begin(), report.places.end(),
-                   [](const RoomPlace& a, const RoomPlace& b) { return a.clearance < b.clearance; });
-  std::stable_sort(report.absent.begin(), report.absent.end(),
-                   [](const AbsentPlace& a, const AbsentPlace& b) { return a.share > b.share; });
+  sort_worst_first(report);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return report;
 }

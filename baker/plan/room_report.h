@@ -4,6 +4,7 @@
 // cloth.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct RoomReport {
 /// All frames of the shot, the pre-roll's as well. Pairs of which neither part wears cloth do not count, nor do parts
 /// that no garment meets.
 RoomReport find_room(const BakePlan& plan);
+
+/// Of the stages of a bake.
+RoomReport merged(std::span<const RoomReport> stages);
 
 std::vector<std::string> room_lines(const RoomReport& report, std::size_t most = 6);
 Json to_json(const RoomReport& report);

@@ -1,6 +1,7 @@
 // Names in the output folder, in one place.
 //   manifest.json  report.json  SYSTEM.abc  SYSTEM.pc2  SYSTEM.obj      what a user takes
-//   .state/        checkpoint  lock  import/                          what the program needs to go on
+//   .state/        checkpoint  stages  SYSTEM.motion.pc2  lock  import/                          what the program needs
+//   to go on
 #pragma once
 
 #include <filesystem>
@@ -14,6 +15,9 @@ struct BakeFolder {
   std::filesystem::path state() const { return path / ".state"; }
   std::filesystem::path lock() const { return state() / "lock"; }
   std::filesystem::path checkpoint() const { return state() / "checkpoint"; }
+  /// What earlier stages have come to, and how each of their systems moves in all frames, for the stages after them.
+  std::filesystem::path stages() const { return state() / "stages"; }
+  std::filesystem::path motion(const std::string& system) const { return state() / (system + ".motion.pc2"); }
   std::filesystem::path import_cache() const { return state() / "import"; }
   std::filesystem::path manifest() const { return path / "manifest.json"; }
   std::filesystem::path report() const { return path / "report.json"; }

@@ -19,7 +19,11 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   const auto path = folder / system.caches[0].file;
   auto reader = open_cache(path);
   if (!reader) return reader.error();
-  CacheTrack track{system.name, std::move(*reader), {}, {}, system.pattern_scale, system.weld};
+  CacheTrack track{.name = system.name,
+                   .reader = std::move(*reader),
+                   .pattern_scale = system.pattern_scale,
+                   .sheet = system.sheet,
+                   .weld = system.weld};
   auto rest = read_obj(folder / system.topology);
   if (!rest) return rest.error();
   track.rest = std::move(*rest);

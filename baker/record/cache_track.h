@@ -14,10 +14,11 @@ namespace ft::inline baker {
 
 struct CacheTrack {
   std::string name;
-  std::unique_ptr<CacheReader> reader;
-  Mesh rest;                        ///< from the topology file: rest shape, in the garment's own order [m]
-  std::vector<Triangle> triangles;  ///< of rest
-  double pattern_scale = 0;         ///< m per unit of its uvs, which are the rest shape then; 0: the positions are
+  std::unique_ptr<CacheReader> reader{};
+  Mesh rest{};                        ///< from the topology file: rest shape, in the garment's own order [m]
+  std::vector<Triangle> triangles{};  ///< of rest
+  double pattern_scale = 0;           ///< m per unit of its uvs, which are the rest shape then; 0: the positions are
+  bool sheet = false;                 ///< it has no inside
   double weld = 0;  ///< what lies nearer than this at rest was joined for the simulation [m]; 0: nothing
 
   /// Appends the positions of a frame, counted from 0 [m].

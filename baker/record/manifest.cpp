@@ -26,6 +26,7 @@ Json system_json(const ManifestSystem& system) {
   if (system.pattern_scale > 0) out["pattern_scale"] = system.pattern_scale;
   if (system.weld > 0) out["weld"] = system.weld;
   if (!system.meets.empty()) out["meets"] = system.meets;
+  if (system.sheet) out["sheet"] = true;
   return out;
 }
 
@@ -40,6 +41,7 @@ ManifestSystem system_from(const Json& json) {
   out.pattern_scale = json.value("pattern_scale", 0.0);
   out.weld = json.value("weld", 0.0);
   out.meets = json.value("meets", std::vector<std::string>());
+  out.sheet = json.value("sheet", false);
   for (const Json& c : json.at("caches"))
     out.caches.push_back({c.at("format").get<std::string>(), c.at("file").get<std::string>(),
                           c.at("bytes").get<std::uint64_t>(), c.at("content").get<std::string>()});

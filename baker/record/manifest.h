@@ -41,6 +41,7 @@ struct ManifestSystem {
   /// Of a secondary that was solved with several primaries: the systems that are their colliders ("collider", or "body"
   /// where that is as drawn). Cloths with the same list were solved together. Empty: its primary's.
   std::vector<std::string> meets{};
+  bool sheet = false;  ///< of a body: it has no inside
 };
 
 /// A file beside the caches, of an adjusted motion.

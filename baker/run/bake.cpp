@@ -11,8 +11,8 @@
 #include "baker/plan/quality.h"
 #include "baker/plan/start_report.h"
 #include "baker/record/bake_folder.h"
-#include "baker/run/cache_set.h"
-#include "baker/run/hybrid_files.h"
+#include "baker/run/bake_stage.h"
+#include "baker/run/finished_stages.h"
 #include "baker/run/interaction.h"
 #include "baker/run/lock_file.h"
 #include "baker/run/output_names.h"
@@ -22,9 +22,6 @@
 
 namespace ft::inline baker {
 namespace {
-
-/// Of the places without room, so many are told before the first frame; report.json has them all.
-constexpr std::size_t k_room_lines = 5;
 
 /// An error, or after a signal the interruption that is behind it (Ctrl-C reaches the import's child, too).
 BakeResult failed(const Error& error, const ShotFaults& faults = {}) {
@@ -51,40 +48,6 @@ Status check_writable(const std::filesystem::path& folder) {
                         "choose another with --out");
   if (::access(nearest.c_str(), W_OK | X_OK) != 0)
     return output_error("the output folder cannot be written", folder.string(), "choose another with --out");
-  return {};
-}
-
-void warn_of_space(const BakeFolder& folder, std::uint64_t expected, Progress& progress) {
-  std::error_code error;
-  const auto space = std::filesystem::space(folder.path, error);
-  if (!error && space.available < expected)
-    progress.note(fmt::format("the caches need about {}, and {} has only {} free", size_text(expected),
-                              folder.path.string(), size_text(space.available)));
-}
-
-/// Files of an earlier bake that this one does not write: a cache that stays behind would be taken for a new one.
-Status remove_left_behind(const BakeFolder& folder, const Manifest& before, const std::vector<ManifestSystem>& systems,
-                          const std::vector<ManifestFile>& files) {
-  const auto names = [](const std::vector<ManifestSystem>& of_systems, const std::vector<ManifestFile>& of_files) {
-    std::vector<std::string> out;
-    for (const ManifestSystem& s : of_systems) {
-      out.push_back(s.topology);
-      for (const ManifestCache& c : s.caches) out.push_back(c.file);
-    }
-    for (const ManifestFile& f : of_files) out.push_back(f.file);
-    return out;
-  };
-  const std::vector<std::string> keep = names(systems, files);
-  for (const std::string& file : names(before.systems, before.files)) {
-    // Names come from a file on disk: only plain names inside the folder are ours to remove.
-    if (file.empty() || file.find('/') != std::string::npos || file == "." || file == "..") continue;
-    if (std::find(keep.begin(), keep.end(), file) != keep.end()) continue;
-    std::error_code error;
-    std::filesystem::remove(folder.path / file, error);
-    if (error)
-      return output_error("cannot remove a cache of the earlier bake: " + error.message(),
-                          (folder.path / file).string());
-  }
   return {};
 }
 
@@ -126,17 +89,14 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
     return usage_error("the interrupted bake cannot be resumed: " + (reasons.empty() ? "its inputs changed" : reasons),
                        folder.path.string(), "run without --resume to start anew");
   }
-  return std::optional<Checkpoint>(std::move(*checkpoint));
-}
-
-Result<Solvers> make_solvers(BakePlan& plan, const SolverFactory& factory) {
-  Solvers out;
-  for (const auto& group : plan.groups) {
-    auto solver = factory(*group);
-    if (!solver) return solver.error();
-    out.push_back(std::move(*solver));
+  if (checkpoint->stage > 0) {
+    const auto finished = read_finished_stages(folder);
+    if (!finished || finished->fingerprint != inputs.fingerprint || finished->last + 1 != checkpoint->stage) {
+      progress.note("what its earlier stages have come to is gone or spoilt; starting anew");
+      return std::optional<Checkpoint>();
+    }
   }
-  return out;
+  return std::optional<Checkpoint>(std::move(*checkpoint));
 }
 
 std::string closing(const Manifest& manifest, const BakeFolder& folder) {
@@ -152,7 +112,7 @@ std::string closing(const Manifest& manifest, const BakeFolder& folder) {
 }
 
 BakeResult run(const BakeOptions& options, const BakeServices& services, const BakeFolder& folder, BakeInputs inputs,
-               Standing standing, Progress& progress) {
+               const Standing& standing, Progress& progress) {
   if (const Status made = make_folders(folder.state()); !made) {
     Error error = made.error();
     if (error.hint.empty()) error.hint = "choose another folder with --out";
@@ -165,39 +125,27 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   Manifest manifest = manifest_of(inputs);
   auto plan = make_plan(std::move(inputs), services.importer, folder.import_cache());
   if (!plan) return failed(plan.error());
-  for (const std::string& note : plan->notes) progress.note(note);
-  manifest.notes = plan->notes;
-  const RoomReport room = find_room(*plan);
-  for (const std::string& line : room_lines(room, k_room_lines)) progress.note(line);
-  for (std::string& line : start_lines(find_start(*plan))) {
-    progress.note(line);
-    if (plan->shot().preroll == 0) manifest.notes.push_back(std::move(line));
-  }
-  auto solvers = make_solvers(*plan, services.make_solver);
-  if (!solvers) return failed(solvers.error());
-  if (const int signal = signal_received(); signal != 0)
-    return failed(Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}});
-
-  CacheSet caches(*plan, *solvers, folder.path);
-  for (const auto& group : plan->groups)
-    for (SystemOutput& output : group->outputs) output.mesh.reset();  // the caches have them, and forget them in turn
-  warn_of_space(folder, caches.expected_bytes(), progress);
-  auto files = write_hybrid_files(*plan, folder.path, manifest.notes);
-  if (!files) return failed(files.error());
-  manifest.files = std::move(*files);
-  for (const auto& group : plan->groups) {
-    auto beside = group->files(*plan, manifest.notes);
-    if (!beside) return failed(beside.error());
-    for (const WrittenFile& file : *beside) {
-      if (const Status s = write_file_durably(folder.path / file.name, file.bytes); !s) return failed(s.error());
-      manifest.files.push_back({file.name, file.bytes.size(), hash_bytes(file.bytes).hex()});
+  plan->later.clear();
+  StageBake stages{services, folder, standing.before, std::move(*checkpoint), progress};
+  WalkResult result{std::move(manifest), {}, 0};
+  for (;;) {
+    const std::vector<Carrier> carriers = plan->is_last_stage() ? std::vector<Carrier>() : carriers_of(*plan);
+    auto walked = stages.bake(*plan, result.manifest);
+    if (!walked && plan->stage == 0) return failed(walked.error());
+    if (!walked) {
+      result.status = walked.error();
+      break;
     }
+    walked->seconds += result.seconds;
+    result = std::move(*walked);
+    if (!result.status || plan->is_last_stage()) break;
+    auto next = stages.plan_next(*plan, carriers);
+    if (!next) {
+      result.status = next.error();
+      break;
+    }
+    plan = std::move(next);
   }
-  if (!*checkpoint)
-    if (const Status removed = remove_left_behind(folder, standing.before, caches.systems(), manifest.files); !removed)
-      return failed(removed.error());
-  WalkResult result =
-      walk(*plan, *solvers, caches, folder, std::move(manifest), std::move(*checkpoint), room, progress);
   Status status = result.status;
   if (status) status = judge(result.manifest, gates_of(plan->shot()));
   BakeResult out;
@@ -238,7 +186,12 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
     if (!plan) return failed(plan.error());
     BakeResult out{0, plan_lines(*plan, folder.path), {}};
     for (std::string& line : room_lines(find_room(*plan), k_room_lines)) out.lines.push_back(std::move(line));
-    const StartReport start = find_start(*plan);
+    StartReport start = find_start(*plan);
+    for (const BakePlan& later : plan->later) {
+      StartReport own = find_start(later);
+      start.garment_count += own.garment_count;
+      std::move(own.bad.begin(), own.bad.end(), std::back_inserter(start.bad));
+    }
     for (std::string& line : start_lines(start)) out.lines.push_back("start: " + std::move(line));
     if (start.bad.empty() && start.garment_count > 0)
       out.lines.push_back("start: no garment crosses the body, itself or another");
@@ -256,7 +209,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   if (standing.kind == Standing::Kind::k_stale) progress.note(describe(standing, folder));
   if (standing.kind == Standing::Kind::k_unfinished && !options.resume)
     progress.note("an earlier bake was not finished; starting anew (--resume goes on with it)");
-  return run(options, services, folder, std::move(*inputs), std::move(standing), progress);
+  return run(options, services, folder, std::move(*inputs), standing, progress);
 }
 
 }  // namespace ft::inline baker

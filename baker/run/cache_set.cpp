@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "baker/core/file.h"
+#include "baker/record/bake_folder.h"
 #include "baker/record/version.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
@@ -24,8 +25,9 @@ std::shared_ptr<const Mesh> shared(Mesh mesh) {
 
 }  // namespace
 
-CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder)
-    : plan_(plan), solvers_(solvers), folder_(std::move(folder)) {
+CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder,
+                   std::vector<ManifestSystem> earlier)
+    : plan_(plan), solvers_(solvers), folder_(std::move(folder)), earlier_(std::move(earlier)) {
   CHECK(plan.groups.size() == solvers.size());
   for (std::size_t g = 0; g < solvers.size(); ++g) {
     const Solver& solver = *solvers[g];
@@ -54,8 +56,9 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
     if (!slices.empty()) continue;
     if (!collider.empty() && plan.groups[g]->has_feasible_collider()) {
       Source source{.group = g, .collider = true, .primary = plan.groups[g]->primary};
-      source.mesh = shared(make_triangle_mesh(primary.name + ".collider", collider, solver.collider_triangles()));
-      add(std::move(source), primary.name + ".collider", "collider", false);
+      const std::string name = primary.name + ".collider";
+      source.mesh = shared(make_triangle_mesh(name, collider, solver.collider_triangles()));
+      add(std::move(source), name, "collider", false);
     }
     add_body(g, plan.groups[g]->primary);
   }
@@ -63,7 +66,14 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
 
 std::vector<std::string> CacheSet::names() const {
   std::vector<std::string> out;
-  for (const ManifestSystem& system : systems_) out.push_back(system.name);
+  for (const auto* list : {&earlier_, &systems_})
+    for (const ManifestSystem& system : *list) out.push_back(system.name);
+  return out;
+}
+
+std::vector<ManifestSystem> CacheSet::systems() const {
+  std::vector<ManifestSystem> out = earlier_;
+  out.insert(out.end(), systems_.begin(), systems_.end());
   return out;
 }
 
@@ -80,12 +90,13 @@ void CacheSet::add_body(std::size_t group, std::size_t primary) {
   const PrimaryPlan& body = plan_.primaries[primary];
   const bool all_formats = std::any_of(plan_.groups.begin(), plan_.groups.end(),
                                        [&](const auto& g) { return g->primary == primary && g->outputs.empty(); });
-  if (std::any_of(systems_.begin(), systems_.end(), [&](const ManifestSystem& s) { return s.name == body.name; }))
-    return;
+  const std::vector<std::string> taken = names();
+  if (std::find(taken.begin(), taken.end(), body.cache_name()) != taken.end()) return;
   Source source{.group = group, .primary = primary};
   source.mesh =
       shared(make_triangle_mesh(body.name, bind_pose_of(*body.trajectory), body.trajectory->surface().triangles));
   add(std::move(source), body.name, "body", all_formats);
+  systems_.back().sheet = has_sheets(body.trajectory->surface().parts);
 }
 
 void CacheSet::add(Source source, std::string name, const std::string& role, bool all_formats) {
@@ -106,8 +117,9 @@ void CacheSet::add(Source source, std::string name, const std::string& role, boo
   systems_.push_back(std::move(system));
 }
 
-Status CacheSet::open(int keep_frames) {
+Status CacheSet::open(int last_kept) {
   CHECK(writers_.empty());
+  const int keep_frames = std::max(0, last_kept - plan_.first_written() + 1);
   const std::string version = "followthrough " + program_version();
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     if (keep_frames == 0)
@@ -126,8 +138,21 @@ Status CacheSet::open(int keep_frames) {
       CHECK((*writer)->frame_count() == keep_frames);
       writers.push_back(std::move(*writer));
     }
+    if (const Status opened = open_motion(i, info, std::max(0, last_kept - begin() + 1)); !opened) return opened;
     sources_[i].mesh.reset();
   }
+  return {};
+}
+
+Status CacheSet::open_motion(std::size_t system, const CacheInfo& info, int keep_frames) {
+  motions_.emplace_back();
+  if (plan_.is_last_stage() || sources_[system].garment < 0) return {};
+  CacheInfo all = info;
+  all.first_frame = begin();
+  all.frame_count = plan_.shot().last_frame - begin() + 1;
+  auto writer = find_cache_format("pc2")->open_writer(BakeFolder{folder_}.motion(info.system), all, keep_frames);
+  if (!writer) return writer.error();
+  motions_.back() = std::move(*writer);
   return {};
 }
 
@@ -188,7 +213,12 @@ std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::
 
 Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
   for (std::size_t i = 0; i < writers_.size(); ++i) {
+    const bool is_cached = snapshot.frame >= plan_.first_written();
+    if (!is_cached && !motions_[i]) continue;
     const std::vector<Vec3> x = converted<Vec3, Vec3f>(snapshot.positions[i]);
+    if (motions_[i])
+      if (const Status written = motions_[i]->write_frame(x, {}); !written) return written;
+    if (!is_cached) continue;
     std::vector<Vec3> v;
     if (sources_[i].garment >= 0)
       v = velocities_of(sources_[i], snapshot.frame, x,
@@ -203,7 +233,11 @@ Status CacheSet::close() {
   for (auto& writers : writers_)
     for (auto& writer : writers)
       if (const Status closed = writer->close(); !closed) return closed;
+  for (auto& motion : motions_)
+    if (motion)
+      if (const Status closed = motion->close(); !closed) return closed;
   writers_.clear();
+  motions_.clear();
   for (ManifestSystem& system : systems_)
     for (ManifestCache& cache : system.caches) {
       const auto content = hash_file(folder_ / cache.file);

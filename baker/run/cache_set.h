@@ -24,20 +24,23 @@ struct Snapshot {
 
 class CacheSet {
  public:
-  CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder);
+  /// earlier: systems of earlier stages, whose names are taken.
+  CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder,
+           std::vector<ManifestSystem> earlier = {});
 
-  /// Once. keep_frames: frames that files of an interrupted bake keep; 0: new files, and the OBJ of each system beside
-  /// them.
-  Status open(int keep_frames);
+  /// Once. last_kept: last frame that files of an interrupted bake keep. Files that keep none are new, and so is the
+  /// OBJ of each system beside them.
+  Status open(int last_kept);
   Snapshot take(std::span<const State> states) const;
   /// What a group's systems do not meet, in the numbers of the cached colliders.
   std::vector<AbsentRuns> as_cached(std::size_t group, std::vector<AbsentRuns> absent) const;
-  /// before: the snapshot of the frame before, for the velocities of what moves by itself; null: they are zero.
+  /// Frames of the pre-roll go where all are recorded, and into caches if the shot says so. before: the snapshot of the
+  /// frame before, for the velocities of what moves by itself; null: they are zero.
   Status write(const Snapshot& snapshot, const Snapshot* before);
   Status close();
 
-  /// For the manifest; with sizes and content hashes once close() has succeeded.
-  const std::vector<ManifestSystem>& systems() const { return systems_; }
+  /// For the manifest, with those of earlier stages in front; sizes and content hashes once close() has succeeded.
+  std::vector<ManifestSystem> systems() const;
   /// Estimate for all frames [bytes].
   std::uint64_t expected_bytes() const;
 
@@ -60,6 +63,8 @@ class CacheSet {
   void add_body(std::size_t group, std::size_t primary);
   std::vector<std::string> names() const;
   void add(Source source, std::string name, const std::string& role, bool all_formats);
+  int begin() const { return plan_.shot().first_frame - plan_.shot().preroll; }
+  Status open_motion(std::size_t system, const CacheInfo& info, int keep_frames);
 
   const BakePlan& plan_;
   const Solvers& solvers_;
@@ -67,7 +72,10 @@ class CacheSet {
   std::vector<std::vector<ColliderSlice>> slices_;  ///< per group; empty without a joint body
   std::vector<Source> sources_;
   std::vector<ManifestSystem> systems_;
+  std::vector<ManifestSystem> earlier_;
   std::vector<std::vector<std::unique_ptr<CacheWriter>>> writers_;
+  /// Per system: of its motion in all frames, for later stages; null: none needs it.
+  std::vector<std::unique_ptr<CacheWriter>> motions_;
 };
 
 }  // namespace ft::inline baker

@@ -5,14 +5,15 @@
 namespace ft::inline baker {
 namespace {
 
-constexpr std::uint64_t k_magic = 0x3130454b41425446;  // "FTBAKE01"
+constexpr std::uint64_t k_magic = 0x3230454b41425446;  // "FTBAKE02"
 
 }  // namespace
 
 ByteParts parts_of(const Checkpoint& checkpoint) {
   ByteParts out;
   out.write(k_magic).write(checkpoint.fingerprint.low).write(checkpoint.fingerprint.high);
-  out.write(static_cast<std::int64_t>(checkpoint.frame)).write(static_cast<std::uint64_t>(checkpoint.states.size()));
+  out.write(static_cast<std::int64_t>(checkpoint.stage)).write(static_cast<std::int64_t>(checkpoint.frame));
+  out.write(static_cast<std::uint64_t>(checkpoint.states.size()));
   for (const State& state : checkpoint.states) {
     ByteParts parts = parts_of(state);
     out.write(static_cast<std::uint64_t>(parts.size())).append(std::move(parts));
@@ -23,6 +24,7 @@ ByteParts parts_of(const Checkpoint& checkpoint) {
     row["profile"] = to_json(report.profile);
     reports.push_back(std::move(row));
   }
+  out.write_string(checkpoint.manifest);
   out.write_string(reports.dump(-1, ' ', false, Json::error_handler_t::replace));
   const Hash128 content = hash_bytes(out.parts());
   out.write(content.low).write(content.high);
@@ -45,6 +47,7 @@ Result<Checkpoint> load_checkpoint(std::span<const std::byte> data) {
   Checkpoint out;
   out.fingerprint.low = in.read<std::uint64_t>();
   out.fingerprint.high = in.read<std::uint64_t>();
+  out.stage = static_cast<int>(in.read<std::int64_t>());
   out.frame = static_cast<int>(in.read<std::int64_t>());
   const auto count = in.read<std::uint64_t>();
   for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
@@ -52,6 +55,7 @@ Result<Checkpoint> load_checkpoint(std::span<const std::byte> data) {
     if (!state) return state.error();
     out.states.push_back(std::move(*state));
   }
+  out.manifest = in.read_string();
   auto reports = parse_json(in.read_string(), "checkpoint");
   if (!in.ok() || in.remaining() != 0 || !reports || !reports->is_array())
     return refuse("does not hold what it states");

@@ -16,9 +16,11 @@ namespace ft::inline baker {
 
 struct Checkpoint {
   Hash128 fingerprint;               ///< of the bake that it belongs to
+  int stage = 0;                     ///< of a chain; earlier ones are finished, see BakeFolder::stages()
   int frame = 0;                     ///< all states are at this frame
   std::vector<State> states;         ///< one per group of the plan
   std::vector<FrameReport> reports;  ///< of all frames up to this one, profiles included
+  std::string manifest;              ///< of finished stages: what the caches are; else empty
 };
 
 /// What is saved of a checkpoint, which must outlive it.

@@ -10,6 +10,7 @@
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/record/report_json.h"
+#include "baker/run/finished_stages.h"
 #include "baker/run/interaction.h"
 #include "baker/run/signals.h"
 #include "baker/run/writer_thread.h"
@@ -67,8 +68,11 @@ class Walk {
         caches_(caches),
         folder_(folder),
         manifest_(std::move(manifest)),
+        earlier_(std::move(manifest_.frames)),
         room_(room),
-        progress_(progress) {}
+        progress_(progress) {
+    manifest_.frames.clear();
+  }
 
   WalkResult run(std::optional<Checkpoint> from) {
     Status status = start(std::move(from));
@@ -79,11 +83,11 @@ class Walk {
     if (status)
       status = complete();
     else if (status.error().kind != ErrorKind::k_output) {
-      if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) status = written;
+      if (const Status written = write_manifest(); !written) status = written;
       if (status.error().kind == ErrorKind::k_interrupted)
         if (const Status written = write_report(); !written) status = written;
     }
-    return {std::move(manifest_), status, since(clock_)};
+    return {with_earlier_stages(), status, since(clock_)};
   }
 
  private:
@@ -92,6 +96,9 @@ class Walk {
   Status frames();
   Status complete();
   Status write_report() const;
+  /// The manifest with the frames of all stages so far.
+  Manifest with_earlier_stages() const;
+  Status write_manifest() const { return write_text_durably(folder_.manifest(), to_text(with_earlier_stages())); }
   FrameReport advance();
   /// Solvers number the vertices that they simulate, messages those of the garment's file.
   void number_as_in_file(std::size_t group, std::span<Incident> incidents) const;
@@ -101,12 +108,14 @@ class Walk {
   Status emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, bool checkpoint);
   Status save_checkpoint();  ///< of the states as they are
   static Status interrupted(std::string what);
+  int begin() const { return plan_.shot().first_frame - plan_.shot().preroll; }
 
   const BakePlan& plan_;
   const Solvers& solvers_;
   CacheSet& caches_;
   const BakeFolder& folder_;
-  Manifest manifest_;
+  Manifest manifest_;                       ///< its frames are those of this stage
+  const std::vector<FrameReport> earlier_;  ///< frames of the stages before it
   const RoomReport& room_;
   Progress& progress_;
   const Clock::time_point clock_ = Clock::now();
@@ -119,18 +128,18 @@ Status Walk::start(std::optional<Checkpoint> from) {
     states_ = std::move(from->states);
     manifest_.frames = std::move(from->reports);
     CHECK(states_.size() == solvers_.size());
-    const int kept = manifest_.frames.empty() ? 0 : std::max(0, states_[0].frame - plan_.first_written() + 1);
-    return caches_.open(kept);
+    return caches_.open(manifest_.frames.empty() ? begin() - 1 : states_[0].frame);
   }
-  // The old checkpoint goes first: it must never stand beside caches that are not its own.
+  // The old checkpoint goes first: it must never stand beside caches that are not its own. Of the stage before it may
+  // stay, whose caches are closed.
   std::error_code error;
-  std::filesystem::remove(folder_.checkpoint(), error);
+  if (plan_.stage == 0) std::filesystem::remove(folder_.checkpoint(), error);
   if (error) return output_error("cannot remove the old checkpoint: " + error.message(), folder_.checkpoint().string());
   for (const auto& solver : solvers_) states_.push_back(solver->initial_state());
-  for (const State& state : states_) CHECK(state.frame == plan_.shot().first_frame - plan_.shot().preroll);
+  for (const State& state : states_) CHECK(state.frame == begin());
   manifest_.systems = caches_.systems();
-  if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
-  return caches_.open(0);
+  if (const Status written = write_manifest(); !written) return written;
+  return caches_.open(begin() - 1);
 }
 
 void Walk::number_as_in_file(std::size_t group, std::span<Incident> incidents) const {
@@ -161,16 +170,14 @@ Status Walk::emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, 
     return Error{ErrorKind::k_diverged,
                  "the solver returned positions that are not finite; nothing of this frame was written",
                  fmt::format("frame {}", snapshot->frame), "try more substeps ([solver] max_substeps)"};
-  if (snapshot->frame >= plan_.first_written()) {
-    const Status taken = writer_.submit([this, snapshot, before] { return caches_.write(*snapshot, before.get()); });
-    if (!taken) return taken;
-  }
+  const Status taken = writer_.submit([this, snapshot, before] { return caches_.write(*snapshot, before.get()); });
+  if (!taken) return taken;
   if (!checkpoint) return {};
   return save_checkpoint();
 }
 
 Status Walk::save_checkpoint() {
-  Checkpoint now{plan_.inputs.fingerprint, states_[0].frame, states_, manifest_.frames};
+  Checkpoint now{plan_.inputs.fingerprint, plan_.stage, states_[0].frame, states_, manifest_.frames, {}};
   return writer_.submit(
       [this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), parts_of(now).parts()); });
 }
@@ -194,7 +201,7 @@ Status Walk::settle() {
     }
     if (!any) break;
     pace.add(since(clock));
-    progress_.frame({report, 0, total, true, since(clock), pace.mean() * total});
+    progress_.frame({report, plan_.stage * total, plan_.stage_count * total, true, since(clock), pace.mean() * total});
     if (const Status saved = save_checkpoint(); !saved) return saved;
   }
   for (std::size_t g = 0; g < solvers_.size(); ++g) {
@@ -218,7 +225,7 @@ Status Walk::interrupted(std::string what) {
 
 Status Walk::frames() {
   const Shot& shot = plan_.shot();
-  const int begin = shot.first_frame - shot.preroll, total = shot.last_frame - begin;
+  const int total = shot.last_frame - begin();
   int vertices = 0;
   for (const auto& solver : solvers_)
     for (int s = 0; s < solver->system_count(); ++s) vertices += solver->system_mesh(s).vertex_count();
@@ -250,8 +257,8 @@ Status Walk::frames() {
     if (const Status emitted = emit(now, before, checkpoint); !emitted) return emitted;
     before = std::move(now);
     pace.add(since(clock));
-    progress_.frame({report, report.frame - begin, total, report.frame < shot.first_frame, since(clock),
-                     pace.mean() * (shot.last_frame - report.frame)});
+    progress_.frame({report, plan_.stage * total + report.frame - begin(), plan_.stage_count * total,
+                     report.frame < shot.first_frame, since(clock), pace.mean() * (shot.last_frame - report.frame)});
   }
   return {};
 }
@@ -259,21 +266,33 @@ Status Walk::frames() {
 Status Walk::complete() {
   if (const Status closed = caches_.close(); !closed) return closed;
   manifest_.systems = caches_.systems();
+  if (!plan_.is_last_stage()) {
+    const Manifest whole = with_earlier_stages();
+    return finish_stage(folder_, {plan_.inputs.fingerprint, plan_.stage, whole});
+  }
   if (const Status written = write_report(); !written) return written;
   for (std::string& note : untouched_lines(interactions(manifest_, plan_.primaries)))
     manifest_.notes.push_back(std::move(note));
   manifest_.complete = true;
-  if (const Status written = write_text_durably(folder_.manifest(), to_text(manifest_)); !written) return written;
+  if (const Status written = write_manifest(); !written) return written;
   std::error_code ignored;  // a checkpoint of a complete bake does no harm
   std::filesystem::remove(folder_.checkpoint(), ignored);
+  forget_stages(folder_, manifest_);
   return {};
+}
+
+Manifest Walk::with_earlier_stages() const {
+  Manifest out = manifest_;
+  out.frames = merged(earlier_, manifest_.frames);
+  return out;
 }
 
 Status Walk::write_report() const {
   FrameProfile sum;
   std::vector<double> totals;
   Json frames = Json::array();
-  for (const FrameReport& frame : manifest_.frames) {
+  const Manifest whole = with_earlier_stages();
+  for (const FrameReport& frame : whole.frames) {
     frames.push_back(
         {{"frame", frame.frame}, {"milliseconds", 1e3 * frame.profile.total}, {"profile", to_json(frame.profile)}});
     if (frame.substeps > 0) totals.push_back(frame.profile.total);
@@ -290,7 +309,7 @@ Status Walk::write_report() const {
   out["peak_memory_bytes"] = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   out["profile"] = to_json(sum);
   out["room"] = to_json(room_);
-  out["interaction"] = to_json(interactions(manifest_, plan_.primaries), plan_.primaries);
+  out["interaction"] = to_json(interactions(whole, plan_.primaries), plan_.primaries);
   out["frames"] = std::move(frames);
   return write_text_durably(folder_.report(), to_text(out));
 }

@@ -20,11 +20,19 @@ constexpr double k_pressed_flat = 0.6;
 AbsentVertices::AbsentVertices(const PartSurface& surface, std::span<const Vec3> bind,
                                std::span<const int> part_of_vertex, std::span<const SurfacePart> parts,
                                std::span<const int> rank, double deepest, double room)
-    : surface_(&surface), rank_(rank.begin(), rank.end()), tree_(bind, surface.triangles()), room_(room) {
+    : surface_(&surface), rank_(rank.begin(), rank.end()), room_(room) {
   rank_of_vertex_.reserve(part_of_vertex.size());
   deepest_of_vertex_.reserve(part_of_vertex.size());
   part_of_vertex_.assign(part_of_vertex.begin(), part_of_vertex.end());
-  for (const SurfacePart& part : parts) parents_.push_back(part.parent), fixed_.push_back(part.fixed ? 1 : 0);
+  for (const SurfacePart& part : parts) {
+    parents_.push_back(part.parent);
+    stays_.push_back(part.fixed || part.sheet ? 1 : 0);
+    sheet_.push_back(part.sheet ? 1 : 0);
+  }
+  std::vector<int> solid;
+  for (std::size_t i = 0; i < surface.triangles().size(); ++i)
+    if (sheet_[at(surface.part_of_triangle(static_cast<int>(i)))] == 0) solid.push_back(static_cast<int>(i));
+  tree_ = TriangleTree(bind, surface.triangles(), std::move(solid));
   for (const int part : part_of_vertex) {
     rank_of_vertex_.push_back(rank[at(part)]);
     deepest_of_vertex_.push_back(static_cast<float>(std::max(deepest, k_pressed_flat * surface.half_thickness(part))));
@@ -77,6 +85,7 @@ class AbsentVertices::LargerParts {
       Box around = boxes[part];
       around.inflate(of.room_);
       for (std::size_t other = 0; other < near_.size(); ++other) {
+        if (of.sheet_[part] != 0 || of.sheet_[other] != 0) continue;
         if (of.rank_[other] >= of.rank_[part] || of.jointed(static_cast<int>(part), static_cast<int>(other)) ||
             !around.overlaps(boxes[other]))
           continue;
@@ -121,7 +130,7 @@ void AbsentVertices::find_folds(std::span<const Vec3> after, std::span<char> abs
   parallel_for(after.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (absent[v] != 0 || at(representative[v]) != v || normals[v] == Vec3::Zero()) continue;
-      if (fixed_[at(part_of_vertex_[v])] != 0) continue;
+      if (stays_[at(part_of_vertex_[v])] != 0) continue;
       const Vec3 &p = after[v], &along = normals[v];
       larger.for_each_near(part_of_vertex_[v], p, p + room_ * along, [&](int index) {
         const Triangle& t = triangles[at(index)];

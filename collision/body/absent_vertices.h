@@ -7,7 +7,8 @@
 //     a way out of the middle of a trunk);
 //   - it looks at a larger part that is nearer than the cloth between needs: in an armpit, where skin folds on
 //     skin and carving leaves what touches in the bind pose as it is. Not where the two are jointed (creases.h).
-// What stands still (SurfacePart::fixed) is never absent: a chair on the ground stays a chair.
+// What stands still (SurfacePart::fixed) is never absent: a chair on the ground stays a chair. Nor is a sheet, which
+// also makes nothing absent: whoever wears it is not inside it.
 #pragma once
 
 #include <span>
@@ -41,10 +42,10 @@ class AbsentVertices {
 
   const PartSurface* surface_ = nullptr;
   std::vector<int> part_of_vertex_, parents_;  ///< parents of parts
-  std::vector<char> fixed_;                    ///< of parts
+  std::vector<char> stays_, sheet_;            ///< of parts: never absent; SurfacePart::sheet
   std::vector<int> rank_of_vertex_, rank_;     ///< rank_: of parts
   Adjacency neighbours_;
-  TriangleTree tree_;
+  TriangleTree tree_;                     ///< of what has an inside
   std::vector<float> deepest_of_vertex_;  ///< m
   double room_ = 0;
 };

@@ -57,9 +57,10 @@ void find_opponents(CarvePlan& plan, const PartSurface& surface) {
     const int p = plan.by_size[rank];
     Yielding& part = plan.yielding[at(p)];
     part.allowed.assign(plan.parts.size(), 0);
+    if (plan.parts[at(p)].sheet) continue;
     for (std::size_t larger = 0; larger < rank; ++larger) {
       const int other = plan.by_size[larger];
-      if (plan.jointed(p, other) || surface.tree(other).empty()) continue;
+      if (plan.parts[at(other)].sheet || plan.jointed(p, other) || surface.tree(other).empty()) continue;
       part.allowed[at(other)] = 1;
       const auto found = std::find_if(part.opponents.begin(), part.opponents.end(),
                                       [&](const Opponent& o) { return o.shell == surface.shell(other); });

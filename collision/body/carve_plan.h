@@ -1,7 +1,7 @@
 // Who gives way to whom, for the feasible collider: worked out once from the parts and the bind pose, never changed
 // after. A part gives way to every larger part that it is not jointed to (for those: creases.h). Where two parts touch
 // or overlap in the bind pose already (thighs, an arm in its shoulder), the vertices there are free, and from there the
-// gap that they must keep grows to the full one.
+// gap that they must keep grows to the full one. A sheet gives way to nothing, and nothing to it.
 #pragma once
 
 #include <memory>

@@ -42,7 +42,8 @@ Creases::Creases(const PartSurface& surface, std::span<const SurfacePart> parts,
     }
   for (int child = 0; child < static_cast<int>(parts.size()); ++child) {
     const int parent = parts[at(child)].parent;
-    if (parent < 0 || !parts[at(child)].folds || surface.tree(child).empty() || surface.tree(parent).empty()) continue;
+    if (parent < 0 || parts[at(child)].sheet || parts[at(parent)].sheet) continue;
+    if (!parts[at(child)].folds || surface.tree(child).empty() || surface.tree(parent).empty()) continue;
     const double thickness = std::max(surface.half_thickness(child), surface.half_thickness(parent));
     Joint joint{{parent, child}, Vec3::Zero(), Vec3::Zero(), {}, 2 * thickness + gap};
     int touching_sides = 0;

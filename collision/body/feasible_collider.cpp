@@ -34,9 +34,12 @@ FeasibleCollider::FeasibleCollider(const Surface& drawn, std::span<const Vec3> b
   CHECK(static_cast<int>(bind_pose.size()) == drawn.vertex_count() && !drawn.parts.empty());
   m.carver.settings = settings;
   m.carver.near = std::max(1.5 * settings.gap, 0.55 * settings.max_edge);
-  std::vector<char> fixed;  // per triangle: nothing there has to give way
-  for (const Triangle& t : drawn.triangles) fixed.push_back(drawn.parts[at(drawn.part_of_vertex[at(t[0])])].fixed);
-  m.mesh = refine_mesh(bind_pose, drawn.triangles, settings.max_edge, k_most_triangles, fixed);
+  std::vector<char> stays;  // per triangle: nothing there has to give way
+  for (const Triangle& t : drawn.triangles) {
+    const SurfacePart& part = drawn.parts[at(drawn.part_of_vertex[at(t[0])])];
+    stays.push_back(part.fixed || part.sheet);
+  }
+  m.mesh = refine_mesh(bind_pose, drawn.triangles, settings.max_edge, k_most_triangles, stays);
   std::vector<int> rank(drawn.parts.size());
   const std::vector<int> by_size = parts_by_size(drawn.parts);
   for (std::size_t i = 0; i < by_size.size(); ++i) rank[at(by_size[i])] = static_cast<int>(i);
@@ -69,8 +72,10 @@ std::span<const int> FeasibleCollider::part_of_vertex() const {
 }
 
 bool FeasibleCollider::kept_apart(int part_a, int part_b) const {
-  if (impl_->carver.surface == nullptr || part_a == part_b || impl_->carver.plan.jointed(part_a, part_b)) return false;
-  const auto& yielding = impl_->carver.plan.yielding;
+  const CarvePlan& plan = impl_->carver.plan;
+  if (impl_->carver.surface == nullptr || part_a == part_b || plan.jointed(part_a, part_b)) return false;
+  if (plan.parts[at(part_a)].sheet || plan.parts[at(part_b)].sheet) return false;
+  const auto& yielding = plan.yielding;
   return yielding[at(part_a)].touching_part(part_b) == nullptr && yielding[at(part_b)].touching_part(part_a) == nullptr;
 }
 

@@ -40,7 +40,7 @@ class FeasibleCollider {
   std::span<const int> part_of_vertex() const;
   /// True when the two parts are kept apart wherever they meet: not jointed (those are beyond their crease), and
   /// neither overlapping nor nearer than the gap in the bind pose. Parts that touch in the bind pose are kept as far
-  /// apart as they are there, up to the gap, vertex by vertex.
+  /// apart as they are there, up to the gap, vertex by vertex. A sheet is kept apart from nothing.
   bool kept_apart(int part_a, int part_b) const;
   /// Refined positions of the drawn pose, before anything gives way.
   void refine(std::span<const Vec3> drawn, std::span<Vec3> refined) const;

@@ -84,7 +84,7 @@ std::vector<TightPlace> RoomScanner::look(double time, std::span<double> absent_
       best.clearance = m.settings.gap;
       bool best_apart = false;
       for (int b = 0; b < static_cast<int>(part_count); ++b) {
-        if (b == a || m.jointed(a, b) || m.shape->tree(b).empty()) continue;
+        if (b == a || m.parts[at(b)].sheet || m.jointed(a, b) || m.shape->tree(b).empty()) continue;
         const bool apart = m.collider.kept_apart(a, b);
         if (best_apart && !apart) continue;
         Box near = boxes[at(b)];

@@ -14,6 +14,7 @@
 #include "io/import/motion/placed_character.h"
 #include "io/import/motion/placement.h"
 #include "io/import/motion/sampled_trajectory.h"
+#include "io/import/motion/sheet.h"
 #include "io/import/repair/facing.h"
 #include "io/import/repair/stray_vertices.h"
 
@@ -92,6 +93,18 @@ void turn_cache_outwards(GeometryCache& cache, const Mat3& linear, std::vector<s
   cache.mesh = make_triangle_mesh(cache.mesh.name, std::move(cache.mesh.positions), triangles);
 }
 
+/// Whether it is one in its first sample, if the request says nothing of it.
+bool is_sheet(const GeometryCache& cache, const Mat3& linear, const std::string& surface,
+              std::vector<std::string>& notes) {
+  if (!surface.empty()) return surface == "sheet";
+  std::vector<Vec3> positions;
+  for (const Vec3f& p : cache.sample(0)) positions.push_back(linear * p.cast<double>());
+  const Openings openings = openings_of(positions, triangulate(cache.mesh));
+  const bool out = openings.share() >= k_sheet_share;
+  if (std::string note = openings_note(openings, out); !note.empty()) notes.push_back(std::move(note));
+  return out;
+}
+
 /// Whether a geometry cache says when its samples are.
 bool knows_its_rate(const std::filesystem::path& file) {
   return file.extension() == ".mdd" || file.extension() == ".abc";
@@ -146,9 +159,10 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
   };
   for (std::string& note : stray_notes(cache->strays, request.file.filename().string(), placement.unit_scale, frame_of))
     out.info.notes.push_back(std::move(note));
+  const bool sheet = is_sheet(*cache, linear, request.surface, out.info.notes);
   out.trajectory = std::make_unique<SampledTrajectory>(
       std::move(*cache), placement.axes, placement.unit_scale,
-      Playback{request.clip_start, request.speed, request.preroll, request.clip_bind});
+      Playback{request.clip_start, request.speed, request.preroll, request.clip_bind}, sheet);
   out.info.triangle_count = static_cast<int>(out.trajectory->surface().triangles.size());
   return out;
 }

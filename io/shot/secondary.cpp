@@ -10,4 +10,8 @@ std::string SecondarySpec::owner() const {
   return std::string(kind()) + " " + in_quotes(name);
 }
 
+std::string SecondarySpec::reference() const {
+  return std::string(kind()).append(".").append(name);
+}
+
 }  // namespace ft::inline io

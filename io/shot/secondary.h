@@ -23,12 +23,14 @@ struct SecondarySpec {
   virtual ~SecondarySpec() = default;
   const SecondarySection* section = nullptr;  ///< its kind's
   std::string name;
-  std::string on;                    ///< name of the primary
+  std::string on;                    ///< name of the primary, or reference() of a secondary that is baked before
   std::string coupling = "one-way";  ///< with its primary: "one-way", "hybrid" (through stand-ins), "two-way"
 
   std::string_view kind() const;
   /// "cloth \"skirt\"", for messages.
   std::string owner() const;
+  /// What other secondaries call it, "cloth.skirt".
+  std::string reference() const;
 };
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -59,6 +61,12 @@ class SecondarySection {
 
   /// What `on` says: "who wears it".
   virtual std::string_view whom() const = 0;
+  /// Patterns of what it meets beside what it is on. One that is another secondary's reference() has that baked before.
+  virtual std::vector<std::string> meets(const SecondarySpec&) const { return {}; }
+  /// Names of others of its kind that it can only be solved together with.
+  virtual std::vector<std::string> solved_with(const SecondarySpec&) const { return {}; }
+  /// Why no other secondary can be on it or meet it; empty: they can.
+  virtual std::string_view why_no_carrier() const { return {}; }
   /// Whether its primary has to be one rigid body.
   virtual bool needs_rigid_primary() const { return false; }
   /// Whether it needs the joints of its primary, where that has some.

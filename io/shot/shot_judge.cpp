@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/shot/chains.h"
 #include "io/shot/secondary.h"
 #include "io/shot/words.h"
 
@@ -14,21 +15,33 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// A secondary goes by its kind, too: "cloth.robe".
+std::string suggestion_of_wearer(const SecondarySpec& spec, std::vector<std::string> primaries,
+                                 const std::vector<std::string>& carriers) {
+  for (const std::string& carrier : carriers)
+    if (carrier.ends_with("." + spec.on)) return "did you mean " + in_quotes(carrier) + "?";
+  if (spec.on.find('.') != std::string::npos)
+    for (const std::string& carrier : carriers)
+      if (carrier != spec.reference()) primaries.push_back(carrier);
+  return suggestion(spec.on, primaries);
+}
+
+/// carriers: what other secondaries are called, which it may be on as well.
 void judge_wearer(const Value& root, SecondarySpec& spec, const std::vector<std::string>& primaries,
-                  FaultList& faults) {
+                  const std::vector<std::string>& carriers, FaultList& faults) {
   const std::string owner = spec.owner();
   if (contains(primaries, spec.name))
     faults.add(place_of(root, {spec.kind(), spec.name}),
                owner + ": a primary has the same name, their caches would overwrite each other");
   if (spec.on.empty() && primaries.size() == 1) spec.on = primaries.front();
-  if (primaries.empty() || contains(primaries, spec.on)) return;
+  if (primaries.empty() || contains(primaries, spec.on) || contains(carriers, spec.on)) return;
   const Place place = place_of(root, {spec.kind(), spec.name, "on"});
   if (spec.on.empty())
     faults.add(place, owner + ": on is missing; it says " + std::string(spec.section->whom()) +
                           " (one of: " + joined(primaries) + ")");
   else
-    faults.add(place,
-               with_hint(owner + ": on = " + in_quotes(spec.on) + " names no primary", suggestion(spec.on, primaries)));
+    faults.add(place, with_hint(owner + ": on = " + in_quotes(spec.on) + " names no primary",
+                                suggestion_of_wearer(spec, primaries, carriers)));
 }
 
 }  // namespace
@@ -119,7 +132,9 @@ void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary
   }
   std::vector<std::string> primaries;
   for (const PrimarySpec& primary : shot.primaries) primaries.push_back(primary.name);
-  for (const auto& secondary : shot.secondaries) judge_wearer(root, *secondary, primaries, faults);
+  std::vector<std::string> carriers;
+  for (const auto& secondary : shot.secondaries) carriers.push_back(secondary->reference());
+  for (const auto& secondary : shot.secondaries) judge_wearer(root, *secondary, primaries, carriers, faults);
   for (std::size_t i = 0; i < shot.secondaries.size(); ++i) {
     const SecondarySpec& own = *shot.secondaries[i];
     for (std::size_t k = 0; k < i; ++k)
@@ -130,6 +145,7 @@ void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary
   }
   for (const auto& secondary : shot.secondaries) secondary->section->judge(root, *secondary, shot, faults);
   judge_couplings(root, shot, faults);
+  judge_chains(root, shot, faults);
 }
 
 }  // namespace ft::inline io

@@ -12,8 +12,8 @@ namespace {
 
 constexpr ChoiceKeys k_primary_shapes[] = {
     {"", "file",
-     "animation topology clip clip_start speed unit_scale up source_fps body height meshes ignore teleports limbs "
-     "position rotation"},
+     "animation topology clip clip_start speed unit_scale up source_fps body height meshes surface ignore teleports "
+     "limbs position rotation"},
     {"sphere", "radius", "position rotation velocity spin hollow"},
     {"box", "size", "position rotation velocity spin hollow"},
     {"capsule", "radius length", "position rotation velocity spin hollow"},

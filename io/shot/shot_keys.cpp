@@ -100,6 +100,10 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "coupling needs it"},
       {"meshes", &PrimarySpec::meshes, 0, 0, "", "", false, "mesh objects",
        "Names of the meshes that make the collider; without it all"},
+      {"surface", &PrimarySpec::surface, 0, 0, "", "solid sheet", false, "sheet thin open two_sided",
+       "Geometry caches: `sheet` has two sides and no inside, as baked cloth does; without it, it is one if its mesh "
+       "is "
+       "open"},
       {"ignore", &PrimarySpec::ignore, 0, 0, "", "", false, "exclude ignore_parts ignored without",
        "Parts that no cloth meets, where they are in its way: names with `*` and `?`, `[\"hand_*\"]`. `info` of the "
        "character lists its parts"},

@@ -153,6 +153,7 @@ Result<FrameReport> judge_frame(const CachedCloths& group, std::span<const Absen
     if (const Status read = body.read(index, y); !read) return read.error();
     report.crossings_drawn += static_cast<int>(crossings_between(x, group.cloth_triangles, y, body.triangles).size());
     int worst = -1;
+    if (body.sheet) continue;
     for (const Penetration& p : penetrations(x, y, body.triangles))
       if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
     if (worst >= 0)

@@ -17,12 +17,12 @@ std::vector<ColliderSlice> ClothGroup::slices(const BakePlan& plan, std::span<co
   const auto parts = collider.part_of_vertex();
   std::vector<ColliderSlice> out(bodies.size());
   for (std::size_t m = 0; m < out.size(); ++m) {
-    const std::string& body = plan.primaries[bodies[m]].name;
+    const std::string& body = plan.primaries[bodies[m]].cache_name();
     out[m].primary = bodies[m];
-    out[m].fixed = joint->members()[m].fixed;
+    out[m].fixed = joint->members()[m].fixed || has_sheets(joint->members()[m].trajectory->surface().parts);
     out[m].name = out[m].fixed ? body : body + ".collider";
     if (!out[m].fixed && std::find(taken.begin(), taken.end(), out[m].name) != taken.end())
-      out[m].name += "." + plan.primaries[primary].name;
+      out[m].name += "." + plan.primaries[primary].cache_name();
   }
   std::vector<int> own(parts.size());
   for (std::size_t v = 0; v < parts.size(); ++v) {

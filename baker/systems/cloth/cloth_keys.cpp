@@ -20,8 +20,11 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
        "Garment as OBJ; caches keep its vertex order"},
       {"fabric", &ClothSpec::fabric, 0, 0, "", "@fabrics", false, "material cloth_type preset",
        "Name of a measured fabric"},
-      {"on", &ClothSpec::on, 0, 0, "", "@name of a primary", false, "primary body collider character wearer parent",
-       "The primary that wears it; not needed when there is only one"},
+      {"on", &ClothSpec::on, 0, 0, "", "@name of a primary or secondary", false,
+       "primary body collider character wearer parent",
+       "The primary that wears it, or a secondary that is baked before it, `\"cloth.robe\"`; not needed when there is "
+       "only "
+       "one primary"},
       {"pins", OwnGrammar<ClothSpec>{"list of pins", read_pins, pins_text}, 0, 0, "", "", false,
        "attach attachments constraints hold buttons zips",
        "What holds it to the primary or to a cloth: a list of pins, see below"},
@@ -57,7 +60,9 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
        "Parts of its primary that this cloth does not meet, beside those that the primary has under `ignore`: names "
        "with `*` and `?`, `[\"hand_*\"]`"},
       {"meets", &ClothSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
-       "Primaries that this cloth meets beside the one that it is on: names with `*` and `?`; `[]`: no other"},
+       "Primaries that this cloth meets beside the one that it is on, and secondaries that are baked before it: names "
+       "with "
+       "`*` and `?`; `[]`: no other. `\"cloth.robe\"` in full has that robe baked before it"},
       {"coupling", &ClothSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",
        "Who feels whom: `one-way`, it feels the primary; `hybrid`, the primary yields to its stand-ins first; "
        "`two-way` "

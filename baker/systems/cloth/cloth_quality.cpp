@@ -34,7 +34,7 @@ void apply_quality(const Shot& shot, ClothSetup& setup) {
 
 std::shared_ptr<const Trajectory> with_quality(const Shot& shot, const ClothSetup& setup,
                                                std::shared_ptr<const Trajectory> primary) {
-  if (!is_preview(shot) || !primary) return primary;
+  if (!is_preview(shot) || !primary || has_sheets(primary->surface().parts)) return primary;
   // A body that is thicker than a tight garment has room for would squeeze it through.
   double thinnest = std::numeric_limits<double>::infinity();
   for (const ClothGarment& garment : setup.garments) {

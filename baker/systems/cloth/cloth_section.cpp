@@ -29,6 +29,8 @@ void judge_attachments(const Value& root, const ClothSpec& cloth, const Shot& sh
                                               [&](const PrimarySpec& p) { return p.name == pin.to; })
                                       ? "a pin without to holds to the primary"
                                       : suggestion(pin.to, names)));
+    else if (cloths[at(held)]->reference() == cloth.on)
+      faults.add(place, fault + " is what it is on; a pin without to holds to that");
     else if (cloths[at(held)]->on != cloth.on)
       faults.add(place, fault + " is worn by another primary; only cloths on the same one can hold each other");
     else if (pin.to == cloth.name && pin.select == PinSpec::Select::k_within)
@@ -76,6 +78,13 @@ class ClothSection final : public SectionOf<ClothSpec> {
     std::vector<std::string> names;
     for (const Fabric& fabric : fabrics()) names.push_back(fabric.name);
     return {{"@fabrics", std::move(names)}};
+  }
+  std::vector<std::string> meets(const SecondarySpec& spec) const override { return of(spec).meets; }
+  std::vector<std::string> solved_with(const SecondarySpec& spec) const override {
+    std::vector<std::string> out;
+    for (const PinSpec& pin : of(spec).pins)
+      if (!pin.to.empty() && pin.to != k_pin_world && pin.to != spec.name) out.push_back(pin.to);
+    return out;
   }
   std::string_view whom() const override { return "who wears it"; }
   std::string_view why_not_two_way() const override {

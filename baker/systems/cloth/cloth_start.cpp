@@ -75,7 +75,8 @@ void add_body(const ClothSetup& setup, const std::string& primary, const Start& 
     const int vertex = c.edge_of_first ? c.edge[0] : c.triangle[0];
     if (!second_is_marked(c, absent[start.garment_of(vertex)])) ++touch(vertex).crossings;
   }
-  for (const Penetration& p : penetrations(start.x, body, triangles)) {
+  const std::vector<Triangle> solid = solid_triangles(triangles, part_of, setup.primary->surface().parts);
+  for (const Penetration& p : penetrations(start.x, body, solid)) {
     BadStart& entry = touch(p.vertex);
     ++entry.inside;
     if (p.depth > entry.depth) entry.depth = p.depth, entry.vertex = p.vertex;

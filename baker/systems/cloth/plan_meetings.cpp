@@ -25,8 +25,8 @@ Status add_reaches(const Shot& shot, const ClothGroup& group, const BakePlan& pl
     auto meets = meets_of(spec->meets, spec->on, plan.primaries);
     if (!meets) return located(meets.error(), shot, spec->owner());
     for (std::size_t p = 0; p < plan.primaries.size(); ++p)
-      if (p != group.primary &&
-          (!why_alone(shot, plan.primaries[p]).empty() || !why_alone(shot, plan.primaries[group.primary]).empty()))
+      if (p != group.primary && (!why_alone(plan.shot(), plan.primaries[p]).empty() ||
+                                 !why_alone(plan.shot(), plan.primaries[group.primary]).empty()))
         (*meets)[p] = 0;
     const auto holds_always = [](const ClothPin& pin) {
       return pin.to < 0 && !pin.to_world && pin.hold.from == HoldSpan{}.from && pin.hold.until == HoldSpan{}.until;
@@ -104,7 +104,7 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
   if (reaches.empty()) return out;
   if (plan.primaries.size() > 1)
     for (const PrimaryPlan& primary : plan.primaries)
-      if (const std::string why = why_alone(shot, primary); !why.empty())
+      if (const std::string why = why_alone(plan.shot(), primary); !why.empty())
         plan.notes.push_back(
             fmt::format("cloth of others does not meet \"{}\", and its own meets nothing else: {}", primary.name, why));
   for (const Meeting& meeting : find_meetings(shot, plan.primaries, reaches)) {
@@ -112,7 +112,8 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
     ClothGroup& group = *made;
     for (std::size_t w = 1; w < meeting.wearers.size(); ++w) merge_cloths(std::move(*own[meeting.wearers[w]]), group);
     apply_quality(shot, group.setup);
-    if (meeting.bodies.size() > 1) {
+    // A sheet's collider is the sheet itself, whose caches are there, as those of a fixed member of several are.
+    if (meeting.bodies.size() > 1 || has_sheets(group.setup.primary->surface().parts)) {
       join_bodies(shot, plan, meeting, reaches, group);
     } else {
       group.setup.primary = with_quality(shot, group.setup, group.setup.primary);

@@ -79,7 +79,7 @@ Status add_bodies(const Shot& shot, std::span<const CordsSpec* const> specs, Bak
     MetBody body{primary.name, primary.trajectory, stands_still(shot, primary), {}};
     for (const auto& of_spec : meets) body.met_by.push_back(of_spec[p]);
     if (std::count(body.met_by.begin(), body.met_by.end(), 1) == 0) continue;
-    if (const std::string why = why_alone(shot, primary); !why.empty() && p != group.primary) {
+    if (const std::string why = why_alone(plan.shot(), primary); !why.empty() && p != group.primary) {
       plan.notes.push_back(fmt::format("cords on \"{}\" do not meet \"{}\": {}", prop, primary.name, why));
       continue;
     }

@@ -57,6 +57,10 @@ class FollowSection final : public SectionOf<FollowSpec> {
   }
   std::string_view whom() const override { return "whose joints or vertices they are"; }
   bool needs_character() const override { return true; }
+  std::string_view why_no_carrier() const override {
+    return "its caches are the body of its primary once more, and cloth on it would meet both; bake what follows in a "
+           "shot of its own, and give its cache as a primary";
+  }
   std::string_view why_not_two_way() const override { return "is for what has a solver: a primary does not feel it"; }
 };
 

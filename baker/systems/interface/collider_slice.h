@@ -14,7 +14,7 @@ namespace ft::inline baker {
 struct ColliderSlice {
   std::size_t primary = 0;          ///< into BakePlan::primaries
   std::string name;                 ///< of the cached system: "walker.collider"; the primary's own where it is fixed
-  bool fixed = false;               ///< nothing there gives way: the collider is the body as drawn
+  bool fixed = false;               ///< nothing there gives way (it is a sheet, too): the body as drawn
   std::vector<int> vertices;        ///< of the whole collider, ascending: those of the drawn body first
   std::vector<Triangle> triangles;  ///< in the slice's own numbers
   std::vector<char> met_by{};       ///< per system of the group: not 0 where it meets this; empty: all do

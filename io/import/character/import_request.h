@@ -49,6 +49,7 @@ struct ImportRequest {
   std::string body = "blended";
   double height = 0;  ///< 0: as it is
   std::vector<std::string> meshes;
+  std::string surface;                 ///< geometry caches: "solid", "sheet"; empty: as the mesh says
   double preroll = 1;                  ///< s
   double duration = 0;                 ///< s of the shot: frames outside the clip are refused
   int first_frame = 0;                 ///< of the shot, for messages

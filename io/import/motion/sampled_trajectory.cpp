@@ -47,7 +47,8 @@ std::vector<char> rigid_pieces(const GeometryCache& cache, std::span<const int> 
 
 }  // namespace
 
-SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback)
+SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback,
+                                     bool sheet)
     : cache_(std::move(cache)), linear_(unit_scale * axes), playback_(playback) {
   find_jumps();
   std::vector<Vec3> positions(static_cast<std::size_t>(cache_.vertex_count));
@@ -79,6 +80,10 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
     SurfacePart& part = surface_.parts[static_cast<std::size_t>(p)];
     part.size = std::abs(part.size);
     if (part.size > surface_.parts[static_cast<std::size_t>(largest)].size) largest = p;
+  }
+  if (sheet) {
+    for (SurfacePart& part : surface_.parts) part.size = 0, part.sheet = true;
+    return;
   }
   const std::vector<char> rigid = rigid_pieces(cache_, surface_.part_of_vertex, pieces);
   for (int p = 0; p < pieces; ++p) {

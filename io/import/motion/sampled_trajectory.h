@@ -15,7 +15,9 @@ namespace ft::inline io {
 
 class SampledTrajectory : public Trajectory {
  public:
-  SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback);
+  /// sheet: SurfacePart::sheet of all its parts.
+  SampledTrajectory(GeometryCache cache, const Mat3& axes, double unit_scale, const Playback& playback,
+                    bool sheet = false);
 
   const Surface& surface() const override { return surface_; }
   void bind_pose(std::span<Vec3> positions) const override { at(playback_.bind.value_or(playback_.start), positions); }

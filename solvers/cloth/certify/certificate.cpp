@@ -121,14 +121,16 @@ bool nearest_is_absent(const ClothModel& model, int vertex, const CheckedSurface
 
 /// Where the cloth is inside the body as it is drawn: the body overlaps itself there, or leaves no room; or the cloth
 /// has got to the wrong side of it, which is where it is inside the feasible collider, too.
+/// solid: what of a surface has an inside.
 void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const CheckedSurface& drawn,
-                    const CheckedSurface& feasible, const ClothMotion& m, FrameReport& report) {
+                    const CheckedSurface& solid_drawn, const CheckedSurface& feasible,
+                    const CheckedSurface& solid_feasible, const ClothMotion& m, FrameReport& report) {
   const std::vector<Crossing> crossings = crossings_between(cloth, drawn);
   report.crossings_drawn = static_cast<int>(crossings.size());
   std::vector<Vec3> points;
   std::vector<int> vertex;
   int worst = -1;
-  for (const Penetration& p : penetrations(m.x, model.rest_edges.edges, crossings, drawn)) {
+  for (const Penetration& p : penetrations(m.x, model.rest_edges.edges, crossings, solid_drawn)) {
     if (p.depth > report.deepest_drawn) report.deepest_drawn = p.depth, worst = p.vertex;
     if (p.depth <= k_notable_depth) continue;
     points.push_back(m.x[at(p.vertex)]);
@@ -136,7 +138,7 @@ void describe_drawn(const ClothModel& model, const CheckedSurface& cloth, const 
   }
   double deepest = 0;
   int misplaced = -1;
-  for (const Penetration& p : penetrations(points, feasible, k_notable_depth)) {
+  for (const Penetration& p : penetrations(points, solid_feasible, k_notable_depth)) {
     if (nearest_is_absent(model, vertex[at(p.vertex)], feasible, m)) continue;
     ++report.inside_body;
     if (p.depth > deepest) deepest = p.depth, misplaced = vertex[at(p.vertex)];
@@ -171,7 +173,11 @@ Certificate::Certificate(const ClothModel& model)
     : model_(model),
       cloth_(model.triangles),
       collider_(model.collider ? model.collider->triangles() : std::span<const Triangle>{}),
-      drawn_(model.collider ? model.collider->trajectory().surface().triangles : std::span<const Triangle>{}) {}
+      drawn_(model.collider ? model.collider->trajectory().surface().triangles : std::span<const Triangle>{}) {
+  if (!model.collider || !model.collider->has_sheets()) return;
+  solid_collider_.emplace(model.collider->solid_triangles());
+  solid_drawn_.emplace(model.collider->solid_drawn_triangles());
+}
 
 int Certificate::certify(const BodyPose& body, ClothMotion& m, FrameReport& report) {
   std::vector<Crossing> with_body, own;
@@ -204,8 +210,12 @@ void Certificate::describe(double time, std::span<const Vec3> drawn, const Cloth
   if (model_.collider) {
     cloth_.move(m.x);
     drawn_.move(drawn);
-    describe_drawn(model_, cloth_, drawn_, collider_, m, report);
+    if (solid_drawn_) solid_drawn_->move(drawn), solid_collider_->move(collider_.positions());
+    describe_drawn(model_, cloth_, drawn_, solid_drawn_ ? *solid_drawn_ : drawn_, collider_,
+                   solid_collider_ ? *solid_collider_ : collider_, m, report);
     for (CheckedSurface* surface : {&cloth_, &drawn_, &collider_}) surface->forget_boxes();
+    for (auto* solid : {&solid_drawn_, &solid_collider_})
+      if (*solid) (*solid)->forget_boxes();
   }
   describe_seams(model_, time, m, report);
   // What the promise is about goes first, then by depth.

@@ -4,6 +4,7 @@
 // tangled from here on.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "collision/check/checked_surface.h"
@@ -29,6 +30,7 @@ class Certificate {
   const ClothModel& model_;
   // Scratch: box trees, of which the order of triangles is kept from frame to frame.
   CheckedSurface cloth_, collider_, drawn_;
+  std::optional<CheckedSurface> solid_collider_, solid_drawn_;  ///< without sheets, where there are some
 };
 
 }  // namespace ft::inline solvers

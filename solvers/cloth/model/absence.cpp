@@ -29,7 +29,8 @@ Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->verte
   const auto triangles = model.collider->triangles();
   for (const SurfacePart& part : model.collider->trajectory().surface().parts) {
     parents_.push_back(part.parent);
-    fixed_.push_back(part.fixed ? 1 : 0);
+    stays_.push_back(part.fixed || part.sheet ? 1 : 0);
+    sheet_.push_back(part.sheet ? 1 : 0);
   }
   neighbours_ = vertex_neighbours(body_count_, unique_edges(triangles));
   std::vector<Vec3> bind(body_count_);
@@ -55,9 +56,10 @@ Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->verte
       const double area = n.squaredNorm(), height = std::sqrt(hit.closest.squared_distance);
       if (height > k_on_skin || !(area > 0)) continue;
       const double u = s.cross(f).dot(n) / area, w = e.cross(s).dot(n) / area;
+      const bool other_side = sheet_[at(parts[at(t[0])])] != 0 && n.dot(p - hit.closest.point) < 0;
       anchors_[i] = {t,
                      {static_cast<float>(1 - u - w), static_cast<float>(u), static_cast<float>(w)},
-                     static_cast<float>(std::max(height, model.contact.radius[i]))};
+                     static_cast<float>((other_side ? -1 : 1) * std::max(height, model.contact.radius[i]))};
     }
   });
   for (std::size_t g = 0; g < setup.garments.size(); ++g) {
@@ -74,6 +76,14 @@ Absence::Absence(const ClothModel& model) : body_count_(at(model.collider->verte
       if (nearest_part[at(i)] >= 0 && worn[at(nearest_part[at(i)])] == 0) anchors_[at(i)].triangle[0] = -1;
     worn_.push_back(std::move(worn));
   }
+}
+
+/// Of what has an inside; none: all of the collider has.
+std::optional<TriangleTree> Absence::tree_of_solids(const ClothModel& model, std::span<const Vec3> body) const {
+  if (!model.collider->has_sheets()) return std::nullopt;
+  const auto parts = model.collider->part_of_vertex();
+  return tree_of(body, model.collider->triangles(),
+                 [&](const Triangle& t) { return sheet_[at(parts[at(t[0])])] == 0; });
 }
 
 Vec3 Absence::place_on_skin(int vertex, std::span<const Vec3> body) const {
@@ -232,6 +242,8 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
         bool inside = false;
       };
       const TriangleTree returning_tree = tree_of(body, triangles, is_returning);
+      const std::optional<TriangleTree> solid_tree = tree_of_solids(model, body);
+      const TriangleTree& solid = solid_tree ? *solid_tree : collider.tree();
       std::vector<Held> held(near.size());
       parallel_for(near.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -240,8 +252,8 @@ void Absence::bring_back(const ClothModel& model, std::span<const Crossing> cros
           Nearest n = nearest(p, body, triangles, returning_tree, k_deepest);
           if (n.triangle < 0) continue;
           const bool touches = n.distance < k_touching;
-          if (!n.behind && !touches) n = nearest(p, body, triangles, collider.tree(), k_deepest);
-          const bool inside = n.behind && rays_say_inside(p, collider.tree(), body, triangles);
+          if (!n.behind && !touches) n = nearest(p, body, triangles, solid, k_deepest);
+          const bool inside = n.behind && rays_say_inside(p, solid, body, triangles);
           if (inside || touches) held[k] = {n.triangle, inside};
         }
       });

@@ -14,6 +14,7 @@
 // a garment drags nothing of it along.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -92,17 +93,18 @@ class Absence {
     return deep[static_cast<std::size_t>(body_vertex)] != 0 || ignored_[place(garment, body_vertex)] != 0;
   }
   /// Whether a part goes as a whole, where a garment has got through it or is caught in it: a limb that the garment
-  /// does not wear. A set that stands still never does.
+  /// does not wear. A set that stands still never does, nor does a sheet.
   bool goes_whole(int garment, int part) const {
     return worn_[static_cast<std::size_t>(garment)][static_cast<std::size_t>(part)] == 0 &&
-           fixed_[static_cast<std::size_t>(part)] == 0;
+           stays_[static_cast<std::size_t>(part)] == 0;
   }
   /// Where a vertex of the cloth lay on the collider in the bind pose.
   struct Anchor {
     Triangle triangle{-1, -1, -1};  ///< -1: it did not lie on it
     float weight[3] = {0, 0, 0};
-    float height = 0;  ///< along the triangle's normal [m]
+    float height = 0;  ///< along the triangle's normal [m]; below 0 on the other side of a sheet
   };
+  std::optional<TriangleTree> tree_of_solids(const ClothModel& model, std::span<const Vec3> body) const;
   /// Adds all parts that hang on parts that are gone.
   void add_descendants(std::vector<char>& gone) const;
   void grow(const ClothModel& model, std::span<const Vec3> body, double reach, int least_rank,
@@ -114,7 +116,7 @@ class Absence {
   std::vector<char> ignored_;            ///< as ClothMotion::absent
   std::vector<std::vector<char>> worn_;  ///< per garment and part
   std::vector<int> parents_;             ///< per part
-  std::vector<char> fixed_;              ///< per part: SurfacePart::fixed
+  std::vector<char> stays_, sheet_;      ///< per part: it never goes as a whole; SurfacePart::sheet
   Adjacency neighbours_;                 ///< of the collider's vertices
   TriangleTree tree_;                    ///< of the collider in its bind pose
   std::vector<Anchor> anchors_;          ///< per vertex of the cloth

@@ -14,7 +14,14 @@ constexpr double k_deepest_start = 0.03;
 
 }  // namespace
 
-MovingCollider::MovingCollider(std::shared_ptr<const FeasiblePoses> poses) : poses_(std::move(poses)) {}
+MovingCollider::MovingCollider(std::shared_ptr<const FeasiblePoses> poses) : poses_(std::move(poses)) {
+  const auto& parts = trajectory().surface().parts;
+  has_sheets_ = ft::has_sheets(parts);
+  if (has_sheets_) {
+    solid_ = ft::solid_triangles(triangles(), part_of_vertex(), parts);
+    solid_drawn_ = ft::solid_triangles(trajectory().surface().triangles, trajectory().surface().part_of_vertex, parts);
+  }
+}
 
 double MovingCollider::inset_share(double time) const {
   const double preroll = trajectory().preroll();
@@ -35,7 +42,7 @@ double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const
   double deepest = 0;
   // First guess: each collider vertex gives way by what the points inside near it need, less with the distance.
   const double reach = 0.06;
-  for (const Penetration& p : penetrations(points, full, triangles())) {
+  for (const Penetration& p : penetrations(points, full, solid_triangles())) {
     deepest = std::max(deepest, p.depth);
     const double need = std::min(p.depth, k_deepest_start) + clearance;
     for (std::size_t v = 0; v < full.size(); ++v) {
@@ -44,13 +51,13 @@ double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const
     }
   }
   // What still crosses (a body vertex through a cloth face) gives way in small steps, its neighbours with it.
-  const std::vector<Edge> edges = unique_edges(triangles());
-  const std::vector<Vec3> normals = vertex_normals(full, triangles());
+  const std::vector<Edge> edges = unique_edges(solid_triangles());
+  const std::vector<Vec3> normals = vertex_normals(full, solid_triangles());
   std::vector<Vec3> surface(full.size());
   for (int round = 0; round < 24; ++round) {
     for (std::size_t v = 0; v < full.size(); ++v) surface[v] = full[v] - inset[v] * normals[v];
     std::vector<char> blocked(full.size(), 0);
-    const auto crossing = crossings_between(points, cloth, surface, triangles());
+    const auto crossing = crossings_between(points, cloth, surface, solid_triangles());
     if (crossing.empty()) break;
     for (const Crossing& c : crossing) {
       if (c.edge_of_first)

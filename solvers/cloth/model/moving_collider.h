@@ -19,6 +19,12 @@ class MovingCollider {
   std::span<const Triangle> triangles() const { return poses_->collider().triangles(); }
   std::span<const int> part_of_vertex() const { return poses_->collider().part_of_vertex(); }
   const Trajectory& trajectory() const { return poses_->body(); }
+  /// What of the collider, and of the drawn body, has an inside: all but sheets.
+  std::span<const Triangle> solid_triangles() const { return has_sheets_ ? std::span(solid_) : triangles(); }
+  std::span<const Triangle> solid_drawn_triangles() const {
+    return has_sheets_ ? std::span(solid_drawn_) : std::span(trajectory().surface().triangles);
+  }
+  bool has_sheets() const { return has_sheets_; }
 
   /// Draws the body in at the start of the pre-roll so that this cloth (placed by bind_to_start) does not cross it and
   /// keeps about `clearance` [m]. Returns how deep the deepest point was inside [m]. Without a pre-roll nothing is
@@ -42,7 +48,9 @@ class MovingCollider {
   double inset_share(double time) const;
 
   std::shared_ptr<const FeasiblePoses> poses_;
-  std::vector<double> inset_;  ///< per collider vertex [m]; empty: none
+  bool has_sheets_ = false;
+  std::vector<Triangle> solid_, solid_drawn_;  ///< where there are sheets
+  std::vector<double> inset_;                  ///< per collider vertex [m]; empty: none
   double largest_inset_ = 0;
 };
 

@@ -23,6 +23,7 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
                                           std::span<const char> deep, const ClothMotion& motion) const {
   std::vector<SkinHold> out;
   TriangleTree tree;
+  std::optional<TriangleTree> solid_tree;
   const auto parts = model.collider->part_of_vertex();
   const auto triangles = model.collider->triangles();
   for (int g = 0; g < static_cast<int>(worn_.size()); ++g) {
@@ -34,7 +35,9 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
     if (tree.empty()) {
       tree = tree_;
       tree.refit(body, triangles);
+      solid_tree = tree_of_solids(model, body);
     }
+    const TriangleTree& solid = solid_tree ? *solid_tree : tree;
     box.inflate(k_margin);
     const auto is_gone = [&](const Triangle& t) {
       return gone[at(t[0])] != 0 || gone[at(t[1])] != 0 || gone[at(t[2])] != 0;
@@ -59,7 +62,7 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
         // What does not lie on skin stays with what still holds it, until what has passed it is gone.
         if (skin[0] < 0) {
           const Nearest in = nearest(p, body, triangles, gone_tree, k_deepest);
-          if (in.triangle < 0 || !in.behind || !rays_say_inside(p, tree, body, triangles)) continue;
+          if (in.triangle < 0 || !in.behind || !rays_say_inside(p, solid, body, triangles)) continue;
           double least = k_on_skin * k_on_skin;
           int holder = -1;
           for (const int b : holders)
@@ -73,10 +76,11 @@ std::vector<SkinHold> Absence::skin_holds(const ClothModel& model, std::span<con
         if (n.triangle < 0) continue;
         const Triangle& t = triangles[at(n.triangle)];
         const Vec3 place = p + n.distance * n.way_out, normal = normal_of(t, body);
-        const bool inside = n.behind && rays_say_inside(p, tree, body, triangles);
+        const bool inside = n.behind && rays_say_inside(p, solid, body, triangles);
         const auto has_slid_there = [&] {
           const double way = (place_on_skin(static_cast<int>(i), body) - place).norm();
           const bool same_part = parts[at(skin[0])] == parts[at(t[0])];
+          if (sheet_[at(parts[at(t[0])])] != 0 && n.behind != (anchors_[i].height < 0)) return false;
           return way < (same_part ? k_same_side : k_same_side_elsewhere) && normal.dot(normal_of(skin, body)) > 0;
         };
         if (may_return && (inside || !has_slid_there())) {
