@@ -53,6 +53,9 @@ class LockstepContact {
   /// of h [s].
   void lag_friction(std::span<const Vec3> x, std::span<const Vec3> x_t0, double h, double share = 1);
 
+  /// Largest speed of approach to scenery, of the contacts of that look, that the step from velocities v_t0 to x has
+  /// taken away [m/s].
+  double fastest_stop(std::span<const Vec3> x, std::span<const Vec3> v_t0, double share) const;
   bool rubs() const { return !slides_.empty(); }  ///< anything, at the last look at friction
 
   double smallest_gap() const { return smallest_gap_; }  ///< of all places that value() and add_terms() saw [m]

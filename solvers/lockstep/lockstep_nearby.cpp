@@ -36,6 +36,17 @@ std::vector<LockstepContact::Blocked> LockstepContact::blocking(std::span<const 
   return out;
 }
 
+double LockstepContact::fastest_stop(std::span<const Vec3> x, std::span<const Vec3> v_t0, double share) const {
+  double fastest = 0;
+  for (const Slide& s : slides_) {
+    if (s.met < 1) continue;
+    Vec3 before = s.given / h_;
+    for (int k = 0; k < s.of.count; ++k) before += s.of.weight[at(k)] * v_t0[at(s.of.node[at(k)])];
+    fastest = std::max(fastest, s.normal.dot(moved(s, x, share) / h_ - before));
+  }
+  return fastest;
+}
+
 std::vector<std::uint64_t> LockstepContact::near_at(std::span<const Vec3> x) {
   const std::vector<double> kept = std::exchange(let_through_, {});
   find(x, std::vector<Vec3>(x.size(), Vec3::Zero()));

@@ -17,6 +17,9 @@ constexpr double k_friction_settled = 1e-6;  ///< a new look at friction that mo
 /// driven.
 constexpr double k_stuck_share = 1e-3;
 constexpr int k_stuck_iterations = 6;
+/// What is stopped by more than this in a step has no use for its history: BDF2 would throw it back with half of its
+/// speed [m/s].
+constexpr double k_hit = 0.1;
 constexpr int k_most_halvings = 24;
 constexpr double k_series_from = 0.2, k_series_to = 0.95;  ///< ratios of successive iterations [1]
 constexpr double k_energy_noise = 1e-12;                   ///< rounding of the potential, over its size [1]
@@ -146,6 +149,11 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   report.finite = report.finite && all_finite(x_);
   if (!report.finite) return report;
 
+  const bool hit = contact_.fastest_stop(x_, m.v, share_) > k_hit;
+  if (hit && m.h_previous > 0) {
+    m.h_previous = 0;
+    return step(h, driven, m);
+  }
   report.on_met = contact_.on_met(x_, share_);
   report.hold_force = elements_.hold_force(x_);
   for (std::size_t k = 0; k < driven.size(); ++k)
@@ -157,7 +165,7 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   for (std::size_t i = 0; i < n; ++i) next.v[i] = (x_[i] - w.a * m.x[i] + w.b * m.x_previous[i]) / bh;
   next.x_previous = std::move(m.x);
   next.v_previous = std::move(m.v);
-  next.h_previous = h;
+  next.h_previous = hit ? 0 : h;
   m = std::move(next);
   return report;
 }

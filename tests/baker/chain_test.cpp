@@ -85,7 +85,7 @@ TEST_F(Chain, A_badge_stays_on_its_sheet_and_crosses_nothing) {
     EXPECT_TRUE(crossings_between(badge[f], badge_triangles, sheet[f], sheet_triangles).empty()) << f;
     const auto distance = distances_to_surface(badge[f], sheet[f], sheet_triangles);
     for (std::size_t v = 0; v < 7; ++v) EXPECT_NEAR(distance[v], k_above, 2e-3) << f << " " << v;
-    for (const double d : distance) EXPECT_LT(d, 0.05) << f;
+    for (const double d : distance) EXPECT_LT(d, 0.1) << f << ": farther than it is long";
     moved = std::max(moved, (sheet[f][60] - sheet[0][60]).norm());
   }
   EXPECT_GT(moved, 0.03) << "the sheet has to take the badge somewhere";

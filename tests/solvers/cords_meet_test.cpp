@@ -100,6 +100,29 @@ TEST(CordsMeet, A_rope_that_falls_on_a_ground_comes_to_rest_on_it_and_weighs_on_
   EXPECT_DOUBLE_EQ(on_ground.contact_share, 1);
 }
 
+TEST(CordsMeet, A_rope_that_falls_far_hardly_bounces) {
+  const double height = 1.75;
+  const LockstepSetup setup =
+      scene_of(rope_between(Vec3(-0.4, height, 0), Vec3(0.4, height + 0.02, 0.1), 24), {ground()});
+  auto solver = make_lockstep_solver(setup);
+  ASSERT_TRUE(solver);
+  State state = (*solver)->initial_state();
+  bool touched = false;
+  double impulse = 0, highest = 0;
+  for (int f = 0; f < 24 * 2; ++f) {
+    const FrameReport r = (*solver)->advance_frame(state);
+    EXPECT_EQ(r.crossings_body, 0);
+    touched = touched || r.forces[0].contact_share > 0;
+    impulse -= r.forces[0].mean.force.y() / 24;
+    const auto x = as_points(*state.find("x"));
+    if (touched && f > 18)
+      for (const Vec3& p : x) highest = std::max(highest, p.y());
+  }
+  EXPECT_TRUE(touched);
+  EXPECT_LT(highest, 0.05 * height);
+  EXPECT_NEAR(impulse, 2 * k_mass * k_gravity, 0.05 * 2 * k_mass * k_gravity) << "all that gravity gave it in 2 s";
+}
+
 /// How far a rope goes down an inclined plane in a second; it lies along the slope or across it.
 double way_down(double tangent, double friction, bool across) {
   LockstepSetup setup =
