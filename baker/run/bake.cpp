@@ -12,12 +12,12 @@
 #include "baker/plan/start_report.h"
 #include "baker/record/bake_folder.h"
 #include "baker/run/bake_stage.h"
+#include "baker/run/bake_status.h"
 #include "baker/run/finished_stages.h"
 #include "baker/run/interaction.h"
 #include "baker/run/lock_file.h"
 #include "baker/run/output_names.h"
 #include "baker/run/signals.h"
-#include "baker/run/standing.h"
 #include "baker/run/walk.h"
 
 namespace ft::inline baker {
@@ -53,10 +53,10 @@ Status check_writable(const std::filesystem::path& folder) {
 
 /// A try, on some of the frames or in preview quality, does not take the place of a finished bake of more of them or in
 /// final quality, unless that is asked for.
-Status keep_better_bake(const BakeOptions& options, const Standing& standing, const Manifest& now,
+Status keep_better_bake(const BakeOptions& options, const BakeStatus& status, const Manifest& now,
                         const BakeFolder& folder) {
-  const Manifest& before = standing.before;
-  if (options.force || standing.kind != Standing::Kind::k_stale || !before.complete) return {};
+  const Manifest& before = status.before;
+  if (options.force || status.kind != BakeStatus::Kind::k_stale || !before.complete) return {};
   const bool within = before.first_frame <= now.first_frame && now.last_frame <= before.last_frame;
   const bool shorter = before.last_frame - before.first_frame != now.last_frame - now.first_frame;
   if (options.frames && within && shorter)
@@ -72,7 +72,7 @@ Status keep_better_bake(const BakeOptions& options, const Standing& standing, co
 
 /// The checkpoint to go on from, if the user wants that and it can be.
 Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, const BakeFolder& folder,
-                                                  const BakeInputs& inputs, const Standing& standing,
+                                                  const BakeInputs& inputs, const BakeStatus& status,
                                                   Progress& progress) {
   std::error_code error;
   if (!options.resume || !std::filesystem::exists(folder.checkpoint(), error)) return std::optional<Checkpoint>();
@@ -85,7 +85,7 @@ Result<std::optional<Checkpoint>> find_checkpoint(const BakeOptions& options, co
   }
   if (checkpoint->fingerprint != inputs.fingerprint) {
     std::string reasons;
-    for (const std::string& reason : standing.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
+    for (const std::string& reason : status.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
     return usage_error("the interrupted bake cannot be resumed: " + (reasons.empty() ? "its inputs changed" : reasons),
                        folder.path.string(), "run without --resume to start anew");
   }
@@ -112,7 +112,7 @@ std::string closing(const Manifest& manifest, const BakeFolder& folder) {
 }
 
 BakeResult run(const BakeOptions& options, const BakeServices& services, const BakeFolder& folder, BakeInputs inputs,
-               const Standing& standing, Progress& progress) {
+               const BakeStatus& status, Progress& progress) {
   if (const Status made = make_folders(folder.state()); !made) {
     Error error = made.error();
     if (error.hint.empty()) error.hint = "choose another folder with --out";
@@ -120,13 +120,13 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   }
   auto lock = LockFile::acquire(folder.lock());
   if (!lock) return failed(lock.error());
-  auto checkpoint = find_checkpoint(options, folder, inputs, standing, progress);
+  auto checkpoint = find_checkpoint(options, folder, inputs, status, progress);
   if (!checkpoint) return failed(checkpoint.error());
   Manifest manifest = manifest_of(inputs);
   auto plan = make_plan(std::move(inputs), services.importer, folder.import_cache());
   if (!plan) return failed(plan.error());
   plan->later.clear();
-  StageBake stages{services, folder, standing.before, std::move(*checkpoint), progress};
+  StageBake stages{services, folder, status.before, std::move(*checkpoint), progress};
   WalkResult result{std::move(manifest), {}, 0};
   for (;;) {
     const std::vector<Carrier> carriers = plan->is_last_stage() ? std::vector<Carrier>() : carriers_of(*plan);
@@ -146,11 +146,11 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
     }
     plan = std::move(next);
   }
-  Status status = result.status;
-  if (status) status = judge(result.manifest, gates_of(plan->shot()));
+  Status baked = result.status;
+  if (baked) baked = judge(result.manifest, gates_of(plan->shot()));
   BakeResult out;
-  if (!status) out = failed(status.error());
-  progress.end({out.exit_code, status ? closing(result.manifest, folder) : status.error().text(),
+  if (!baked) out = failed(baked.error());
+  progress.end({out.exit_code, baked ? closing(result.manifest, folder) : baked.error().text(),
                 interaction_lines(interactions(result.manifest, plan->primaries), plan->primaries), result.seconds});
   return out;
 }
@@ -169,10 +169,10 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
   const BakeFolder folder = options.folder.empty() ? BakeFolder::beside(options.shot_file) : BakeFolder{options.folder};
   if (const Status apart = check_inputs_stay(*inputs, folder); !apart) return failed(apart.error());
   const Manifest now = manifest_of(*inputs);
-  Standing standing = find_standing(folder, now);
-  const Status kept = keep_better_bake(options, standing, now, folder);
+  BakeStatus status = find_bake_status(folder, now);
+  const Status kept = keep_better_bake(options, status, now, folder);
   if (options.explain) {
-    BakeResult out{0, {describe(standing, folder)}, {}};
+    BakeResult out{0, {describe(status, folder)}, {}};
     if (!kept) out.lines.push_back("this bake would be refused: " + kept.error().text());
     return out;
   }
@@ -195,21 +195,21 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
     for (std::string& line : start_lines(start)) out.lines.push_back("start: " + std::move(line));
     if (start.bad.empty() && start.garment_count > 0)
       out.lines.push_back("start: no garment crosses the body, itself or another");
-    out.lines.push_back(describe(standing, folder));
+    out.lines.push_back(describe(status, folder));
     if (!kept) out.lines.push_back("this bake would be refused: " + kept.error().text());
     return out;
   }
-  if (standing.kind == Standing::Kind::k_up_to_date && !options.force) {
+  if (status.kind == BakeStatus::Kind::k_up_to_date && !options.force) {
     BakeResult out;
-    if (const Status judged = judge(standing.before, gates_of(inputs->shot)); !judged) out = failed(judged.error());
-    out.lines.push_back(describe(standing, folder));
+    if (const Status judged = judge(status.before, gates_of(inputs->shot)); !judged) out = failed(judged.error());
+    out.lines.push_back(describe(status, folder));
     return out;
   }
   if (!kept) return failed(kept.error());
-  if (standing.kind == Standing::Kind::k_stale) progress.note(describe(standing, folder));
-  if (standing.kind == Standing::Kind::k_unfinished && !options.resume)
+  if (status.kind == BakeStatus::Kind::k_stale) progress.note(describe(status, folder));
+  if (status.kind == BakeStatus::Kind::k_unfinished && !options.resume)
     progress.note("an earlier bake was not finished; starting anew (--resume goes on with it)");
-  return run(options, services, folder, std::move(*inputs), standing, progress);
+  return run(options, services, folder, std::move(*inputs), status, progress);
 }
 
 }  // namespace ft::inline baker

@@ -5,7 +5,7 @@
 #include "baker/core/check.h"
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
-#include "collision/step_bound/clump_retreat.h"
+#include "collision/step_bound/cluster_correction.h"
 
 namespace ft::inline collision {
 namespace {
@@ -23,13 +23,14 @@ double excess(PairKind kind, const PairRoom& room, const std::array<Vec3, 4>& di
   return pair_approach(kind, pair_advance(kind, room, displacement)).sum() - may_use(room, floor);
 }
 
-/// The clump that both features have vertices of, -1: none. A clump has its motion in common: what approaches in it is
-/// what its vertices do against that.
-int clump_across(const VertexClumps& clumps, PairKind kind, const Stencil& stencil) {
+/// The cluster that both features have vertices of, -1: none. A cluster has its motion in common: what approaches in it
+/// is what its vertices do against that.
+int cluster_across(const VertexClusters& clusters, PairKind kind, const Stencil& stencil) {
   const auto split = static_cast<std::size_t>(first_feature_size(kind));
   for (std::size_t i = 0; i < split; ++i)
     for (std::size_t k = split; k < 4; ++k)
-      if (const int clump = clumps.of(stencil.v[i]); clump >= 0 && clumps.of(stencil.v[k]) == clump) return clump;
+      if (const int cluster = clusters.of(stencil.v[i]); cluster >= 0 && clusters.of(stencil.v[k]) == cluster)
+        return cluster;
   return -1;
 }
 
@@ -39,7 +40,7 @@ struct CommonMotion::Problem {
   std::span<const Vec3> x, dx;
   std::size_t movable_end;
   double floor;
-  const VertexClumps& clumps;
+  const VertexClusters& clusters;
   std::span<Vec3> common;
 
   bool movable(int v) const { return static_cast<std::size_t>(v) < movable_end; }
@@ -92,14 +93,14 @@ void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   if (!(pair.room.gap > 0)) {  // no normal separates them: nothing is proved, nothing moves
     for (const int& i : v) {
       if (!problem.movable(i)) continue;
-      for (const int j : problem.clumps.with(i)) problem.common[at(j)].setZero(), changing_[at(j)] = 1;
+      for (const int j : problem.clusters.with(i)) problem.common[at(j)].setZero(), changing_[at(j)] = 1;
     }
     return;
   }
   std::array<Vec3, 4> motion =
       pair_move(pair.stencil, problem.x, problem.dx, problem.common, problem.movable_end).common;
-  if (const int clump = clump_across(problem.clumps, pair.kind, pair.stencil); clump >= 0) {
-    const Vec3 mean = problem.clumps.mean(clump, problem.common);
+  if (const int cluster = cluster_across(problem.clusters, pair.kind, pair.stencil); cluster >= 0) {
+    const Vec3 mean = problem.clusters.mean(cluster, problem.common);
     for (Vec3& m : motion) m -= mean;
   }
   const std::array<double, 4> advance = pair_advance(pair.kind, pair.room, motion);
@@ -108,20 +109,20 @@ void CommonMotion::relax(const Problem& problem, const TightPair& pair) {
   if (!(too_much > 0)) return;
   const double first = std::max(0.0, approach.first), second = std::max(0.0, approach.second);
   const std::array<double, 4> along = pair_retreat(pair.kind, advance, approach, first / (first + second), too_much);
-  for_each_retreat(problem.clumps, pair.kind, pair.stencil, along, [&](int i, double retreat) {
+  for_each_retreat(problem.clusters, pair.kind, pair.stencil, along, [&](int i, double retreat) {
     if (problem.movable(i)) problem.common[at(i)] += retreat * pair.room.normal;
   });
   for (std::size_t k = 0; k < 4; ++k) {
     if (!problem.movable(v[k]) || along[k] == 0) continue;
-    for (const int i : problem.clumps.with(v[k])) changing_[at(i)] = 1;
+    for (const int i : problem.clusters.with(v[k])) changing_[at(i)] = 1;
   }
 }
 
-/// Shortens what has changed, in a clump all of it, to what stays in the balls and, in clumps, is no longer than the
-/// longest of their dx.
+/// Shortens what has changed, in a cluster all of it, to what stays in the balls and, in clusters, is no longer than
+/// the longest of their dx.
 void CommonMotion::stay_inside(const Problem& problem, const MotionBounds& bounds) {
   for (int v = 0; problem.movable(v); ++v) {
-    const std::span<const int> together = problem.clumps.with(v);
+    const std::span<const int> together = problem.clusters.with(v);
     if (!changing_[at(v)] || together.front() != v) continue;
     double share = 1;
     if (together.size() > 1) {
@@ -170,8 +171,9 @@ void CommonMotion::join(const Problem& problem, const MotionBounds& bounds) {
 }
 
 void CommonMotion::find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const PairView& pairs,
-                        double floor, const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common) {
-  const Problem problem{x, dx, at(movable_count), floor, clumps, common};
+                        double floor, const MotionBounds& bounds, const VertexClusters& clusters,
+                        std::span<Vec3> common) {
+  const Problem problem{x, dx, at(movable_count), floor, clusters, common};
   CHECK(common.size() >= problem.movable_end && dx.size() >= problem.movable_end && x.size() >= problem.movable_end);
   relax_all(problem, pairs, bounds);
   give_back(changed_, changing_, tight_, found_);  // in folds there are many
@@ -189,7 +191,7 @@ void CommonMotion::relax_all(const Problem& problem, const PairView& pairs, cons
     stay_inside(problem, bounds);
     changed_.swap(changing_);
   }
-  zones_.clear(static_cast<int>(problem.movable_end), problem.clumps);
+  zones_.clear(static_cast<int>(problem.movable_end), problem.clusters);
   for (; rounds_ <= k_most_rounds + k_most_joins; ++rounds_) {
     look_at_all(problem, pairs);
     if (tight_.empty()) return;

@@ -14,7 +14,7 @@
 #include "collision/broad_phase/pair_view.h"
 #include "collision/step_bound/motion_zones.h"
 #include "collision/step_bound/pair_room.h"
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 
 namespace ft::inline collision {
 
@@ -39,12 +39,12 @@ inline double share_inside_ball(const Vec3& from, const Vec3& d, double radius) 
 class CommonMotion {
  public:
   /// Fills `common` from the displacements dx of the first movable_count vertices [m]; the others do not move. No
-  /// vertex moves farther than by the longest dx in its clump, so pairs that are complete for that are complete for it.
-  /// Where pairs are left after the last round nothing is in common. What a vertex of a clump loses the whole clump
-  /// loses, but for what its vertices approach each other by. Depends on the order of the pairs, not on the number of
-  /// threads.
+  /// vertex moves farther than by the longest dx in its cluster, so pairs that are complete for that are complete for
+  /// it. Where pairs are left after the last round nothing is in common. What a vertex of a cluster loses the whole
+  /// cluster loses, but for what its vertices approach each other by. Depends on the order of the pairs, not on the
+  /// number of threads.
   void find(std::span<const Vec3> x, std::span<const Vec3> dx, int movable_count, const PairView& pairs, double floor,
-            const MotionBounds& bounds, const VertexClumps& clumps, std::span<Vec3> common);
+            const MotionBounds& bounds, const VertexClusters& clusters, std::span<Vec3> common);
   int rounds() const { return rounds_; }  ///< of the last find()
 
  private:

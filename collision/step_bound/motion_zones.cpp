@@ -2,10 +2,10 @@
 
 namespace ft::inline collision {
 
-void MotionZones::clear(int cloth_vertex_count, const VertexClumps& clumps) {
+void MotionZones::clear(int cloth_vertex_count, const VertexClusters& clusters) {
   zones_.reset(at(cloth_vertex_count));
-  for (int c = 0; c < clumps.count(); ++c)
-    for (const int v : clumps.members(c)) zones_.join(clumps.members(c).front(), v);
+  for (int c = 0; c < clusters.count(); ++c)
+    for (const int v : clusters.members(c)) zones_.join(clusters.members(c).front(), v);
   body_.clear();
 }
 

@@ -10,14 +10,14 @@
 #include "baker/core/disjoint_sets.h"
 #include "collision/broad_phase/contact_pairs.h"
 #include "collision/geometry/pair_geometry.h"
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 
 namespace ft::inline collision {
 
 class MotionZones {
  public:
-  /// No zones among so many cloth vertices but the clumps; vertices of the common numbering past them are the body's.
-  void clear(int cloth_vertex_count, const VertexClumps& clumps);
+  /// No zones among so many cloth vertices but the clusters; vertices of the common numbering past them are the body's.
+  void clear(int cloth_vertex_count, const VertexClusters& clusters);
   /// The cloth of a pair moves as one from now on, with the body if the body is in the pair. x: the pair's places, d:
   /// its motions [m].
   void join(PairKind kind, const Stencil& stencil, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& d);

@@ -141,7 +141,7 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
     before = x_;
     report.settled = newton(report);
     if (!report.settled) break;
-    if (!contact_.rubs()) break;
+    if (!contact_.has_friction()) break;
     double moved = 0;
     for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, (x_[i] - before[i]).norm());
     if (look > 0 && moved < k_friction_settled) break;

@@ -73,12 +73,12 @@ struct Moved {
 };
 
 Moved move(const Cloth& cloth, const ContactPairs& pairs, bool together, const MotionBounds& bounds = {},
-           const VertexClumps& clumps = {}) {
+           const VertexClusters& clusters = {}) {
   const std::size_t n = at(cloth.movable_count);
   Moved out;
   out.common.assign(n, Vec3::Zero());
   CommonMotion finder;
-  if (together) finder.find(cloth.x, cloth.dx, cloth.movable_count, pairs, k_floor, bounds, clumps, out.common);
+  if (together) finder.find(cloth.x, cloth.dx, cloth.movable_count, pairs, k_floor, bounds, clusters, out.common);
   out.rounds = finder.rounds();
   std::vector<double> share(n);
   truncate_displacements(cloth.x, cloth.dx, out.common, cloth.movable_count, pairs, k_floor, share);
@@ -203,8 +203,8 @@ TEST(CommonMotion, The_share_that_stays_in_a_ball_ends_on_it_and_is_a_number_for
     }
 }
 
-/// Clumps of vertices of a cloth that are joined by edges, however long; each of a few vertices.
-VertexClumps some_clumps(const Cloth& cloth, std::uint64_t seed) {
+/// Clusters of vertices of a cloth that are joined by edges, however long; each of a few vertices.
+VertexClusters some_clusters(const Cloth& cloth, std::uint64_t seed) {
   RestEdges edges;
   Dice dice(seed);
   for (const auto& e : cloth.edges)
@@ -212,38 +212,38 @@ VertexClumps some_clumps(const Cloth& cloth, std::uint64_t seed) {
       edges.edges.push_back(e);
       edges.lengths.push_back(dice.uniform(1, 2));
     }
-  return VertexClumps(edges, std::vector<double>(at(cloth.movable_count), 3.0));
+  return VertexClusters(edges, std::vector<double>(at(cloth.movable_count), 3.0));
 }
 
-TEST(CommonMotion, Nothing_crosses_where_vertices_lie_in_clumps_and_these_are_no_faster_than_before) {
-  int clumps_moved = 0;
+TEST(CommonMotion, Nothing_crosses_where_vertices_lie_in_clusters_and_these_are_no_faster_than_before) {
+  int clusters_moved = 0;
   for (std::uint64_t seed = 600; seed < 700; ++seed) {
     const Cloth cloth = hostile_sheets(seed);
     const ContactPairs pairs = all_pairs(cloth);
-    const VertexClumps clumps = some_clumps(cloth, seed);
-    EXPECT_GT(clumps.count(), 1);
-    const Moved moved = move(cloth, pairs, true, {}, clumps);
+    const VertexClusters clusters = some_clusters(cloth, seed);
+    EXPECT_GT(clusters.count(), 1);
+    const Moved moved = move(cloth, pairs, true, {}, clusters);
     EXPECT_EQ(crossed(cloth, pairs, moved.common) + crossed(cloth, pairs, moved.displacement), 0) << seed;
     for (int v = 0; v < cloth.movable_count; ++v) {
       double longest = 0;
-      for (const int i : clumps.with(v)) longest = std::max(longest, cloth.dx[at(i)].norm());
+      for (const int i : clusters.with(v)) longest = std::max(longest, cloth.dx[at(i)].norm());
       EXPECT_LE(moved.common[at(v)].norm(), longest * (1 + 1e-9)) << seed;
-      clumps_moved += clumps.of(v) >= 0 && moved.common[at(v)].norm() > 0.1 * longest;
+      clusters_moved += clusters.of(v) >= 0 && moved.common[at(v)].norm() > 0.1 * longest;
     }
   }
-  EXPECT_GT(clumps_moved, 100);
+  EXPECT_GT(clusters_moved, 100);
 }
 
-TEST(CommonMotion, Clumps_are_not_torn) {
+TEST(CommonMotion, Clusters_are_not_torn) {
   int torn_without = 0;
   for (std::uint64_t seed = 800; seed < 850; ++seed) {
     Cloth cloth = hostile_sheets(seed);
-    const VertexClumps clumps = some_clumps(cloth, seed);
-    clumps.take_mean(cloth.dx);
+    const VertexClusters clusters = some_clusters(cloth, seed);
+    clusters.take_mean(cloth.dx);
     const ContactPairs pairs = all_pairs(cloth);
-    const Moved moved = move(cloth, pairs, true, {}, clumps), without = move(cloth, pairs, true);
+    const Moved moved = move(cloth, pairs, true, {}, clusters), without = move(cloth, pairs, true);
     for (int v = 0; v < cloth.movable_count; ++v) {
-      const auto first = at(clumps.with(v).front());
+      const auto first = at(clusters.with(v).front());
       EXPECT_LT((moved.common[at(v)] - moved.common[first]).norm(), 1e-12) << seed;
       torn_without += (without.common[at(v)] - without.common[first]).norm() > 1e-5;
     }

@@ -93,9 +93,9 @@ TEST(Attach, Where_a_slit_ends_nothing_is_held) {
   for (int j = 0; j < slit; ++j) left.push_back(row * j + cells / 2);
   ClothPin zip = pin_of(left, 0);
   const ClothGarment garments[] = {dress};
-  for (const SurfacePoint& f : footholds(garments, 0, zip)) EXPECT_NEAR(f.distance, 3e-3, 1e-12);
+  for (const SurfacePoint& f : anchor_points(garments, 0, zip)) EXPECT_NEAR(f.distance, 3e-3, 1e-12);
   zip.vertices = {row * slit + cells / 2 + 1, row * 3 + 1};  // the end of the slit, and the middle of a panel
-  for (const SurfacePoint& f : footholds(garments, 0, zip)) EXPECT_EQ(f.triangle[0], -1);
+  for (const SurfacePoint& f : anchor_points(garments, 0, zip)) EXPECT_EQ(f.triangle[0], -1);
 }
 
 TEST(Attach, Two_strips_joined_at_a_corner_hang_by_the_balance_of_forces) {

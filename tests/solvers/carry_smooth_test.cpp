@@ -96,15 +96,15 @@ TEST(CarrySmooth, What_is_moved_out_of_a_way_takes_the_near_along_by_their_dista
   EXPECT_EQ(row.smooth.along_with(25, walk).size(), 16u);  // the walk may be used again
 }
 
-TEST(CarrySmooth, A_clump_comes_along_all_the_way) {
+TEST(CarrySmooth, A_cluster_comes_along_all_the_way) {
   const Row row;
   const std::vector<double> size(row.rest.size(), 1.1 * k_tiny);
-  const VertexClumps clumps(row.edges, size);
-  ASSERT_GT(clumps.count(), 0);
-  const CarrySmooth smooth(row.rest, row.edges, row.typical, 1.0 / 16, clumps);
+  const VertexClusters clusters(row.edges, size);
+  ASSERT_GT(clusters.count(), 0);
+  const CarrySmooth smooth(row.rest, row.edges, row.typical, 1.0 / 16, clusters);
   CarrySmooth::Walk walk;
-  const int other = clumps.members(0)[1];
-  for (const CarrySmooth::Share& s : smooth.along_with(clumps.members(0)[0], walk)) {
+  const int other = clusters.members(0)[1];
+  for (const CarrySmooth::Share& s : smooth.along_with(clusters.members(0)[0], walk)) {
     if (s.vertex == other) {
       EXPECT_EQ(s.weight, 1);
     }

@@ -90,7 +90,7 @@ TEST(LockstepTerms, Gradient_of_contact_and_friction_is_the_slope_of_their_energ
   for (std::size_t i = 0; i < 3; ++i) before[i] += Vec3(2e-4, 0, 1e-4 * static_cast<double>(i));  // it slid since
   contact.find(x, std::vector<Vec3>(x.size(), Vec3::Zero()));
   contact.lag_friction(x, before, 1.0 / 600);
-  ASSERT_TRUE(contact.rubs());
+  ASSERT_TRUE(contact.has_friction());
   expect_gradient(
       x, [&](const auto& p) { return contact.value(p); }, [&](const auto& p, auto& out) { contact.add_terms(p, out); },
       1e-4);

@@ -52,11 +52,11 @@ struct NearVertices {
     all = points;
     for (const Vec3& p : points) direction.push_back(Vec3(2e-3, 1e-3, 0) + 0.1 * Vec3(p.y(), 0, p.x()));
   }
-  /// The direction after calm(), with one vertex's made longer by 5 mm.
+  /// The direction after damp_relative_motion(), with one vertex's made longer by 5 mm.
   std::vector<Vec3> calmed(int vertex) const {
     std::vector<Vec3> out = direction;
     if (vertex >= 0) out[at(vertex)] += Vec3(3e-3, 0, 4e-3);
-    StepTruncation(*model).calm(all, out);
+    StepTruncation(*model).damp_relative_motion(all, out);
     return out;
   }
   static Vec3 middle_of(const Edge& edge, const std::vector<Vec3>& d) {
@@ -70,7 +70,7 @@ TEST(StepTruncation, Leaves_alone_what_moves_together) {
   for (std::size_t i = 0; i < calmed.size(); ++i) EXPECT_EQ(calmed[i], scene.direction[i]) << i;
 }
 
-TEST(StepTruncation, Slows_a_clump_about_its_mean) {
+TEST(StepTruncation, Slows_a_cluster_about_its_mean) {
   const NearVertices scene;
   const std::vector<Vec3> calmed = scene.calmed(scene.twin);
   const Vec3 &corner = calmed[at(scene.corner)], &twin = calmed[at(scene.twin)];

@@ -17,7 +17,7 @@ namespace {
 std::string attachment_text(std::span<const ClothGarment> garments, const ClothGarment& own, const ClothPin& pin) {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   int held = 0;
-  for (const SurfacePoint& f : footholds(garments, static_cast<std::size_t>(&own - garments.data()), pin)) {
+  for (const SurfacePoint& f : anchor_points(garments, static_cast<std::size_t>(&own - garments.data()), pin)) {
     if (f.triangle[0] < 0) continue;
     nearest = std::min(nearest, f.distance), farthest = std::max(farthest, f.distance);
     ++held;

@@ -117,8 +117,8 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
   return pin;
 }
 
-Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin,
-                       std::vector<std::string>& notes) {
+Status check_anchor_points(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin,
+                           std::vector<std::string>& notes) {
   const ClothGarment& target = garments[static_cast<std::size_t>(pin.to)];
   for (const ClothGarment* garment : {&garments[own], &target})
     if (!garment->mesh.stitches.empty())
@@ -126,7 +126,7 @@ Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, 
           fmt::format("a pin holds to cloth \"{}\", but the panels of \"{}\" are apart until they are sewn",
                       target.name, garment->name),
           {}, "bake the sewing by itself, and give what comes out of it as the mesh");
-  const auto found = footholds(garments, own, pin);
+  const auto found = anchor_points(garments, own, pin);
   const auto missing =
       std::count_if(found.begin(), found.end(), [](const SurfacePoint& f) { return f.triangle[0] < 0; });
   const std::string none =

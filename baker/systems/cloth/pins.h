@@ -17,8 +17,8 @@ Result<ClothPin> resolve_pin(const PinSpec& spec, const Mesh& garment, std::span
 
 /// What a pin to a garment would find: an error where that is nothing, or where panels are still to be sewn, and a note
 /// where some of its vertices find nothing.
-Status check_footholds(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin,
-                       std::vector<std::string>& notes);
+Status check_anchor_points(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin,
+                           std::vector<std::string>& notes);
 
 /// Distance of each point to the surface [m]; infinite when there is no triangle.
 std::vector<double> distances_to_surface(std::span<const Vec3> points, std::span<const Vec3> body,

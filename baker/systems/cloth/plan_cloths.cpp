@@ -187,7 +187,7 @@ Status add_pins(const Shot& shot, const ClothSpec& spec, const PrimaryPlan& prim
     pin.to_world = to_world;
     if (to_cloth) {
       pin.to = static_cast<int>(target - garments.begin());
-      if (const Status held = check_footholds(garments, own, pin, notes); !held) return at_cloth(held.error());
+      if (const Status held = check_anchor_points(garments, own, pin, notes); !held) return at_cloth(held.error());
     }
     garments[own].pins.push_back(std::move(pin));
   }

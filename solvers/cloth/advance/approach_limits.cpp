@@ -28,8 +28,8 @@ void ApproachLimits::add(const ContactPairs& pairs, std::span<const Vec3> x, std
   add_kind(PairKind::k_edge_edge, pairs.edge_edge);
 }
 
-void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion, const VertexClumps& clumps,
-                           const CarrySmooth& smooth) const {
+void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion,
+                           const VertexClusters& clusters, const CarrySmooth& smooth) const {
   const std::size_t n = cloth_motion.size();
   bool changed = true;
   CarrySmooth::Walk walk;
@@ -47,7 +47,7 @@ void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> b
       const double part_of_first = at(v[3]) >= n ? 1 : at(v[0]) >= n ? 0 : 0.5;
       const std::array<double, 4> along = pair_retreat(limit.kind, advance, approach, part_of_first, too_much);
       changed = true;
-      // A clump is carried as one, also where both features have vertices of it, and what has short edges does not
+      // A cluster is carried as one, also where both features have vertices of it, and what has short edges does not
       // part.
       for (std::size_t k = 0; k < 4; ++k) {
         if (at(v[k]) >= n || along[k] == 0) continue;
@@ -55,7 +55,7 @@ void ApproachLimits::apply(std::span<Vec3> cloth_motion, std::span<const Vec3> b
         for (const CarrySmooth::Share& s : shares)
           cloth_motion[at(s.vertex)] += s.weight * along[k] * limit.room.normal;
         if (shares.empty())
-          for (const int i : clumps.with(v[k])) cloth_motion[at(i)] += along[k] * limit.room.normal;
+          for (const int i : clusters.with(v[k])) cloth_motion[at(i)] += along[k] * limit.room.normal;
       }
     }
   }

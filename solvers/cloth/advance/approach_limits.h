@@ -10,7 +10,7 @@
 #include "baker/core/give_back.h"
 #include "collision/broad_phase/contact_pairs.h"
 #include "collision/step_bound/pair_room.h"
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 #include "solvers/cloth/model/carry_smooth.h"
 
 namespace ft::inline solvers {
@@ -23,7 +23,7 @@ class ApproachLimits {
   void add(const ContactPairs& pairs, std::span<const Vec3> x, std::span<const Vec3f> d);
   /// Changes the cloth's motion by what the limits ask; body_motion is that of the vertices behind it [m]. Depends on
   /// the order of adding.
-  void apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion, const VertexClumps& clumps,
+  void apply(std::span<Vec3> cloth_motion, std::span<const Vec3> body_motion, const VertexClusters& clusters,
              const CarrySmooth& smooth) const;
 
  private:

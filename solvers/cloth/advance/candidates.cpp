@@ -5,7 +5,7 @@
 
 #include "baker/core/give_back.h"
 #include "baker/core/parallel.h"
-#include "collision/broad_phase/pair_way.h"
+#include "collision/broad_phase/swept_motion.h"
 #include "collision/geometry/ccd_li2021.h"
 #include "solvers/cloth/advance/candidates_touching.h"
 #include "solvers/cloth/advance/carry_field.h"
@@ -143,7 +143,7 @@ void Candidates::find_near(const ClothMotion& cloth, double h, const PieceMotion
 }
 
 void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
-  zones_.clear(static_cast<int>(cloth.x.size()), model_.clumps);
+  zones_.clear(static_cast<int>(cloth.x.size()), model_.clusters);
   inertia_.resize(cloth.x.size());
   for (std::size_t i = 0; i < inertia_.size(); ++i) inertia_[i] = h * cloth.v[i];
   piece.carry = inertia_;
@@ -155,7 +155,7 @@ void Candidates::carry(const ClothMotion& cloth, double h, PieceMotion& piece) {
   input.body_motion = piece.body_motion;
   input.inertia = inertia_;
   input.neighbours = &neighbours;
-  input.clumps = &model_.clumps;
+  input.clusters = &model_.clusters;
   input.smooth = &model_.carry_smooth;
   input.pairs = &near_body_;
   input.part_of_body_vertex = model_.collider->part_of_vertex();
@@ -244,11 +244,11 @@ PairSieve Candidates::sieve(const ClothMotion& cloth, const PieceMotion& piece, 
   const VertexWays ways{piece.start, piece.all, piece.centre, piece.slack};
   return [this, &cloth, ways, touching](PairKind kind, const Stencil& pair) {
     const bool self = pair.v[0] < model_.vertex_count() && pair.v[3] < model_.vertex_count();
-    const PairWay way(kind, pair, ways, self ? self_radius_ : radius_, k_clear);
-    auto verdict = PairWay::Verdict::k_open;
+    const SweptMotion way(kind, pair, ways, self ? self_radius_ : radius_, k_clear);
+    auto verdict = SweptMotion::Verdict::k_open;
     const auto is_apart = [&](const Vec3& normal) {
       verdict = std::max(verdict, way.judge(normal));
-      return verdict == PairWay::Verdict::k_apart;
+      return verdict == SweptMotion::Verdict::k_apart;
     };
     if (is_apart(way.between_centres()) || is_apart(way.flat()) || is_apart(way.between_last_centres()) ||
         !counts(cloth, kind, pair))
@@ -257,7 +257,8 @@ PairSieve Candidates::sieve(const ClothMotion& cloth, const PieceMotion& piece, 
     std::array<Vec3, 4> carried;
     for (std::size_t k = 0; k < 4; ++k) carried[k] = x[k] + d[k];
     if (is_apart(pair_geometry(kind, carried).normal)) return false;
-    if (touching != nullptr && verdict == PairWay::Verdict::k_open) touching->take(kind, pair, ccd_time(kind, x, d));
+    if (touching != nullptr && verdict == SweptMotion::Verdict::k_open)
+      touching->take(kind, pair, ccd_time(kind, x, d));
     return true;
   };
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "baker/core/parallel.h"
-#include "collision/broad_phase/pair_way.h"
+#include "collision/broad_phase/swept_motion.h"
 #include "collision/geometry/ccd_li2021.h"
 #include "solvers/cloth/advance/candidates_touching.h"
 
@@ -54,9 +54,9 @@ void Candidates::add_touching(PairKind kind, const PieceMotion& piece, Touching&
       char moved = 0, changed = 0;
       for (const int v : pair.v) moved |= moved_[at(v)], changed |= changed_[at(v)];
       if (moved == 0 || changed != 0) continue;
-      const PairWay way(kind, pair, ways, 0, k_clear);
-      if (way.judge(way.between_centres()) != PairWay::Verdict::k_open ||
-          way.judge(way.flat()) != PairWay::Verdict::k_open)
+      const SweptMotion way(kind, pair, ways, 0, k_clear);
+      if (way.judge(way.between_centres()) != SweptMotion::Verdict::k_open ||
+          way.judge(way.flat()) != SweptMotion::Verdict::k_open)
         continue;
       touching.take(kind, pair, ccd_time(kind, gather(piece.start, pair), gather(piece.all, pair)));
     }
@@ -79,7 +79,7 @@ double Candidates::join_blocked(const ClothMotion& cloth, PieceMotion& piece) {
 
 double Candidates::part_blocked(const ClothMotion& cloth, PieceMotion& piece) {
   limits_.add(blocked_, piece.start, piece.all);
-  limits_.apply(piece.carry, piece.body_motion, model_.clumps, model_.carry_smooth);
+  limits_.apply(piece.carry, piece.body_motion, model_.clusters, model_.carry_smooth);
   return renew_carried(cloth, piece);
 }
 

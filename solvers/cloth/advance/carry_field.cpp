@@ -169,7 +169,7 @@ void carry_field(const CarryInput& in, std::span<Vec3> carry) {
     std::swap(now, next);
   }
   if (in.smooth != nullptr) in.smooth->smooth(now);
-  if (in.clumps != nullptr) in.clumps->take_mean(now);
+  if (in.clusters != nullptr) in.clusters->take_mean(now);
   double fastest = 0;
   for (const Pull& p : pulls) fastest = std::max(fastest, p.body_motion);
   for (int i = 0; i < n; ++i) fastest = std::max(fastest, in.inertia[at(i)].norm());

@@ -11,7 +11,7 @@
 
 #include "baker/core/mesh.h"
 #include "collision/broad_phase/pair_list.h"
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 #include "solvers/cloth/model/carry_smooth.h"
 
 namespace ft::inline solvers {
@@ -26,7 +26,7 @@ struct CarryInput {
   std::span<const int> part_of_body_vertex;  ///< of each body vertex: the nearest face of each part pulls
   double range = 0;                          ///< R: 2 r + largest body motion [m]
   const CarrySmooth* smooth = nullptr;       ///< what has short edges; null: nothing has
-  const VertexClumps* clumps = nullptr;      ///< are carried as one; null: none
+  const VertexClusters* clusters = nullptr;  ///< are carried as one; null: none
   int sweeps = 10;
 };
 

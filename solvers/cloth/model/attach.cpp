@@ -51,7 +51,7 @@ class EdgeWays {
 
 }  // namespace
 
-std::vector<SurfacePoint> footholds(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin) {
+std::vector<SurfacePoint> anchor_points(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin) {
   const std::vector<Vec3>& y = garments[at(pin.to)].mesh.positions;
   const std::vector<Triangle> triangles = triangulate(garments[at(pin.to)].mesh);
   const bool same = at(pin.to) == own;
@@ -92,7 +92,7 @@ void attach(ClothModel& model) {
   for (std::size_t g = 0; g < model.setup.garments.size(); ++g)
     for (const ClothPin& pin : model.setup.garments[g].pins) {
       if (pin.to < 0) continue;
-      const std::vector<SurfacePoint> held = footholds(model.setup.garments, g, pin);
+      const std::vector<SurfacePoint> held = anchor_points(model.setup.garments, g, pin);
       const std::vector<HoldSpan> holds = hold_spans(pin, model.setup.garments[g].mesh.positions);
       for (std::size_t k = 0; k < held.size(); ++k) {
         AttachPoint point;

@@ -23,7 +23,7 @@ struct AttachSettings {
 /// For each vertex of a pin of garment `own`: where it holds to garment `to`, in that one's numbering, as both lie at
 /// rest. In its own garment that is on the other side of an opening, if there is one: what is about as near along the
 /// cloth is not meant.
-std::vector<SurfacePoint> footholds(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin);
+std::vector<SurfacePoint> anchor_points(std::span<const ClothGarment> garments, std::size_t own, const ClothPin& pin);
 
 /// When each vertex of a pin holds; they are at `rest` [m]. Where a pin opens along a direction its vertices share the
 /// time of the fade, each with an even part of its own.

@@ -29,7 +29,7 @@ double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
 }  // namespace
 
 CarrySmooth::CarrySmooth(std::span<const Vec3> rest, const RestEdges& edges, std::span<const double> typical_edge,
-                         double short_edge, const VertexClumps& clumps) {
+                         double short_edge, const VertexClusters& clusters) {
   CHECK(rest.size() == typical_edge.size());
   const auto up_to = [&](std::size_t k, double share) {
     return edges.lengths[k] <= share * typical_edge[at(edges.edges[k][0])];
@@ -49,7 +49,7 @@ CarrySmooth::CarrySmooth(std::span<const Vec3> rest, const RestEdges& edges, std
       linked.push_back(k);
   add_ends_of(linked);
   for (const int v : vertices_) {
-    place_.push_back(clumps.of(v) < 0 ? rest[at(v)] : clumps.mean(clumps.of(v), rest));
+    place_.push_back(clusters.of(v) < 0 ? rest[at(v)] : clusters.mean(clusters.of(v), rest));
     reach_.push_back(k_reach * typical_edge[at(v)]);
   }
   diagonal_.assign(vertices_.size(), 1.0);

@@ -12,7 +12,7 @@
 
 #include "baker/core/edge_strain.h"
 #include "baker/core/types.h"
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 
 namespace ft::inline solvers {
 
@@ -20,9 +20,9 @@ class CarrySmooth {
  public:
   CarrySmooth() = default;
   /// Edges up to `short_edge` of the typical one, which has one entry per vertex [m], are short; what has one is linked
-  /// along others that are not long. Vertices of a clump are at one place for this.
+  /// along others that are not long. Vertices of a cluster are at one place for this.
   CarrySmooth(std::span<const Vec3> rest, const RestEdges& edges, std::span<const double> typical_edge,
-              double short_edge, const VertexClumps& clumps);
+              double short_edge, const VertexClusters& clusters);
 
   bool empty() const { return vertices_.empty(); }
   void smooth(std::span<Vec3> carry) const;
@@ -37,7 +37,7 @@ class CarrySmooth {
     std::vector<char> seen;
     std::vector<int> reached;
   };
-  /// Who comes along, and by how much, when a vertex is moved: what is near it along links, its clump all the way.
+  /// Who comes along, and by how much, when a vertex is moved: what is near it along links, its cluster all the way.
   /// Empty when it has none.
   std::span<const Share> along_with(int vertex, Walk& walk) const;
 
@@ -50,7 +50,7 @@ class CarrySmooth {
   void multiply(std::span<const Vec3> x, std::span<Vec3> out) const;
 
   std::vector<int> vertices_;  ///< that are linked, ascending
-  std::vector<Vec3> place_;    ///< of each at rest, of its clump where it is in one [m]
+  std::vector<Vec3> place_;    ///< of each at rest, of its cluster where it is in one [m]
   std::vector<double> reach_;  ///< of each: what is nearer comes along [m]
   std::vector<Link> links_;
   std::vector<double> diagonal_;

@@ -104,13 +104,13 @@ void weigh(ClothModel& model) {
   model.rest_edges.edges.shrink_to_fit();
   lengths_from_pattern(*model.topology, model.rest_edges);
   model.typical_edge = median_edges(model);
-  std::vector<double> typical(n), clump_size(n);
+  std::vector<double> typical(n), cluster_size(n);
   for (std::size_t i = 0; i < n; ++i) {
     typical[i] = model.typical_edge[at(model.contact.garment[i])];
-    clump_size[i] = k_very_near * typical[i];
+    cluster_size[i] = k_very_near * typical[i];
   }
-  model.clumps = VertexClumps(model.rest_edges, clump_size);
-  model.carry_smooth = CarrySmooth(model.contact.rest, model.rest_edges, typical, k_very_near, model.clumps);
+  model.clusters = VertexClusters(model.rest_edges, cluster_size);
+  model.carry_smooth = CarrySmooth(model.contact.rest, model.rest_edges, typical, k_very_near, model.clusters);
 }
 
 /// Where the garments start: as the body at the start of the pre-roll has taken them along, or, what is pinned to the

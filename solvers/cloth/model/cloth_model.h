@@ -11,7 +11,7 @@
 #include "baker/core/edge_strain.h"
 #include "baker/core/result.h"
 #include "collision/check/sewn_pairs.h"
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 #include "solvers/cloth/model/absence.h"
 #include "solvers/cloth/model/carry_smooth.h"
 #include "solvers/cloth/model/cloth_setup.h"
@@ -51,7 +51,7 @@ struct ClothModel {
   std::vector<Vec3> own_rest;           ///< what contact.rest sees, unless it is one garment's mesh [m]
   RestEdges rest_edges;
   std::vector<double> typical_edge;  ///< per garment: median of its edges at rest; infinite without any [m]
-  VertexClumps clumps;               ///< vertices that are very near each other for their garment
+  VertexClusters clusters;           ///< vertices that are very near each other for their garment
   CarrySmooth carry_smooth;          ///< what has such short edges
   std::vector<char> self_collides;   ///< per vertex
   std::vector<char> unused;          ///< vertices of no face: carried along, never solved for

@@ -46,7 +46,7 @@ void NewtonDirection::solve(const Iteration& in, std::span<const char> held) {
   if (system_.block_count() >= model_.setup.large_system) system_.give_back();
   for (Vec3& d : direction_)
     if (!d.allFinite()) d.setZero(), in.result.finite = false;
-  truncation_.calm(in.all, direction_);
+  truncation_.damp_relative_motion(in.all, direction_);
   in.result.seconds_linear += in.watch.lap();
 }
 
@@ -113,7 +113,7 @@ std::span<const Vec3> NewtonDirection::truncate(const Iteration& in, std::span<V
   for (int round = 0; round < k_most_held && is_spoiled(in); ++round) {
     for (std::size_t i = 0; i < held.size(); ++i)
       held[i] = held[i] != 0 || (cut_[i] - direction_[i]).norm() > lost * direction_[i].norm();
-    model_.clumps.take_most(held);
+    model_.clusters.take_most(held);
     lost *= 0.5;
     refill(in, springs);
     in.result.seconds_contact += in.watch.lap();

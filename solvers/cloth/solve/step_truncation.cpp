@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 /// Distance that truncation always keeps [m].
 constexpr double k_floor = 1e-5;
-/// Of the way from a clump's mean to its farthest vertex, or of a cap's height, now or at rest, that one iteration may
-/// turn or stretch it by: they are stiff springs of next to no length, whose directions change with every step.
+/// Of the way from a cluster's mean to its farthest vertex, or of a cap's height, now or at rest, that one iteration
+/// may turn or stretch it by: they are stiff springs of next to no length, whose directions change with every step.
 constexpr double k_most_turned = 0.5;
 
 double farthest_from(const Vec3& place, std::span<const int> vertices, std::span<const Vec3> x) {
@@ -37,22 +37,23 @@ StepTruncation::StepTruncation(const ClothModel& model) : model_(model) {
       const Vec3 along = rest[at(base[1])] - rest[at(base[0])], up = rest[at(t[k])] - rest[at(base[0])];
       const double length = along.norm(), way = length > 0 ? up.dot(along) / length : 0;
       const double height = (up - way / length * along).norm();
-      const int clump = model.clumps.of(t[k]);
-      const bool together = clump >= 0 && (clump == model.clumps.of(base[0]) || clump == model.clumps.of(base[1]));
+      const int cluster = model.clusters.of(t[k]);
+      const bool together =
+          cluster >= 0 && (cluster == model.clusters.of(base[0]) || cluster == model.clusters.of(base[1]));
       if (height <= k_very_near * model.typical_edge[at(model.contact.garment[at(t[k])])] && way > 0 && way < length &&
           !together && !flipped.contains({t[k], base}))
         caps_.push_back({t[k], base, way / length, height});
     }
 }
 
-void StepTruncation::calm(std::span<const Vec3> all, std::span<Vec3> direction) const {
-  const VertexClumps& clumps = model_.clumps;
+void StepTruncation::damp_relative_motion(std::span<const Vec3> all, std::span<Vec3> direction) const {
+  const VertexClusters& clusters = model_.clusters;
   const std::span<const Vec3> rest = model_.contact.rest;
-  for (int c = 0; c < clumps.count(); ++c) {
-    const std::span<const int> members = clumps.members(c);
-    const Vec3 mean = clumps.mean(c, direction);
-    const double extent =
-        std::max(farthest_from(clumps.mean(c, all), members, all), farthest_from(clumps.mean(c, rest), members, rest));
+  for (int c = 0; c < clusters.count(); ++c) {
+    const std::span<const int> members = clusters.members(c);
+    const Vec3 mean = clusters.mean(c, direction);
+    const double extent = std::max(farthest_from(clusters.mean(c, all), members, all),
+                                   farthest_from(clusters.mean(c, rest), members, rest));
     const double farthest = farthest_from(mean, members, direction), most = k_most_turned * extent;
     if (farthest <= most) continue;
     for (const int v : members) direction[at(v)] = mean + most / farthest * (direction[at(v)] - mean);
@@ -78,20 +79,20 @@ void StepTruncation::truncate(ContactPotential& contact, std::span<const Vec3> a
     for (std::size_t i = begin; i < end; ++i)
       share_[i] = share_inside_ball(all[i] - balls.centre_of(i), direction[i], balls.radius[i]);
   });
-  model_.clumps.take_least(share_);
+  model_.clusters.take_least(share_);
   parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       direction[i] *= share_[i];
       length_[i] = direction[i].norm();
     }
   });
-  model_.clumps.take_most(length_);
+  model_.clusters.take_most(length_);
   do {
     contact.near_pairs(length_, k_floor, near_);
     const std::span<Vec3> common = cut;  // until the rest is added
-    common_motion_.find(all, direction, model_.vertex_count(), near_, k_floor, balls, model_.clumps, common);
+    common_motion_.find(all, direction, model_.vertex_count(), near_, k_floor, balls, model_.clusters, common);
     truncate_displacements(all, direction, common, model_.vertex_count(), near_, k_floor, share_);
-    model_.clumps.take_least(share_);
+    model_.clusters.take_least(share_);
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         cut[i] = common[i] + share_[i] * (direction[i] - common[i]);

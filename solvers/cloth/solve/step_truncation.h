@@ -1,5 +1,5 @@
 // What of a Newton direction is done: what keeps every vertex inside the ball in which the list of pairs is complete,
-// and every pair apart. Clumps of vertices are cut alike.
+// and every pair apart. Clusters of vertices are cut alike.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ class StepTruncation {
   explicit StepTruncation(const ClothModel& model);
   /// Slows what vertices that lie very near each other, or near an edge of their triangle, do against each other, so
   /// that no step takes one past another. all: places, the cloth's first; direction: the cloth's displacements [m].
-  void calm(std::span<const Vec3> all, std::span<Vec3> direction) const;
+  void damp_relative_motion(std::span<const Vec3> all, std::span<Vec3> direction) const;
   /// Shortens the direction to what stays in the balls, fills `cut` with what may be done of it and the front of
   /// `trial` with where that leads [m]. pairs_suffice may be empty.
   void truncate(ContactPotential& contact, std::span<const Vec3> all, const MotionBounds& balls,
@@ -32,7 +32,7 @@ class StepTruncation {
                                       std::span<const Vec3> direction);
 
  private:
-  /// A vertex of a triangle that at rest lies very near the opposite edge, in no clump with its ends.
+  /// A vertex of a triangle that at rest lies very near the opposite edge, in no cluster with its ends.
   struct Cap {
     int vertex;
     Edge base;

@@ -1,4 +1,4 @@
-#include "collision/step_bound/vertex_clumps.h"
+#include "collision/step_bound/vertex_clusters.h"
 
 #include <algorithm>
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace ft::inline collision {
 
-VertexClumps::VertexClumps(const RestEdges& edges, std::span<const double> size) {
+VertexClusters::VertexClusters(const RestEdges& edges, std::span<const double> size) {
   std::vector<std::size_t> shortest;
   for (std::size_t k = 0; k < edges.edges.size(); ++k) {
     const auto [a, b] = edges.edges[k];
@@ -26,14 +26,14 @@ VertexClumps::VertexClumps(const RestEdges& edges, std::span<const double> size)
     const double joined = way[at(a)] + edges.lengths[k] + way[at(b)];
     if (joined <= std::min(size[at(a)], size[at(b)])) way[at(sets.join(a, b))] = joined;
   }
-  clumps_ = sets.groups();
+  clusters_ = sets.groups();
   of_.assign(size.size(), -1);
   for (int c = 0; c < count(); ++c)
     for (const int v : members(c)) of_[at(v)] = c;
 }
 
 template <class Value, class Before>
-void VertexClumps::take_first(std::span<Value> values, const Before& before) const {
+void VertexClusters::take_first(std::span<Value> values, const Before& before) const {
   for (int c = 0; c < count(); ++c) {
     Value first = values[at(members(c)[0])];
     for (const int v : members(c))
@@ -42,23 +42,23 @@ void VertexClumps::take_first(std::span<Value> values, const Before& before) con
   }
 }
 
-void VertexClumps::take_least(std::span<double> values) const {
+void VertexClusters::take_least(std::span<double> values) const {
   take_first(values, std::less<>());
 }
-void VertexClumps::take_most(std::span<double> values) const {
+void VertexClusters::take_most(std::span<double> values) const {
   take_first(values, std::greater<>());
 }
-void VertexClumps::take_most(std::span<char> values) const {
+void VertexClusters::take_most(std::span<char> values) const {
   take_first(values, std::greater<>());
 }
 
-Vec3 VertexClumps::mean(int clump, std::span<const Vec3> values) const {
+Vec3 VertexClusters::mean(int cluster, std::span<const Vec3> values) const {
   Vec3 sum = Vec3::Zero();
-  for (const int v : members(clump)) sum += values[at(v)];
-  return sum / static_cast<double>(members(clump).size());
+  for (const int v : members(cluster)) sum += values[at(v)];
+  return sum / static_cast<double>(members(cluster).size());
 }
 
-void VertexClumps::take_mean(std::span<Vec3> values) const {
+void VertexClusters::take_mean(std::span<Vec3> values) const {
   for (int c = 0; c < count(); ++c) {
     const Vec3 common = mean(c, values);
     for (const int v : members(c)) values[at(v)] = common;

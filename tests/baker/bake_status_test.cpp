@@ -18,7 +18,7 @@ std::string reason_after(const FakeScene& scene, const std::function<void()>& ch
   return text(result);
 }
 
-TEST(Standing, Second_bake_is_skipped_and_says_so) {
+TEST(BakeStatus, Second_bake_is_skipped_and_says_so) {
   FakeScene scene;
   ASSERT_EQ(scene.run().exit_code, 0) << text(scene.run());
   const auto before = scene.products();
@@ -31,7 +31,7 @@ TEST(Standing, Second_bake_is_skipped_and_says_so) {
   EXPECT_EQ(scene.products(), before);
 }
 
-TEST(Standing, Same_inputs_give_the_same_bytes_in_another_folder) {
+TEST(BakeStatus, Same_inputs_give_the_same_bytes_in_another_folder) {
   FakeScene scene;
   ASSERT_EQ(scene.run().exit_code, 0);
   BakeOptions other = scene.options();
@@ -41,7 +41,7 @@ TEST(Standing, Same_inputs_give_the_same_bytes_in_another_folder) {
   EXPECT_EQ(scene.products().size(), 8u);  // sheet.abc .pc2 .obj, box.abc .obj, box.collider.abc .obj, manifest.json
 }
 
-TEST(Standing, Force_bakes_again_to_the_same_bytes) {
+TEST(BakeStatus, Force_bakes_again_to_the_same_bytes) {
   FakeScene scene;
   ASSERT_EQ(scene.run().exit_code, 0);
   const auto before = scene.products();
@@ -53,7 +53,7 @@ TEST(Standing, Force_bakes_again_to_the_same_bytes) {
   EXPECT_EQ(scene.products(), before);
 }
 
-TEST(Standing, Changed_fabric_is_named) {
+TEST(BakeStatus, Changed_fabric_is_named) {
   FakeScene scene;
   BakeOptions options = scene.options();
   options.overrides = {"cloth.sheet.fabric=denim"};
@@ -64,7 +64,7 @@ TEST(Standing, Changed_fabric_is_named) {
   EXPECT_NE(text(scene.run()).find("up to date"), 0u);  // without the override: stale again, baked again
 }
 
-TEST(Standing, Changed_mesh_is_named_and_touching_it_is_not_a_change) {
+TEST(BakeStatus, Changed_mesh_is_named_and_touching_it_is_not_a_change) {
   FakeScene scene;
   Mesh moved = FakeScene::sheet();
   EXPECT_NE(reason_after(
@@ -78,7 +78,7 @@ TEST(Standing, Changed_mesh_is_named_and_touching_it_is_not_a_change) {
             std::string::npos);
 }
 
-TEST(Standing, Damaged_or_lost_cache_is_noticed) {
+TEST(BakeStatus, Damaged_or_lost_cache_is_noticed) {
   FakeScene scene;
   EXPECT_NE(reason_after(
                 scene, [&] { std::filesystem::remove(scene.folder().path / "sheet.pc2"); }, scene.options())
@@ -94,14 +94,14 @@ TEST(Standing, Damaged_or_lost_cache_is_noticed) {
   EXPECT_NE(text(scene.run()).find("up to date"), std::string::npos);
 }
 
-TEST(Standing, Manifest_that_cannot_be_read_is_stale_and_not_fatal) {
+TEST(BakeStatus, Manifest_that_cannot_be_read_is_stale_and_not_fatal) {
   FakeScene scene;
   const auto spoil = [&] { std::ofstream(scene.folder().manifest()) << "{\"program\": 3}"; };
   EXPECT_NE(reason_after(scene, spoil, scene.options()).find("stale: the manifest cannot be read"), std::string::npos);
   EXPECT_EQ(scene.run().exit_code, 0);
 }
 
-TEST(Standing, Caches_that_are_no_longer_asked_for_disappear) {
+TEST(BakeStatus, Caches_that_are_no_longer_asked_for_disappear) {
   FakeScene scene;
   scene.write_shot(10, "", "[cache]\nformats = [\"abc\", \"pc2\"]\ncollider = true\n");
   ASSERT_EQ(scene.run().exit_code, 0);
@@ -113,7 +113,7 @@ TEST(Standing, Caches_that_are_no_longer_asked_for_disappear) {
   EXPECT_EQ(names, "manifest.json notes.txt sheet.obj sheet.pc2 ");
 }
 
-TEST(Standing, Gate_judges_a_finished_bake_without_baking_again) {
+TEST(BakeStatus, Gate_judges_a_finished_bake_without_baking_again) {
   FakeScene scene;
   ASSERT_EQ(scene.run().exit_code, 0);
   scene.write_shot(10, "", "[gate]\np99_strain = 0.005\n");
@@ -125,7 +125,7 @@ TEST(Standing, Gate_judges_a_finished_bake_without_baking_again) {
       << text(judged);
 }
 
-TEST(Standing, Range_of_frames_has_its_own_preroll_and_place_in_the_clip) {
+TEST(BakeStatus, Range_of_frames_has_its_own_preroll_and_place_in_the_clip) {
   FakeScene scene;
   BakeOptions options = scene.options();
   options.frames = FrameRange{5, 7};
@@ -144,7 +144,7 @@ TEST(Standing, Range_of_frames_has_its_own_preroll_and_place_in_the_clip) {
   EXPECT_DOUBLE_EQ(duration, 2 / 24.0);
 }
 
-TEST(Standing, Some_of_the_frames_do_not_replace_a_finished_bake_of_all_unless_forced) {
+TEST(BakeStatus, Some_of_the_frames_do_not_replace_a_finished_bake_of_all_unless_forced) {
   FakeScene scene;
   ASSERT_EQ(scene.run().exit_code, 0);
   const auto whole = scene.products();
@@ -178,7 +178,7 @@ TEST(Standing, Some_of_the_frames_do_not_replace_a_finished_bake_of_all_unless_f
   EXPECT_NE(scene.products(), whole);
 }
 
-TEST(Standing, A_part_is_replaced_by_the_whole_shot_by_other_frames_and_by_itself) {
+TEST(BakeStatus, A_part_is_replaced_by_the_whole_shot_by_other_frames_and_by_itself) {
   FakeScene scene;
   BakeOptions options = scene.options();
   for (const FrameRange range : {FrameRange{5, 7}, {8, 10}, {7, 9}, {6, 10}, {1, 10}}) {
@@ -191,7 +191,7 @@ TEST(Standing, A_part_is_replaced_by_the_whole_shot_by_other_frames_and_by_itsel
   EXPECT_EQ(scene.run().exit_code, 0) << "the shot itself has become shorter";
 }
 
-TEST(Standing, A_bake_that_was_not_finished_is_replaced_by_some_of_its_frames) {
+TEST(BakeStatus, A_bake_that_was_not_finished_is_replaced_by_some_of_its_frames) {
   FakeScene scene;
   RecordedProgress progress;
   progress.on_frame = [](int f) { f == 4 ? void(std::raise(SIGINT)) : void(); };
@@ -201,7 +201,7 @@ TEST(Standing, A_bake_that_was_not_finished_is_replaced_by_some_of_its_frames) {
   EXPECT_EQ(scene.run(part).exit_code, 0);
 }
 
-TEST(Standing, Dry_run_writes_nothing) {
+TEST(BakeStatus, Dry_run_writes_nothing) {
   FakeScene scene;
   BakeOptions options = scene.options();
   options.dry_run = true;

@@ -23,7 +23,7 @@ struct VertexWays {
   std::span<const float> slack;
 };
 
-class PairWay {
+class SweptMotion {
  public:
   enum class Verdict {
     k_open,   ///< nothing is proved
@@ -32,7 +32,7 @@ class PairWay {
   };
 
   /// radius, keep: [m], >= 0.
-  PairWay(PairKind kind, const Stencil& pair, const VertexWays& ways, double radius, double keep)
+  SweptMotion(PairKind kind, const Stencil& pair, const VertexWays& ways, double radius, double keep)
       : kind_(kind),
         start_(kind, pair, ways.x),
         way_(kind, pair, ways.d),

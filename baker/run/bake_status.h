@@ -10,7 +10,7 @@
 
 namespace ft::inline baker {
 
-struct Standing {
+struct BakeStatus {
   enum class Kind { k_absent, k_up_to_date, k_stale, k_unfinished };
   Kind kind = Kind::k_absent;
   std::vector<std::string> reasons;  ///< stale or unfinished: one sentence each
@@ -22,10 +22,10 @@ Manifest manifest_of(const BakeInputs& inputs);
 
 /// Compares the folder with what is asked for; reads the caches' bytes, so that a cache that was changed or lost is
 /// noticed.
-Standing find_standing(const BakeFolder& folder, const Manifest& now);
+BakeStatus find_bake_status(const BakeFolder& folder, const Manifest& now);
 
 /// "up to date: shot.toml, 121 frames in /there" or "stale: cloth.dress.fabric changed from cotton to denim; dress.obj
 /// changed".
-std::string describe(const Standing& standing, const BakeFolder& folder);
+std::string describe(const BakeStatus& status, const BakeFolder& folder);
 
 }  // namespace ft::inline baker

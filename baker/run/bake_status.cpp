@@ -1,4 +1,4 @@
-#include "baker/run/standing.h"
+#include "baker/run/bake_status.h"
 
 #include <fmt/format.h>
 
@@ -54,40 +54,40 @@ Manifest manifest_of(const BakeInputs& inputs) {
   return m;
 }
 
-Standing find_standing(const BakeFolder& folder, const Manifest& now) {
-  Standing out;
+BakeStatus find_bake_status(const BakeFolder& folder, const Manifest& now) {
+  BakeStatus out;
   std::error_code error;
   if (!std::filesystem::exists(folder.manifest(), error)) return out;
   auto before = read_manifest(folder.path);
   if (!before) {
-    out.kind = Standing::Kind::k_stale;
+    out.kind = BakeStatus::Kind::k_stale;
     out.reasons.push_back("the manifest cannot be read: " + before.error().what);
     return out;
   }
   out.before = std::move(*before);
   out.reasons = stale_reasons(out.before, now);
   if (!out.reasons.empty()) {
-    out.kind = Standing::Kind::k_stale;
+    out.kind = BakeStatus::Kind::k_stale;
   } else if (!out.before.complete) {
-    out.kind = Standing::Kind::k_unfinished;
+    out.kind = BakeStatus::Kind::k_unfinished;
     out.reasons.push_back("an earlier bake was not finished");
   } else {
     out.reasons = damage(folder, out.before);
-    out.kind = out.reasons.empty() ? Standing::Kind::k_up_to_date : Standing::Kind::k_stale;
+    out.kind = out.reasons.empty() ? BakeStatus::Kind::k_up_to_date : BakeStatus::Kind::k_stale;
   }
   return out;
 }
 
-std::string describe(const Standing& standing, const BakeFolder& folder) {
+std::string describe(const BakeStatus& status, const BakeFolder& folder) {
   std::string reasons;
-  for (const std::string& reason : standing.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
-  switch (standing.kind) {
-    case Standing::Kind::k_absent: return "not baked: there is nothing in " + folder.path.string();
-    case Standing::Kind::k_up_to_date:
-      return fmt::format("up to date: {}, {} frames in {}", standing.before.shot, standing.before.written_count(),
+  for (const std::string& reason : status.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
+  switch (status.kind) {
+    case BakeStatus::Kind::k_absent: return "not baked: there is nothing in " + folder.path.string();
+    case BakeStatus::Kind::k_up_to_date:
+      return fmt::format("up to date: {}, {} frames in {}", status.before.shot, status.before.written_count(),
                          folder.path.string());
-    case Standing::Kind::k_stale: return "stale: " + reasons;
-    case Standing::Kind::k_unfinished: return "unfinished: " + reasons;
+    case BakeStatus::Kind::k_stale: return "stale: " + reasons;
+    case BakeStatus::Kind::k_unfinished: return "unfinished: " + reasons;
   }
   return {};
 }
