@@ -67,6 +67,30 @@ class Chain : public testing::Test {
     return out;
   }
 
+  /// after: frames of all stages, after which a bake of its own is interrupted.
+  void expect_resumed(const std::vector<int>& all_after) const {
+    ASSERT_EQ(run(into("undisturbed")).exit_code, 0);
+    const auto expected = products("undisturbed");
+    for (const int after : all_after) {
+      RecordedProgress progress;
+      int count = 0;
+      progress.on_frame = [&](int) { ++count == after ? void(std::raise(SIGINT)) : void(); };
+      const std::string name = "stopped" + std::to_string(after);
+      const BakeResult stopped = run(into(name), progress);
+      ASSERT_EQ(stopped.exit_code, 130) << after << text(stopped);
+      const auto half = read_manifest(folder_ / name);
+      ASSERT_TRUE(half) << half.error().text();
+      EXPECT_FALSE(half->complete);
+      BakeOptions options = into(name);
+      options.resume = true;
+      RecordedProgress resumed;
+      const BakeResult done = run(options, resumed);
+      ASSERT_EQ(done.exit_code, 0) << after << text(done);
+      EXPECT_EQ(resumed.frames.size(), at(2 * k_stage_frames - after)) << "what was done is not done again";
+      EXPECT_EQ(products(name), expected) << after;
+    }
+  }
+
   const std::string k_sheet = "[cloth.sheet]\nmesh = \"sheet.obj\"\non = \"ball\"\npins = [{ vertices = \"0-10\" }]\n";
   const std::string k_badge =
       "[cloth.badge]\nmesh = \"badge.obj\"\non = \"cloth.sheet\"\npins = [{ vertices = \"0-6\" }]\n";
