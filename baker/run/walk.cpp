@@ -271,7 +271,7 @@ Status Walk::complete() {
     return finish_stage(folder_, {plan_.inputs.fingerprint, plan_.stage, whole});
   }
   if (const Status written = write_report(); !written) return written;
-  for (std::string& note : untouched_lines(interactions(manifest_, plan_.primaries)))
+  for (std::string& note : untouched_lines(interactions(with_earlier_stages(), plan_.primaries)))
     manifest_.notes.push_back(std::move(note));
   manifest_.complete = true;
   if (const Status written = write_manifest(); !written) return written;

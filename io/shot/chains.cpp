@@ -7,14 +7,13 @@
 namespace ft::inline io {
 namespace {
 
-/// Indices of those that can only be solved together with it; but for what it refers to, which its kind judges.
+/// Indices of those that can only be solved together with it; what it is on is none of them, its section says why.
 std::vector<std::size_t> together_with(const SecondarySpec& one, const Secondaries& all) {
   std::vector<std::size_t> out;
   const std::vector<std::string> names = one.section->solved_with(one);
-  const std::vector<std::size_t> references = references_of(one, all);
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i]->section == one.section && std::find(names.begin(), names.end(), all[i]->name) != names.end() &&
-        std::find(references.begin(), references.end(), i) == references.end())
+    if (all[i]->section == one.section && all[i]->reference() != one.on &&
+        std::find(names.begin(), names.end(), all[i]->name) != names.end())
       out.push_back(i);
   return out;
 }

@@ -75,10 +75,10 @@ TEST_F(Chains, What_needs_another_kind_of_primary_is_refused_with_the_reason) {
     const auto faults = faults_of(k_head + robe + text);
     return faults.empty() ? std::string() : faults.front();
   };
-  EXPECT_NE(fault("[cords.tassel]\nshape = \"rope\"\nto = [0, 1, 0]\nmass = 0.1\non = \"cloth.robe\"\n")
+  EXPECT_NE(fault("[cords.tassel]\nshape = \"rope\"\nto = [0, 1, 0]\nmass = 1\non = \"cloth.robe\"\n")
                 .find("bends, and cords need"),
             std::string::npos)
-      << fault("[cords.tassel]\nshape = \"rope\"\nto = [0, 1, 0]\nmass = 0.1\non = \"cloth.robe\"\n");
+      << fault("[cords.tassel]\nshape = \"rope\"\nto = [0, 1, 0]\nmass = 1\non = \"cloth.robe\"\n");
   EXPECT_NE(fault("[follow.hem]\nbones = [\"a\"]\non = \"cloth.robe\"\n").find("no joints"), std::string::npos);
   EXPECT_NE(fault(cloth("badge", "cloth.robe", "coupling = \"hybrid\"") +
                   "[standin.s]\nkind = \"weight\"\nmass = 1\nfor = \"badge\"\n")

@@ -17,8 +17,8 @@ struct Openings {
 };
 Openings openings_of(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
-/// An open mesh is a sheet from this share of its area on [1]. A robe has 0.2, tight trousers 0.08; a character that is
-/// open at the neck, where its head is another mesh, 0.01.
+/// An open mesh is a sheet from this share of its area on [1]. Measured: a robe as it is cut 0.33, as it hangs 0.13; a
+/// flat cloth 1; a body that is built around a skeleton 0.
 inline constexpr double k_sheet_share = 0.05;
 
 /// How a cache with such openings is taken, and what changes it; empty: it is all but closed.
