@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # documents.sh PROGRAM: baker/SHOT_KEYS.md says of the shot file's keys what the program prints, every sample is in the gallery
-# of samples/README.md and has a page of its own, and every file that a document links to is there.
+# of samples/README.md and has a page of its own, and every file that a document links to or names is there.
 set -euo pipefail
 program=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -28,5 +28,15 @@ while IFS= read -r page; do
   done < <(grep -o '](\([^)]*\))' "$page" | sed 's/^](//; s/)$//')
 done < <(find . -name '*.md' -not -path './build*' -not -path './out/*' -not -path './.*')
 [ "$links" -gt 0 ] || fault "no links were found"
+
+# Sources are named with their folders from the root, with or without an ending: `collision/check/crossings`.
+names=0
+while IFS=: read -r page name; do
+  name=${name//\`/}
+  names=$((names + 1))
+  [ -e "$name" ] || [ -e "$name.h" ] || [ -e "$name.cpp" ] || compgen -G "$name" > /dev/null ||
+    fault "$page names $name, which is not there"
+done < <(grep -oE '`(baker|collision|io|solvers|tests|samples)/[A-Za-z0-9_/.*]+`' baker/*.md README.md samples/*.md tests/bench/*.md)
+[ "$names" -gt 0 ] || fault "no sources were named"
 [ "$faults" -eq 0 ] || exit 1
-echo "documents: the shot reference is the program's, $links links lead somewhere"
+echo "documents: the shot reference is the program's, $links links and $names names of sources lead somewhere"

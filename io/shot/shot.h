@@ -47,8 +47,8 @@ struct PrimarySpec {
   std::optional<double> height;      ///< BVH and others: scale so that the bind pose is this tall [m]
   std::optional<double> mass;        ///< kg; without it from the body's volume
   std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all
-  std::string surface;               ///< geometry caches: "solid", "sheet"; empty: as its mesh says (io/import/sheet.h)
-  std::vector<std::string> ignore;   ///< patterns (* and ?) of parts that no cloth meets
+  std::string surface;  ///< geometry caches: "solid", "sheet"; empty: as its mesh says (io/import/motion/sheet.h)
+  std::vector<std::string> ignore;  ///< patterns (* and ?) of parts that no cloth meets
   Teleports teleports = Teleports::k_detect;
   std::vector<int> teleport_frames;  ///< k_frames: first frames at a new place, ascending
   std::string shape;                 ///< "sphere", "box", "capsule", "ground" instead of `file`; empty: from the file
