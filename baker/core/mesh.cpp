@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "baker/core/disjoint_sets.h"
 #include "baker/core/triangle_corners.h"
 
 namespace ft {
@@ -96,27 +97,20 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> triangles, int& piece_count) {
-  std::vector<int> root(static_cast<std::size_t>(vertex_count));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int v) {
-    while (root[static_cast<std::size_t>(v)] != v)
-      v = root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
-    return v;
-  };
-  std::vector<char> used(root.size(), 0);
+  DisjointSets pieces(at(vertex_count));
+  std::vector<char> used(at(vertex_count), 0);
   for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) {
-      used[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] = 1;
-      const int a = find(t[0]), b = find(t[static_cast<std::size_t>(k)]);
-      root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    for (const int v : t) {
+      used[at(v)] = 1;
+      pieces.join(t[0], v);
     }
-  std::vector<int> number(root.size(), -1), out(root.size(), 0);
+  std::vector<int> number(used.size(), -1), out(used.size(), 0);
   piece_count = 0;
   for (int v = 0; v < vertex_count; ++v) {
-    if (!used[static_cast<std::size_t>(v)]) continue;
-    int& n = number[static_cast<std::size_t>(find(v))];
+    if (used[at(v)] == 0) continue;
+    int& n = number[at(pieces.root(v))];
     if (n < 0) n = piece_count++;
-    out[static_cast<std::size_t>(v)] = n;
+    out[at(v)] = n;
   }
   piece_count = std::max(piece_count, 1);
   return out;
