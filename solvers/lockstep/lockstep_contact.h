@@ -56,7 +56,8 @@ class LockstepContact {
   /// Largest speed of approach to scenery, of the contacts of that look, that the step from velocities v_t0 to x has
   /// taken away [m/s].
   double fastest_stop(std::span<const Vec3> x, std::span<const Vec3> v_t0, double share) const;
-  bool has_friction() const { return !slides_.empty(); }  ///< anything, at the last look at friction
+  /// Anything, or a dashpot, at the last look at friction.
+  bool has_friction() const { return !slides_.empty(); }
 
   double smallest_gap() const { return smallest_gap_; }  ///< of all places that value() and add_terms() saw [m]
   void forget_gap();

@@ -152,7 +152,12 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   const bool hit = contact_.fastest_stop(x_, m.v, share_) > k_hit;
   if (hit && m.h_previous > 0) {
     m.h_previous = 0;
-    return step(h, driven, m);
+    LockstepStepReport again = step(h, driven, m);
+    again.newton_iterations += report.newton_iterations;
+    again.seconds_contact += report.seconds_contact;
+    again.seconds_assembly += report.seconds_assembly;
+    again.seconds_linear += report.seconds_linear;
+    return again;
   }
   report.on_met = contact_.on_met(x_, share_);
   report.hold_force = elements_.hold_force(x_);
