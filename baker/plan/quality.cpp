@@ -16,9 +16,8 @@ bool is_preview(const Manifest& manifest) {
 
 std::string quality_note() {
   return "preview quality: a fifth of the vertices of each garment, and those of its seams, move and the others ride "
-         "on "
-         "them, about a body with fewer triangles, some millimetres thicker; crossings, gaps and strains are those of "
-         "what moves";
+         "on them, about a body with fewer triangles, some millimetres thicker; crossings, gaps and strains are those "
+         "of what moves";
 }
 
 }  // namespace ft::inline baker

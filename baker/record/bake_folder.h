@@ -1,7 +1,6 @@
 // Names in the output folder, in one place.
-//   manifest.json  report.json  SYSTEM.abc  SYSTEM.pc2  SYSTEM.obj      what a user takes
-//   .state/        checkpoint  stages  SYSTEM.motion.pc2  lock  import/                          what the program needs
-//   to go on
+//   manifest.json  report.json  SYSTEM.abc  SYSTEM.pc2  SYSTEM.obj        what a user takes
+//   .state/        checkpoint  stages  SYSTEM.motion.pc2  lock  import/   what the program needs to go on
 #pragma once
 
 #include <filesystem>

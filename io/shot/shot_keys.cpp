@@ -62,8 +62,7 @@ std::span<const ShotKey<Shot>> shot_keys() {
        "Frames per second of the shot"},
       {"preroll", &Shot::preroll, 0, 1000, "frames", "", false, "warmup run_up pre_roll",
        "Frames before the first, in which the bind pose blends into the first frame and the cloth settles; with 0, "
-       "cloth "
-       "that starts through the body stays there"},
+       "cloth that starts through the body stays there"},
       {"write_preroll", &Shot::write_preroll, 0, 0, "", "", false, "",
        "Also write the frames of the pre-roll into the caches"},
       {"quality", &Shot::quality, 0, 0, "", "final preview", false, "",
@@ -102,8 +101,7 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "Names of the meshes that make the collider; without it all"},
       {"surface", &PrimarySpec::surface, 0, 0, "", "solid sheet", false, "sheet thin open two_sided",
        "Geometry caches: `sheet` has two sides and no inside, as baked cloth does; without it, it is one if its mesh "
-       "is "
-       "open"},
+       "is open"},
       {"ignore", &PrimarySpec::ignore, 0, 0, "", "", false, "exclude ignore_parts ignored without",
        "Parts that no cloth meets, where they are in its way: names with `*` and `?`, `[\"hand_*\"]`. `info` of the "
        "character lists its parts"},
@@ -159,8 +157,7 @@ std::span<const ShotKey<Shot>> gate_keys() {
        "Exit code 4 when any frame has crossings"},
       {"most", OwnGrammar<Shot>{"table of numbers", read_most_key, most_key_text}, 0, 0, "", "", false, "limits",
        "Exit code 4 when a metric of any frame is above its limit: `{ kinetic_energy = 5 }`; the frames of the "
-       "manifest "
-       "have all metrics"},
+       "manifest have all metrics"},
   };
   return keys;
 }

@@ -27,8 +27,7 @@ std::span<const ShotKey<PrimarySpec>> prop_keys() {
        "Capsule: between the centres of its round ends, along y"},
       {"position", &PrimarySpec::position, -1e4, 1e4, "m", "", false, "centre center place location translate",
        "A shape's centre at the shot's first frame, of a ground a point of its upper side; a character or cache is "
-       "moved "
-       "by it. y up"},
+       "moved by it. y up"},
       {"rotation", &PrimarySpec::rotation_deg, -3600, 3600, "degrees", "", false, "orientation angles rotate",
        "A shape at the first frame, or all of a character or cache about the origin: turned about x, then y, then z of "
        "the world"},

@@ -29,9 +29,8 @@ std::span<const ShotKey<StandInKeys>> standin_keys() {
   static const ShotKey<StandInKeys> keys[] = {
       {"kind", &StandInKeys::kind, 0, 0, "", "damping mat water spring weight fitted", true, "type model",
        "`damping`: a volume that slows what is in it; `mat`: vertical springs below a level; `water`: buoyancy and "
-       "drag "
-       "below a level; `spring`: pulls when it is taut; `weight`: is carried; `fitted`: a damping fitted to recorded "
-       "forces"},
+       "drag below a level; `spring`: pulls when it is taut; `weight`: is carried; `fitted`: a damping fitted to "
+       "recorded forces"},
       {"for", &StandInKeys::stands_for, 0, 0, "", "@name of a secondary", false, "of secondary cloth cords stands_for",
        "The secondary that it stands for; not needed when there is only one"},
       {"on", &StandInKeys::on, 0, 0, "", "@name of a primary", false, "primary",

@@ -70,8 +70,8 @@ std::span<const Fabric> fabrics() {
           typical(
               "cotton", 0.150, 500, 500, 1.8, 0.243, 0.10, 0.10, 2e-3,
               "Penava et al. 2014 (density, Poisson's ratio, plain weave); stretch between their 261 N/m at first load "
-              "and Wang 2011's 2110 "
-              "N/m of a cotton-polyester weave; bending and shear typical KES values of shirting [literature]")),
+              "and Wang 2011's 2110 N/m of a cotton-polyester weave; bending and shear typical KES values of shirting "
+              "[literature]")),
       limited(0.04, 0,
               measured("denim", 0.324, 1055, 227, 72.6, 0.09, 62.0e-6, 109.6e-6, 3e-3,
                        std::string(k_wang) + "11oz-black-denim (jeans, 99 % cotton 1 % spandex, elastic weft)")),

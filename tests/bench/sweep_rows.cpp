@@ -146,23 +146,19 @@ std::string table_of(const std::vector<SweepRow>& rows) {
   if (!rows.empty()) cpu /= static_cast<double>(rows.size());
   out += fmt::format(
       "\nbody, cloth: crossings with the feasible collider and among cloth, sums over the frames; frames: with any; "
-      "last: "
-      "in the last frame;\nlate: frames with any although there has been room for {} frames; p99: worst frame's; "
-      "absent: "
-      "share of the frames;\ncpu: mean, with import, pre-roll and caches; worst: the slowest frame, of the pre-roll "
-      "too, over the shot's median one\n\n",
+      "last: in the last frame;\nlate: frames with any although there has been room for {} frames; p99: worst frame's; "
+      "absent: share of the frames;\ncpu: mean, with import, pre-roll and caches; worst: the slowest frame, of the "
+      "pre-roll too, over the shot's median one\n\n",
       k_room_frames);
   out += fmt::format(
       "{} bakes: {:.1f} % without a crossing in any frame, {:.1f} % in the last frame, {:.1f} % where there is room; "
-      "p99 "
-      "strain below {:g} % in {:.1f} %;\n{} not complete, {} with another exit code than 0; {:.3f} s of CPU a frame; "
-      "no frame over {:g} times the median one in {:.1f} %, the slowest took {:.1f} times it\n",
+      "p99 strain below {:g} % in {:.1f} %;\n{} not complete, {} with another exit code than 0; {:.3f} s of CPU a "
+      "frame; no frame over {:g} times the median one in {:.1f} %, the slowest took {:.1f} times it\n",
       rows.size(), 100 * clean, 100 * clean_last, 100 * not_late, 100 * k_good_strain, 100 * p99_ok, unfinished, failed,
       cpu, k_slow_frame, 100 * quick, ratio);
   out += fmt::format(
       "RESULT scene=sweep bakes={} clean={:.4f} clean_last={:.4f} not_late={:.4f} p99_ok={:.4f} unfinished={} "
-      "failed={} "
-      "cpu={:.4f} worst_frame_ratio={:.2f}\n",
+      "failed={} cpu={:.4f} worst_frame_ratio={:.2f}\n",
       rows.size(), clean, clean_last, not_late, p99_ok, unfinished, failed, cpu, ratio);
   return out;
 }

@@ -107,8 +107,7 @@ crossings = 1
       "shot.toml:24:10: cloth \"cape\", pin 1: needs one of group, within, vertices, file, and has 2 (several pins are "
       "written as several { } in the list)",
       "shot.toml:24:46: cloth \"cape\", pin 2: needs one of group, within, vertices, file, and has none (several pins "
-      "are "
-      "written as several { } in the list)",
+      "are written as several { } in the list)",
       "shot.toml:24:48: cloth \"cape\", pin 2: unknown key \"wihtin\" (did you mean \"within\"?)",
       "shot.toml:24:65: cloth \"cape\", pin 3 needs a table like { group = \"waist\" } or { within = 0.02 }, not the "
       "number 5",

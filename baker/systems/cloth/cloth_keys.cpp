@@ -23,8 +23,7 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
       {"on", &ClothSpec::on, 0, 0, "", "@name of a primary or secondary", false,
        "primary body collider character wearer parent",
        "The primary that wears it, or a secondary that is baked before it, `\"cloth.robe\"`; not needed when there is "
-       "only "
-       "one primary"},
+       "only one primary"},
       {"pins", OwnGrammar<ClothSpec>{"list of pins", read_pins, pins_text}, 0, 0, "", "", false,
        "attach attachments constraints hold buttons zips",
        "What holds it to the primary or to a cloth: a list of pins, see below"},
@@ -44,8 +43,7 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
        "Faces of the caches: those of the file, or the triangles that they are split into for the simulation"},
       {"rest", &ClothSpec::rest, 0, 0, "", "mesh pattern", false, "rest_shape rest_length rest_lengths",
        "Where rest lengths come from: the `mesh` as it is placed, or the flat `pattern` in `vt`. Without it the "
-       "pattern where "
-       "the mesh has stitches, else the mesh"},
+       "pattern where the mesh has stitches, else the mesh"},
       {"pattern_scale", &ClothSpec::pattern_scale, 1e-6, 1000, "m per vt unit", "", false, "uv_scale vt_scale",
        "Size of the pattern; 0.01 for a pattern in centimetres"},
       {"sewing_time", &ClothSpec::sewing_time, 0, 100, "s", "", false, "sewing stitch_time closing_time",
@@ -61,12 +59,10 @@ std::span<const ShotKey<ClothSpec>> cloth_keys() {
        "with `*` and `?`, `[\"hand_*\"]`"},
       {"meets", &ClothSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
        "Primaries that this cloth meets beside the one that it is on, and secondaries that are baked before it: names "
-       "with "
-       "`*` and `?`; `[]`: no other. `\"cloth.robe\"` in full has that robe baked before it"},
+       "with `*` and `?`; `[]`: no other. `\"cloth.robe\"` in full has that robe baked before it"},
       {"coupling", &ClothSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",
        "Who feels whom: `one-way`, it feels the primary; `hybrid`, the primary yields to its stand-ins first; "
-       "`two-way` "
-       "is for cords"},
+       "`two-way` is for cords"},
   };
   return keys;
 }
@@ -107,8 +103,7 @@ std::span<const ShotKey<MapSpec>> map_keys() {
   static const ShotKey<MapSpec> keys[] = {
       {"from", &MapSpec::from, 0, 0, "", "", false, "group vertex_group channel colour color",
        "Vertex group of the mesh, or colour channel `red`, `green`, `blue`; weights run from 0 to 1, colours may from "
-       "0 to "
-       "255"},
+       "0 to 255"},
       {"file", &MapSpec::file, 0, 0, "", "", false, "values path csv",
        "A number for every vertex of the mesh: text or CSV, a line each; a first line with words names the columns"},
       {"of", &MapSpec::of, 0, 0, "", "@`stretch`, `bend`, `thickness`, `mass_per_area`", true,

@@ -46,8 +46,7 @@ std::span<const ShotKey<CordsSpec>> cords_keys() {
        "Of the spring at each held point"},
       {"meets", &CordsSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
        "Primaries that these cords meet beside the one that they are on, and do not move: names with `*` and `?`; "
-       "`[]`: "
-       "no other"},
+       "`[]`: no other"},
       {"on", &CordsSpec::on, 0, 0, "", "@name of a primary", false, "primary body collider prop with",
        "The primary that it meets; not needed when there is only one"},
       {"coupling", &CordsSpec::coupling, 0, 0, "", "one-way hybrid two-way", false, "couple interaction",

@@ -117,8 +117,7 @@ Result<std::unique_ptr<FollowGroup>> plan_follow(const Shot& shot, const FollowS
   if (const double forgets = memory(spec); forgets > shot.preroll / shot.fps)
     plan.notes.push_back(fmt::format(
         "{}: its spring takes {} to forget how it began, and the pre-roll has {:.2g} s: in the first frames the lag "
-        "hangs "
-        "on where the bake begins (preroll under [shot] makes it longer)",
+        "hangs on where the bake begins (preroll under [shot] makes it longer)",
         spec.owner(), std::isfinite(forgets) ? fmt::format("{:.2g} s", forgets) : "forever", shot.preroll / shot.fps));
   SystemOutput output;
   output.primary = p;

@@ -65,7 +65,7 @@ class Candidates {
   /// Takes out the pairs that collect() or join_blocked() last saw touch. Where cloth is joined between several of the
   /// collider's parts, the smaller ones are let go there; else what the pairs have of the collider is (noted in
   /// cloth.absent; returns how many vertices). Pairs of cloth with cloth are only dropped.
-  /// whole: all of the collider is let go for the garments that are blocked.
+  /// deep: as SubstepInput::deep_t1. whole: all of the collider is let go for the garments that are blocked.
   int release_blocked(ClothMotion& cloth, const PieceMotion& piece, std::span<const char> deep, bool whole = false);
 
   const PairList& pairs() const { return pairs_; }

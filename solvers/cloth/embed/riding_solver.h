@@ -13,7 +13,7 @@ namespace ft::inline solvers {
 
 /// Null when no garment has such edges. Systems, incidents, crossings and strains are those of the given garments, gaps
 /// and depths those of what moves. With setup.coarsen above 1 it is a preview of that, and crossings and strains, too,
-/// are those of what moves.
+/// are those of what moves. make_inner makes the solver of what moves.
 Result<std::unique_ptr<Solver>> make_riding_solver(const ClothSetup& setup, const ClothSolverMaker& make_inner);
 
 }  // namespace ft::inline solvers

@@ -2,12 +2,11 @@
 // triangle) of the collider is absent for a garment where one of its vertices is.
 //
 //   planned    the body is too deep in itself there (collision/body/absent_vertices.h), or the shot has it ignored
-//   let go     cloth was blocked on all sides (Candidates::release_blocked; a hole that has to grow does so by its
-//   half,
-//              lest a place without room is found vertex by vertex), or what was planned is over but the cloth is still
-//              on the wrong side or crosses it. A part that a garment does not wear (a hand, for a skirt) and that it
-//              has got through goes as a whole, with all that hangs on it: half a hand is a hook. So does one in which
-//              cloth is caught, which would drag it along and stretch it.
+//   let go     cloth was blocked on all sides (Candidates::release_blocked), or what was planned is over but the cloth
+//              is still on the wrong side or crosses it. A hole that has to grow does so by its half, lest a place
+//              without room is found vertex by vertex. A part that a garment does not wear (a hand, for a skirt) and
+//              that it has got through goes as a whole, with all that hangs on it: half a hand is a hook. So does one
+//              in which cloth is caught, which would drag it along and stretch it.
 //
 // What was let go comes back at the end of a frame, where no cloth crosses it, is inside or all but touches it. Until
 // then cloth that it lay on is drawn back there (draw_back.h), and other cloth inside is pushed out. What is absent for
