@@ -68,24 +68,29 @@ FrameReport bake_of(ClothGroup& group, int last_frame, std::vector<Vec3>& x) {
   return last;
 }
 
+/// Friction that is not solved for to the end lets cloth creep on for ever. How a sheet falls is chaotic, hence
+/// several.
 TEST(Scene, Cloth_that_slides_off_a_ball_comes_to_rest_on_the_ground) {
-  BallScene scene;
-  scene.add_ball("ball", 0.3);
-  scene.add_sheet("sheet", "ball", 0);
-  scene.add(k_ground);
-  auto plan = scene.plan(120);
-  ASSERT_TRUE(plan) << plan.error().text();
-  ASSERT_EQ(plan->groups.size(), 1u);
-  EXPECT_EQ(cloths(plan, 0).bodies, (std::vector<std::size_t>{0, 1}));
-  const double mass = 0.25 * cloths(plan, 0).setup.garments[0].fabric.mass_per_area;
-  std::vector<Vec3> x;
-  const FrameReport end = bake_of(cloths(plan, 0), 120, x);
-  EXPECT_EQ(end.crossings_body, 0);
-  const double lowest =
-      (*std::min_element(x.begin(), x.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); })).y();
-  EXPECT_GT(lowest, 0);
-  EXPECT_LT(lowest, 3.1e-3) << "contact begins at 3 mm";
-  EXPECT_LT(end.kinetic_energy / mass, 1e-3) << "J/kg, after 5 s: what hangs down from the ball still swings a little";
+  for (const double x_of_ball : {0.29, 0.3, 0.31}) {
+    BallScene scene;
+    scene.add_ball("ball", x_of_ball);
+    scene.add_sheet("sheet", "ball", 0);
+    scene.add(k_ground);
+    auto plan = scene.plan(240);
+    ASSERT_TRUE(plan) << plan.error().text();
+    ASSERT_EQ(plan->groups.size(), 1u);
+    EXPECT_EQ(cloths(plan, 0).bodies, (std::vector<std::size_t>{0, 1}));
+    const double mass = 0.25 * cloths(plan, 0).setup.garments[0].fabric.mass_per_area;
+    std::vector<Vec3> x;
+    const FrameReport end = bake_of(cloths(plan, 0), 240, x);
+    EXPECT_EQ(end.crossings_body, 0);
+    const double lowest =
+        (*std::min_element(x.begin(), x.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); })).y();
+    EXPECT_GT(lowest, 0);
+    EXPECT_LT(lowest, 3.1e-3) << "contact begins at 3 mm";
+    EXPECT_LT(end.kinetic_energy / mass, 1e-5)
+        << "J/kg, after 10 s: what hangs down from the ball still swings a little";
+  }
 }
 
 TEST(Scene, What_is_near_is_solved_together_and_what_is_far_apart_alone) {

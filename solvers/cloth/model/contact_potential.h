@@ -59,6 +59,7 @@ class ContactPotential {
   void update(std::span<const Vec3> x, std::span<const Vec3> move = {}, double share = 1);
   /// Fixes normal forces for friction at the contacts of the last update.
   void lag_friction();
+  bool has_friction() const { return !lagged_.empty(); }
   /// Gives back the memory of the contacts: there are none until the next update. Friction stays fixed.
   void forget_contacts();
   /// Takes up the pairs that have come behind those of begin(), at x, the positions of the last update and of

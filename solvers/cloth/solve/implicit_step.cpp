@@ -21,8 +21,8 @@ constexpr std::size_t k_block = 512;  ///< of a loop over vertices
 constexpr double k_still = 1e-4;
 /// Newton goes on beyond the wanted iterations, up to so many times as many, while an iteration strains the edges by
 /// more than StepInput::settled_strain, or would without truncation and is not stuck, or had to be halved, or moves a
-/// garment that the body does not hold by more than k_settled_drift: cloth that is pulled tight or has edges of all
-/// lengths needs it, and cloth that falls along cloth would hang in the air.
+/// garment that the body does not hold by more than k_settled_drift, or leaves cloth creeping: cloth that is pulled
+/// tight or has edges of all lengths needs it, and cloth that falls along cloth would hang in the air.
 constexpr int k_most_times = 5;
 /// Stuck is what wins less than this share of the energy that its direction promised before truncation, to the first
 /// order, of which a step that is done whole wins half: cloth jammed against cloth, which no iteration frees [1].
@@ -31,6 +31,11 @@ constexpr double k_stuck = 0.05;
 /// Where the body holds it, by contact or pins, what is wrong in one step is put right in the next; else the garment
 /// keeps the momentum.
 constexpr double k_settled_drift = 0.05;
+/// Friction that holds cloth is found from one iteration to the next, and what is left of its slip would let cloth
+/// creep for ever. Cloth that moves less in a step than a share of what gravity moves in it, root mean square, may rest
+/// soon: there an iteration may move it by no more than k_settled_creep of what the step does. On bodies that stand
+/// still the share is the larger one: what is left of each step keeps cloth awake there, and nothing else does [1].
+constexpr double k_may_rest = 0.25, k_may_rest_on_still = 1, k_settled_creep = 0.03;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
@@ -126,8 +131,10 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
   result.seconds_contact += watch.lap();
 
   const double gravity = model_.setup.gravity.norm();
-  const double settled_drift =
-      gravity > 0 ? k_settled_drift * in.h * in.h * gravity : std::numeric_limits<double>::infinity();
+  const double fall = in.h * in.h * gravity;
+  const double settled_drift = gravity > 0 ? k_settled_drift * fall : std::numeric_limits<double>::infinity();
+  const bool on_still = mean_distance(in.all_start.subspan(n), all.subspan(n)) < k_still * fall;
+  const double may_rest = (on_still ? k_may_rest_on_still : k_may_rest) * fall;
   const auto add_mass = [&](BlockMatrix& hessian) {
     parallel_for(n, k_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -245,10 +252,13 @@ StepResult ImplicitStep::solve(const StepInput& in, std::span<Vec3> all, std::sp
       after = before;
       result.last_move = 0;
     }
+    const double of_step = mean_distance(in.x_t0, cloth(s.trial));
+    const bool creeps = contact.has_friction() && of_step < may_rest &&
+                        mean_distance(cloth(all), cloth(s.trial)) > k_settled_creep * of_step;
     const bool stuck = before - after < k_stuck * wanted;
     // A halved step is small because it was halved, and settles nothing.
     settled = !finite || result.last_move < k_still * smallest_radius ||
-              (iteration + 1 >= in.newton_iterations && (stuck || wants_little) && whole &&
+              (iteration + 1 >= in.newton_iterations && (stuck || wants_little) && whole && !creeps &&
                strain_change(model_.rest_edges, all, direction) < in.settled_strain &&
                largest_drift(model_, s.touches, cloth(all), cloth(s.trial)) <= settled_drift);
     if (finite) {

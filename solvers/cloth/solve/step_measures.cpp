@@ -26,6 +26,15 @@ double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::spa
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rest.edges.size(), 1)));
 }
 
+double mean_distance(std::span<const Vec3> from, std::span<const Vec3> to) {
+  const double squares = parallel_sum(from.size(), k_block, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += (to[i] - from[i]).squaredNorm();
+    return sum;
+  });
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(from.size(), 1)));
+}
+
 double largest_drift(const ClothModel& model, std::span<const char> held, std::span<const Vec3> from,
                      std::span<const Vec3> to) {
   using Moment = Eigen::Vector4d;  // mass times displacement, mass

@@ -11,6 +11,9 @@ namespace ft::inline solvers {
 /// they are [m].
 double strain_change(const RestEdges& rest, std::span<const Vec3> from, std::span<const Vec3> move);
 
+/// Root mean square of the distances between two states, of all vertices [m].
+double mean_distance(std::span<const Vec3> from, std::span<const Vec3> to);
+
 /// Largest displacement of the centre of mass, between two states, of a garment that is not held (per garment, not 0:
 /// held) [m].
 double largest_drift(const ClothModel& model, std::span<const char> held, std::span<const Vec3> from,
