@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/plan/air.h"
 #include "baker/plan/carrier.h"
 #include "baker/plan/known_motion.h"
 #include "baker/plan/placed_trajectory.h"
@@ -208,6 +209,10 @@ Shot shot_of_stage(const BakePlan& plan) {
 /// Groups of all kinds, by their first primary; behind them primaries that yield and have no secondary.
 Status plan_systems(BakePlan& plan) {
   const Shot shot = shot_of_stage(plan);
+  std::vector<std::string> said_before;
+  auto wind = plan_wind(shot, plan.primaries, plan.stage == 0 ? plan.notes : said_before);
+  if (!wind) return wind.error();
+  plan.wind = std::move(*wind);
   for (const SystemKind* kind : system_kinds()) {
     auto groups = kind->plan(shot, plan);
     if (!groups) return groups.error();

@@ -17,6 +17,7 @@
 #include "io/import/import.h"
 #include "io/import/motion/placed_character.h"
 #include "io/import/repair/teleport_scan.h"
+#include "solvers/wind/wind.h"
 
 namespace ft::inline baker {
 
@@ -44,6 +45,7 @@ struct PrimaryPlan {
 struct BakePlan {
   BakeInputs inputs;
   std::vector<PrimaryPlan> primaries;
+  std::shared_ptr<const Wind> wind;  ///< never null in a plan
   SystemGroups groups;
   std::vector<std::string> notes;  ///< what is odd and yet allowed; the same for the same inputs
   double import_seconds = 0;       ///< wall

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "baker/plan/air.h"
 #include "io/cache/cache.h"
 
 namespace ft::inline baker {
@@ -102,6 +103,7 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
     for (const std::string& note : stage.notes)
       if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   };
+  for (std::string& line : wind_lines(shot, *plan.wind)) out.push_back(std::move(line));
   add_stage(plan);
   for (const BakePlan& later : plan.later) add_stage(later);
   if (!plan.later.empty())

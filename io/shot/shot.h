@@ -70,6 +70,7 @@ struct PrimarySpec {
   double comeback_window = 0.5;            ///< in which the spring grows after the last touch [s]
   std::optional<double> max_displacement;  ///< from its animation [m]
   std::optional<double> max_acceleration;  ///< by the stand-ins together [m/s2]
+  bool blocks_wind = false;                ///< what is behind it is in its lee
 };
 
 /// [standin.NAME]: what a primary meets in the place of a hybrid secondary. Members have the names of their keys.
@@ -103,8 +104,37 @@ struct StandInKeys {
   std::optional<double> limit_force;         ///< N
 };
 
+/// [wind]: the same everywhere and for ever, beside the fields.
 struct WindSpec {
   Vec3 velocity = Vec3::Zero();  ///< m/s, world
+};
+
+/// [wind.NAME]: a field of moving air. Members have the names of their keys.
+struct WindKeys {
+  std::string name;
+  std::string kind;                 ///< "uniform", "source", "sink", "vortex", "doublet", "turbulence", "grid", "wake"
+  Vec3 velocity = Vec3::Zero();     ///< m/s
+  double gusts = 0;                 ///< root mean square of a uniform wind's changes, by its speed
+  double gust_time = 3;             ///< s
+  Vec3 position = Vec3::Zero();     ///< m
+  Vec3 axis = Vec3::UnitY();        ///< of a vortex
+  double flow = 0;                  ///< of a source or sink [m3/s]
+  double circulation = 0;           ///< of a vortex [m2/s]
+  double radius = 0.1;              ///< m
+  double intensity = 0;             ///< of turbulence, root mean square of each component [m/s]
+  double length = 1;                ///< of its larger eddies [m]
+  int seed = 1;                     ///< of gusts and turbulence
+  std::filesystem::path file;       ///< of a grid: OpenVDB, or many with #### in the place of the frame
+  std::string grid;                 ///< name of the velocities in it; empty: the one that is there
+  double unit_scale = 1;            ///< of a grid: m per file unit
+  std::string up = "y";             ///< of a grid
+  std::string of;                   ///< of a wake: name of the primary
+  std::vector<std::string> parts;   ///< of a wake: patterns (* and ?) of its parts; empty: all
+  std::optional<double> drag_area;  ///< of a wake: C_d A [m2]
+  double turbulence = 0.4;          ///< of a wake, root mean square by its mean velocity
+  double gain = 1;                  ///< of its velocity
+  std::optional<double> from, until;  ///< frames at which it begins and ends to blow
+  double fade = 0;                    ///< frames
 };
 
 struct SolverSpec {
@@ -130,6 +160,7 @@ struct Shot {
   Secondaries secondaries;  ///< by kind, then in the order of the file
   std::vector<StandInKeys> standins;
   WindSpec wind;
+  std::vector<WindKeys> winds;
   SolverSpec solver;
   std::vector<std::string> cache_formats = {"abc", "pc2"};
   bool cache_collider = true;   ///< the feasible collider, beside the cloth

@@ -145,6 +145,7 @@ void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary
   }
   for (const auto& secondary : shot.secondaries) secondary->section->judge(root, *secondary, shot, faults);
   judge_couplings(root, shot, faults);
+  judge_winds(root, shot, faults);
   judge_chains(root, shot, faults);
 }
 

@@ -26,6 +26,9 @@ Place place_of(const Value& root, std::initializer_list<std::string_view> path);
 /// Props and stand-ins that want for a key or have one too many, and who is coupled to whom and how.
 void judge_couplings(const Value& root, Shot& shot, FaultList& faults);
 
+/// Fields of moving air that want for a key or have one too many. Fills in `of` when there is one primary.
+void judge_winds(const Value& root, Shot& shot, FaultList& faults);
+
 /// Who wears what, names that would overwrite each other, limits that contradict. Fills in `on` when there is one
 /// primary.
 void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary, FaultList& faults);

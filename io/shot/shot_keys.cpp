@@ -109,14 +109,8 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        9'999'999, "", "", false, "teleport cuts jumps",
        "What is done about a character that jumps to another place between two frames: `\"detect\"` carries the cloth "
        "along, `\"ignore\"` simulates it as motion, `[1041]` names the first frame at each new place"},
-  };
-  return keys;
-}
-
-std::span<const ShotKey<WindSpec>> wind_keys() {
-  static const ShotKey<WindSpec> keys[] = {
-      {"velocity", &WindSpec::velocity, -100, 100, "m/s", "", false, "speed direction",
-       "Steady wind, world axes, y up"},
+      {"blocks_wind", &PrimarySpec::blocks_wind, 0, 0, "", "", false, "shelter lee obstacle",
+       "What is behind it gets less of the wind"},
   };
   return keys;
 }
@@ -205,6 +199,7 @@ std::string home_of(const ShotVocabulary& vocabulary, std::string_view key) {
   look_in("primary", names(yield_keys()));
   for (const SecondarySection* section : vocabulary.sections) look_in(section->name(), section->key_names());
   look_in("standin", names(standin_keys()));
+  look_in("wind", names(wind_field_keys()));
   return home;
 }
 

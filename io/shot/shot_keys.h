@@ -44,6 +44,7 @@ std::span<const ShotKey<PrimarySpec>> prop_keys();     ///< [primary.NAME] that 
 std::span<const ShotKey<PrimarySpec>> yield_keys();    ///< [primary.NAME] that meets stand-ins
 std::span<const ShotKey<StandInKeys>> standin_keys();  ///< [standin.NAME]
 std::span<const ShotKey<WindSpec>> wind_keys();        ///< [wind]
+std::span<const ShotKey<WindKeys>> wind_field_keys();  ///< [wind.NAME]
 std::span<const ShotKey<SolverSpec>> solver_keys();    ///< [solver]
 std::span<const ShotKey<Shot>> cache_keys();           ///< [cache]
 std::span<const ShotKey<Shot>> gate_keys();            ///< [gate]

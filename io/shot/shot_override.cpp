@@ -14,7 +14,8 @@ void apply_override(Value& root, const std::string& text, const ShotVocabulary& 
   const Place place{0, 0, "--set " + printable(text, 80)};
   if (!parse_override(text, path, value, fault)) return faults.add(place, fault);
   const std::vector<std::string> sections = section_names(vocabulary);
-  const bool named = is_named_section(vocabulary, path.front());
+  // [wind] has keys, and fields with names.
+  const bool named = is_named_section(vocabulary, path.front()) || (path.front() == "wind" && path.size() == 3);
   if (std::find(sections.begin(), sections.end(), path.front()) == sections.end())
     return faults.add(place,
                       with_hint("unknown section " + in_quotes(path.front()), suggestion(path.front(), sections)));

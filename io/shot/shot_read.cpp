@@ -37,7 +37,7 @@ class ShotReader {
       if (member.key == "shot")
         section(shot_, shot_keys());
       else if (member.key == "wind")
-        section(shot_.wind, wind_keys());
+        read_wind(member);
       else if (member.key == "solver")
         section(shot_.solver, solver_keys());
       else if (member.key == "cache")
@@ -112,6 +112,18 @@ class ShotReader {
       spec.name = name;
       keys_.read(member.key + " " + in_quotes(name), table, spec, keys);
     });
+  }
+
+  /// Keys that stand in it, and sections with names.
+  void read_wind(const Member& member) {
+    Member steady = member, fields = member;
+    if (member.value.kind == Value::Kind::k_table) {
+      const auto is_field = [](const Member& m) { return m.value.kind == Value::Kind::k_table; };
+      std::erase_if(steady.value.members, is_field);
+      std::erase_if(fields.value.members, [&](const Member& m) { return !is_field(m); });
+      read_named(fields, shot_.winds, wind_field_keys());
+    }
+    read_plain(steady, shot_.wind, wind_keys());
   }
 
   void read_secondaries(const Member& member, const SecondarySection& section) {

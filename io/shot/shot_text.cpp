@@ -95,6 +95,8 @@ Settings settings(const Shot& shot) {
   for (const StandInKeys& standin : shot.standins)
     append_keys(out, "standin." + key_word(standin.name), standin_keys(), standin, folder);
   append_keys(out, "wind", wind_keys(), shot.wind, folder);
+  for (const WindKeys& wind : shot.winds)
+    append_keys(out, "wind." + key_word(wind.name), wind_field_keys(), wind, folder);
   append_keys(out, "solver", solver_keys(), shot.solver, folder);
   append_keys(out, "cache", cache_keys(), shot, folder);
   append_keys(out, "gate", gate_keys(), shot, folder);
@@ -132,6 +134,7 @@ std::string shot_file_reference(const ShotVocabulary& vocabulary) {
   for (const SecondarySection* section : vocabulary.sections) section->append_reference(vocabulary, out);
   append_reference(out, "[standin.NAME]", standin_keys(), vocabulary);
   append_reference(out, "[wind]", wind_keys(), vocabulary);
+  append_reference(out, "[wind.NAME]", wind_field_keys(), vocabulary);
   append_reference(out, "[solver]", solver_keys(), vocabulary);
   append_reference(out, "[cache]", cache_keys(), vocabulary);
   append_reference(out, "[gate]", gate_keys(), vocabulary);

@@ -1,4 +1,4 @@
-// make_set chair --out FOLDER, make_set swing --out FOLDER: builds a set of the samples, and who moves in it. In
+// make_set chair --out FOLDER, and so for swing, flags, drapes: builds a set of the samples, and who moves in it. In
 // metres, Y up.
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
 #include "samples/tools/chair.h"
+#include "samples/tools/panels.h"
 #include "samples/tools/swing.h"
 
 namespace ft::sets {
@@ -38,6 +39,19 @@ Status write_chair(const std::filesystem::path& folder, const ChairSettings& cha
   return write_text_durably(folder / "sitter.bvh", sitter_bvh({}, chair));
 }
 
+/// A flag for each mast: flag.obj, banner.obj, pennant.obj.
+Status write_flags(const std::filesystem::path& folder) {
+  FlagSettings banner, pennant;
+  banner.length = 1.0;
+  banner.height = 1.8;
+  pennant.length = 2.2;
+  pennant.height = 0.7;
+  for (const auto& [name, settings] :
+       {std::pair("flag.obj", FlagSettings()), {"banner.obj", banner}, {"pennant.obj", pennant}})
+    if (Status status = write_obj(folder / name, make_flag(settings)); !status) return status;
+  return {};
+}
+
 int told(const Status& status) {
   if (status) return 0;
   fmt::print(stderr, "make_set: {}\n", status.error().text());
@@ -50,8 +64,12 @@ int main_checked(int argc, char** argv) {
   std::string out;
   const CLI::App* swing = app.add_subcommand("swing", "a swing, its frame, and a child on it: four files");
   app.add_subcommand("chair", "a chair, and somebody who sits down on it: two files");
+  const CLI::App* flags = app.add_subcommand("flags", "three flags: three files");
+  const CLI::App* drapes = app.add_subcommand("drapes", "a curtain: one file");
   for (CLI::App* set : app.get_subcommands({})) set->add_option("--out", out, "folder to write into")->required();
   CLI11_PARSE(app, argc, argv);
+  if (flags->parsed()) return told(write_flags(out));
+  if (drapes->parsed()) return told(write_obj(std::filesystem::path(out) / "curtain.obj", make_curtain({})));
   return told(swing->parsed() ? write_swing(out, {}) : write_chair(out, {}));
 }
 

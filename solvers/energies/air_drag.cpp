@@ -1,5 +1,6 @@
 #include "solvers/energies/air_drag.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "baker/core/check.h"
@@ -10,13 +11,23 @@ namespace {
 
 constexpr std::size_t k_block = 512;
 
+/// Share of the flow that stays on a plate: all of it below 15 degrees, nothing from 25 on.
+double attached(double normal, double tangential) {
+  constexpr double k_first = 0.2679, k_last = 0.4663;  // tangents
+  const double share = std::clamp((k_last * tangential - normal) / ((k_last - k_first) * tangential + 1e-30), 0.0, 1.0);
+  return share * share * (3 - 2 * share);
+}
+
 }  // namespace
 
 AirDrag::AirDrag(const ClothTopology& topology, const AirSettings& air) : air_(air) {
   for (const ClothPiece& piece : topology.pieces) {
     const double factor = 0.5 * air.density / 3;
-    factors_.push_back({factor * piece.fabric.drag_normal, factor * piece.fabric.drag_tangential});
-    still_ = still_ && factors_.back().normal == 0 && factors_.back().tangential == 0;
+    const Fabric& fabric = piece.fabric;
+    factors_.push_back({factor * fabric.drag_normal, factor * fabric.drag_tangential, factor * fabric.lift,
+                        air.density / 3 * fabric.added_mass});
+    const Factors& f = factors_.back();
+    still_ = still_ && f.normal == 0 && f.tangential == 0 && f.lift == 0 && f.mass == 0;
   }
   if (still_) return;
   const TriangleOrder& order = triangle_order(topology);
@@ -25,22 +36,29 @@ AirDrag::AirDrag(const ClothTopology& topology, const AirSettings& air) : air_(a
   for (const std::size_t t : order.triangle) area_.push_back(static_cast<float>(topology.rest_area[t]));
 }
 
-AirDrag::Drag AirDrag::panel(const Triangle& t, double area, const Factors& factors, const StepContext& context) const {
-  Vec3 corner[3], velocity = -air_.wind;
+AirDrag::Drag AirDrag::panel(const Triangle& t, double area, const Factors& factors, const StepContext& context,
+                             const AirNow* wind) const {
+  Vec3 corner[3], place = Vec3::Zero(), motion = Vec3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& v = context.v_t0[at(t[k])];
     corner[k] = context.x_t0[at(t[k])] + context.h * v;
-    velocity += v / 3;
+    motion += v / 3;
+    place += corner[k] / 3;
   }
   Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   const double length = normal.norm();
   if (!(length > 1e-30)) return {};
   normal /= length;
+  const Vec3 air = wind == nullptr ? Vec3::Zero() : wind->velocity(place), velocity = motion - air;
   const Vec3 vn = normal * normal.dot(velocity), vt = velocity - vn;
   const double dn = area * factors.normal * vn.norm(), dt = area * factors.tangential * vt.norm();
   const Mat3 across = normal * normal.transpose();
-  const Mat3 damping = 2 * dn * across + 2 * dt * (Mat3::Identity() - across);
-  const Vec3 force = damping * air_.wind + dn * vn + dt * vt;  // -(D (v - w) - dn vn - dt vt) at v = 0
+  // Linear in vn as it is.
+  const double lift = factors.lift > 0 ? area * factors.lift * vt.norm() * attached(vn.norm(), vt.norm()) : 0;
+  const double layer = area * factors.mass / context.h;
+  const Mat3 damping = (2 * dn + lift + layer) * across + 2 * dt * (Mat3::Identity() - across);
+  // -(D (v - w) - dn vn - dt vt) at v = 0; the layer has the velocity that it has.
+  const Vec3 force = damping * air + dn * vn + dt * vt + layer * vn;
   const auto entry = [](double value) { return static_cast<float>(value); };
   return {{entry(damping(0, 0)), entry(damping(1, 1)), entry(damping(2, 2)), entry(damping(0, 1)), entry(damping(1, 2)),
            entry(damping(2, 0))},
@@ -83,6 +101,7 @@ void AirDrag::begin_step(const StepContext& context) {
   a_ = context.a;
   b_ = context.has_history() ? context.b : 0;
   vertices_.assign(context.x_t0.size(), Drag{});
+  const std::unique_ptr<AirNow> wind = air_.wind && !air_.wind->is_still() ? air_.wind->at_time(context.time) : nullptr;
   for_each_chunk(slots_->schedule, [&](std::size_t begin, std::size_t end) {
     GroupIndices<3>::Group corners;
     for (std::size_t i = begin; i < end; ++i) {
@@ -90,7 +109,7 @@ void AirDrag::begin_step(const StepContext& context) {
       for (std::size_t l = 0; l < slots_->schedule.used(i); ++l) {
         const Triangle t{corners.column[0][l], corners.column[1][l], corners.column[2][l]};
         const std::size_t slot = i * k_lanes + l;
-        const Drag of_panel = panel(t, area_[slot], factors_[slots_->piece[slot]], context);
+        const Drag of_panel = panel(t, area_[slot], factors_[slots_->piece[slot]], context, wind.get());
         for (const int v : t) vertices_[at(v)] += of_panel;
       }
     }

@@ -1,9 +1,11 @@
 // Air drag of cloth panels, per area, relative to the wind:
 //   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: the velocity against the wind, normal and tangential to the panel
-// A third of each panel moves with each of its corners. The normal and the speed are those expected at the end of the
-// step, the law is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0| v0, so that the potential is
-// quadratic, stable for any wind and step, and second order in time. Vacuum (density or coefficients 0) is exactly
-// nothing.
+// As options of a fabric: the lift of a thin plate, rho/2 A C_l |vt| vn, at angles below 15 degrees, beyond which the
+// flow leaves it; and the air that a light cloth takes along, a layer of its density that resists being accelerated
+// along the normal against the wind. A third of each panel moves with each of its corners. The normal and the speed are
+// those expected at the end of the step, the law is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0|
+// v0, so that the potential is quadratic, stable for any wind and step, and second order in time. Vacuum (density or
+// coefficients 0) is exactly nothing.
 #pragma once
 
 #include <array>
@@ -13,12 +15,13 @@
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/energy.h"
 #include "solvers/energies/triangle_slots.h"
+#include "solvers/wind/wind.h"
 
 namespace ft::inline solvers {
 
 struct AirSettings {
-  double density = 1.225;    ///< kg/m3; 0 vacuum, 1.225 air at sea level
-  Vec3 wind = Vec3::Zero();  ///< m/s
+  double density = 1.225;              ///< kg/m3; 0 vacuum, 1.225 air at sea level
+  std::shared_ptr<const Wind> wind{};  ///< null: the air stands still
 };
 
 class AirDrag final : public Energy {
@@ -43,11 +46,12 @@ class AirDrag final : public Energy {
     Vec3 damping_times(const Vec3& v) const;
     Vec3 force_vector() const;
   };
-  /// Per area, as a fabric has it: rho/2 C / 3 [kg/m3].
+  /// Per area, as a fabric has it: rho/2 C / 3 [kg/m3]; mass: of the air that goes along, over three [kg/m2].
   struct Factors {
-    double normal = 0, tangential = 0;
+    double normal = 0, tangential = 0, lift = 0, mass = 0;
   };
-  Drag panel(const Triangle& corners, double area, const Factors& factors, const StepContext& context) const;
+  Drag panel(const Triangle& corners, double area, const Factors& factors, const StepContext& context,
+             const AirNow* wind) const;
   Vec3 velocity(std::span<const Vec3> x, std::size_t vertex) const;
 
   AirSettings air_;

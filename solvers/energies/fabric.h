@@ -36,6 +36,10 @@ struct Fabric {
   double damping = 2e-3;
   /// Air drag: normal and tangential coefficients of the panel law [1].
   double drag_normal = 1.2, drag_tangential = 0.03;
+  /// Lift of a thin plate at small angles, by the angle: 2 pi / (1 + 2 / AR), AR: span by chord [1]; 0 leaves it out.
+  double lift = 0;
+  /// Thickness of the layer of air that goes along with the cloth, pi / 4 of the shorter side for a plate [m].
+  double added_mass = 0;
   std::string source;
 };
 

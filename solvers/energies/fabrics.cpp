@@ -140,6 +140,8 @@ std::span<const Member> members() {
       {{"damping", 0, 0.1, "s"}, &Fabric::damping},
       {{"drag_normal", 0, 10, "1"}, &Fabric::drag_normal},
       {{"drag_tangential", 0, 10, "1"}, &Fabric::drag_tangential},
+      {{"lift", 0, 6.3, "1"}, &Fabric::lift},
+      {{"added_mass", 0, 10, "m"}, &Fabric::added_mass},
   };
   return list;
 }

@@ -9,7 +9,7 @@ constexpr double k_drag_coefficient = 1.2;  ///< of a long cylinder across the f
 
 }  // namespace
 
-void CordElements::begin_step(std::span<const Vec3> x, std::span<const Vec3> v, double h) {
+void CordElements::begin_step(double end, double h, std::span<const Vec3> x, std::span<const Vec3> v) {
   now_.clear();
   bent_.clear();
   drag_.clear();
@@ -22,13 +22,15 @@ void CordElements::begin_step(std::span<const Vec3> x, std::span<const Vec3> v, 
   }
   for (const CordBend& b : bends) bent_.push_back(bend_of(b, x));
   if (air.density <= 0) return;
+  const std::unique_ptr<AirNow> wind = air.wind && !air.wind->is_still() ? air.wind->at_time(end) : nullptr;
   for (const CordDrag& d : drags) {
     const Vec3 way = x[at(d.a)] - x[at(d.b)];
     const double length2 = way.squaredNorm();
     Mat3 across = Mat3::Identity();
     if (length2 > 0) across -= way * way.transpose() / length2;
-    const double speed = (across * (0.5 * (v[at(d.a)] + v[at(d.b)]) - air.velocity)).norm();
-    const Vec3 goal = 0.5 * (x[at(d.a)] + x[at(d.b)]) + h * air.velocity;
+    const Vec3 middle = 0.5 * (x[at(d.a)] + x[at(d.b)]), blows = wind ? wind->velocity(middle) : Vec3::Zero();
+    const double speed = (across * (0.5 * (v[at(d.a)] + v[at(d.b)]) - blows)).norm();
+    const Vec3 goal = middle + h * blows;
     drag_.push_back({0.5 * air.density * k_drag_coefficient * d.area * speed / h * across, goal});
   }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solvers/lockstep/node_system.h"
+#include "solvers/wind/wind.h"
 
 namespace ft::inline solvers {
 
@@ -35,8 +36,8 @@ struct CordDrag {
 };
 
 struct Air {
-  double density = 0;            ///< kg/m3
-  Vec3 velocity = Vec3::Zero();  ///< m/s
+  double density = 0;                  ///< kg/m3
+  std::shared_ptr<const Wind> wind{};  ///< null: it stands still
 };
 
 struct CordHold {
@@ -52,8 +53,8 @@ struct CordElements {
   std::vector<CordDrag> drags;
   Air air;
 
-  /// Takes over the step: positions and velocities at its start, its length [s].
-  void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> v_t0, double h);
+  /// Takes over the step: when it ends, its length [s], positions and velocities at its start.
+  void begin_step(double end, double h, std::span<const Vec3> x_t0, std::span<const Vec3> v_t0);
   double value(std::span<const Vec3> x) const;  ///< J
   void add_terms(std::span<const Vec3> x, std::vector<NodeTerm>& out) const;
   Vec3 hold_force(std::span<const Vec3> x) const;  ///< of all holds on their nodes [N]

@@ -177,7 +177,7 @@ void LockstepSolver::substep(double time, double h, double frame_time, int halvi
   const std::vector<double> through_before = m.through;
   for (int attempt = 0;; ++attempt) {
     step_.contact().let_through(m.through);
-    step = step_.step(h, is_driven ? std::span<const Vec3>(driven) : std::span<const Vec3>(), m.motion);
+    step = step_.step(time + h, h, is_driven ? std::span<const Vec3>(driven) : std::span<const Vec3>(), m.motion);
     ++report.substeps;
     report.newton_iterations += step.newton_iterations;
     report.linear_iterations += step.newton_iterations;

@@ -20,21 +20,15 @@
 #include "baker/core/trajectory.h"
 #include "solvers/base/solver.h"
 #include "solvers/cords/cord_graph.h"
+#include "solvers/cords/cord_settings.h"
+#include "solvers/wind/wind.h"
 
 namespace ft::inline solvers {
 
 /// A net, a rope, a chain of knots.
-struct CordSystem {
+struct CordSystem : CordSettings {
   std::string name;
   CordGraph graph;
-  double mass = 0.03;           ///< of all cords together [kg], > 0
-  double stretch = 3000;        ///< EA: force that would double a cord's length [N], > 0
-  double bend = 0;              ///< EI along strands that rest straight there [N m2]
-  double damping = 1e-3;        ///< of stretching, times its stiffness [s]
-  double radius = 1.5e-3;       ///< of the cord [m]; contact begins at twice as much from the middle
-  double friction = 0.4;        ///< Coulomb [1]
-  double hold_stiffness = 2e4;  ///< of the springs that tie held points to the world [N/m]
-  bool self_collision = false;
 };
 
 struct RigidProp {
@@ -64,7 +58,7 @@ struct LockstepSetup {
   double fps = 24;
   int preroll_frames = 24;
   Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
-  Vec3 wind = Vec3::Zero();               ///< m/s
+  std::shared_ptr<const Wind> wind;       ///< null: the air stands still
   double air_density = 1.225;             ///< drags at cords, not at the prop [kg/m3]; 0: vacuum
   double longest_step = 1.0 / 1200;       ///< s
   int min_substeps = 1;                   ///< of a frame, >= 1

@@ -104,14 +104,14 @@ bool LockstepStep::newton(LockstepStepReport& report) {
   return false;
 }
 
-LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, LockstepMotion& m) {
+LockstepStepReport LockstepStep::step(double end, double h, std::span<const Vec3> driven, LockstepMotion& m) {
   const std::size_t n = at(model_.node_count()), points = at(model_.point_count());
   const IntegratorWeights w = model_.setup.bdf2 ? bdf2_weights(h, m.h_previous) : IntegratorWeights{};
   const double bh = w.beta * h;
   LockstepStepReport report;
   report.effective_step = bh / (1 - w.b);
 
-  elements_.begin_step(m.x, m.v, h);
+  elements_.begin_step(end, h, m.x, m.v);
   y_.resize(n), trial_.resize(n), gradient_.resize(n), direction_.resize(n), weight_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     y_[i] = w.a * m.x[i] - w.b * m.x_previous[i] + bh * (w.a * m.v[i] - w.b * m.v_previous[i]) +
@@ -152,7 +152,7 @@ LockstepStepReport LockstepStep::step(double h, std::span<const Vec3> driven, Lo
   const bool hit = contact_.fastest_stop(x_, m.v, share_) > k_hit;
   if (hit && m.h_previous > 0) {
     m.h_previous = 0;
-    LockstepStepReport again = step(h, driven, m);
+    LockstepStepReport again = step(end, h, driven, m);
     again.newton_iterations += report.newton_iterations;
     again.seconds_contact += report.seconds_contact;
     again.seconds_assembly += report.seconds_assembly;

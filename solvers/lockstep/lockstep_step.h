@@ -32,7 +32,7 @@ class LockstepStep {
   explicit LockstepStep(const LockstepModel& model);
   /// contact() has begun the step. driven: where the prop's nodes have to be at the end; empty: it moves by itself, or
   /// there is none.
-  LockstepStepReport step(double h, std::span<const Vec3> driven, LockstepMotion& motion);
+  LockstepStepReport step(double end, double h, std::span<const Vec3> driven, LockstepMotion& motion);
   LockstepContact& contact() { return contact_; }
   /// Points that stood in the way of what is driven, of the last step.
   std::vector<LockstepContact::Blocked> blocking(std::span<const Vec3> x, bool prop_is_driven) const {

@@ -29,5 +29,8 @@ std::vector<ValidationCase> validate_rope();
 std::vector<ValidationCase> validate_prop_flight();
 std::vector<ValidationCase> validate_mat();
 std::vector<ValidationCase> validate_follow();
+// winds.cpp
+std::vector<ValidationCase> validate_hinged_panel();
+std::vector<ValidationCase> validate_wake();
 
 }  // namespace ft::inline solvers

@@ -32,6 +32,9 @@ constexpr ValidationScene k_scenes[] = {
     {"prop_flight", "A thrown box flies and spins as a free body", false, validate_prop_flight},
     {"mat", "Who stands on a mat in a hybrid pass sinks by m g / k", false, validate_mat},
     {"follow", "What follows on a spring is the damped oscillator, whatever the step", false, validate_follow},
+    {"hinged_panel", "A hinged stiff panel hangs in the wind where its weight balances the drag", false,
+     validate_hinged_panel},
+    {"wake", "Through every plane behind a body goes the momentum of its drag", false, validate_wake},
 };
 
 }  // namespace

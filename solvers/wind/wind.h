@@ -12,14 +12,14 @@ namespace ft::inline solvers {
 class Shelter {
  public:
   virtual ~Shelter() = default;
-  /// As it stands at a time; see WindField::at.
+  /// As it stands at a time; see WindField::at_time.
   class Now {
    public:
     virtual ~Now() = default;
     /// Share of a wind of this velocity that gets to a place: 1 all, 0 none.
     virtual double open(const Vec3& place, const Vec3& velocity) const = 0;
   };
-  virtual std::unique_ptr<Now> at(double time) const = 0;
+  virtual std::unique_ptr<Now> at_time(double time) const = 0;
 };
 
 class Wind {
@@ -33,7 +33,7 @@ class Wind {
   /// The air is nowhere and never faster [m/s].
   double fastest() const;
   /// All fields at a time [s from the shot's first frame]. Must not outlive the wind. Never null.
-  std::unique_ptr<AirNow> at(double time) const;
+  std::unique_ptr<AirNow> at_time(double time) const;
 
  private:
   std::vector<std::unique_ptr<WindField>> fields_;

@@ -60,7 +60,7 @@ class WindField {
 
   const WindFieldSpec& spec() const { return spec_; }
   /// At a time [s from the shot's first frame; negative in the pre-roll], at full strength. Must not outlive the field.
-  virtual std::unique_ptr<AirNow> at(double time) const = 0;
+  virtual std::unique_ptr<AirNow> at_time(double time) const = 0;
   /// It is nowhere and never faster, at full strength [m/s].
   virtual double fastest() const = 0;
   /// Its divergence is zero all over, but for the cores of sources and sinks.

@@ -178,6 +178,7 @@ TEST_F(ShotFile, Defaults_of_the_structs_lie_within_the_table) {
   check(cache_keys(), shot);
   check(gate_keys(), shot);
   check(wind_keys(), shot.wind);
+  check(wind_field_keys(), WindKeys());
   check(solver_keys(), shot.solver);
   check(primary_keys(), primary);
   check(cloth_keys(), cloth);

@@ -33,7 +33,7 @@ struct Scene {
   }
 };
 
-const AirSettings k_windy{1.225, Vec3(1.5, 0.2, -0.7)};
+const AirSettings k_windy{1.225, steady_wind(Vec3(1.5, 0.2, -0.7))};
 
 /// A curved rest shape of two fabrics, strained by a few per cent and in motion.
 Scene make_scene(Energy& energy, ClothTopology topology, std::uint64_t seed, double amplitude) {

@@ -46,9 +46,9 @@ TEST(LockstepTerms, Gradient_of_cords_is_the_slope_of_their_energy) {
   e.bends = {{{0, 1, 2}, 40, 0.2}};
   e.holds = {{0, Vec3(0.01, 0, 0), 50}};
   e.drags = {{1, 2, 0.003}};
-  e.air = {1.2, Vec3(1, 0, 0)};
+  e.air = {1.2, steady_wind(Vec3(1, 0, 0))};
   const std::vector<Vec3> start{{0, 0, 0}, {0.11, 0, 0.01}, {0.2, 0.02, 0}}, v{{1, 2, 0}, {0, 1, 0}, {-1, 0, 3}};
-  e.begin_step(start, v, 1e-3);
+  e.begin_step(0, 1e-3, start, v);
   std::vector<Vec3> x = start;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += 1e-3 * v[i];
   expect_gradient(
@@ -60,14 +60,14 @@ TEST(LockstepTerms, A_taut_cord_pulls_a_slack_one_does_nothing_and_none_pushes) 
   e.springs = {{0, 1, 0.1, 300, 4, false}};
   std::vector<NodeTerm> out;
   const std::vector<Vec3> still(2, Vec3::Zero()), taut{{0, 0, 0}, {0.11, 0, 0}}, slack{{0, 0, 0}, {0.09, 0, 0}};
-  e.begin_step(taut, still, 1e-3);
+  e.begin_step(0, 1e-3, taut, still);
   e.add_terms(taut, out);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_NEAR(-out[0].force.x(), 3, 1e-12);  // no damping where it does not change
   out.clear();
   e.add_terms(std::vector<Vec3>{{0, 0, 0}, {0.1001, 0, 0}}, out);  // shortens fast: damping would have it push
   EXPECT_TRUE(out.empty());
-  e.begin_step(slack, still, 1e-3);
+  e.begin_step(0, 1e-3, slack, still);
   e.add_terms(slack, out);
   EXPECT_TRUE(out.empty());
 }

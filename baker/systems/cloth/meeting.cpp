@@ -29,20 +29,21 @@ std::vector<Box> boxes_of(const Shot& shot, const Trajectory& body) {
 }
 
 /// Where the cloth may be, in each of the same intervals.
-std::vector<Box> boxes_of(const ClothReach& cloth, const std::vector<Box>& wearer, const Shot& shot) {
+std::vector<Box> boxes_of(const ClothReach& cloth, const std::vector<Box>& wearer, const Shot& shot,
+                          double fastest_wind) {
   std::vector<Box> out = wearer;
   const double reach = cloth.start.size().norm() + k_margin;
   for (Box& box : out) box.inflate(reach);
   if (!cloth.may_leave) return out;
-  // Once it has left, it is anywhere below or downwind of where it may have been.
+  // Once it has left, it is anywhere below or as far as the wind may have blown it.
   const double seconds = (shot.last_frame - shot.first_frame + shot.preroll) / shot.fps;
-  const Vec3 blown = seconds * shot.wind.velocity;
+  const double blown = seconds * fastest_wind;
   Box all = cloth.start;
   all.inflate(reach);
   for (Box& box : out) {
     all.include(box);
     Box there = all;
-    there.include(Box{all.lo + blown, all.hi + blown});
+    there.inflate(blown);
     there.lo.y() = -std::numeric_limits<double>::infinity();
     box = there;
   }
@@ -58,11 +59,11 @@ bool meet(const std::vector<Box>& a, const std::vector<Box>& b) {
 }  // namespace
 
 std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan> primaries,
-                                   std::span<const ClothReach> cloths) {
+                                   std::span<const ClothReach> cloths, double fastest_wind) {
   if (primaries.size() == 1) return {{{0}, {0}}};
   std::vector<std::vector<Box>> bodies, reaches;
   for (const PrimaryPlan& primary : primaries) bodies.push_back(boxes_of(shot, *primary.trajectory));
-  for (const ClothReach& cloth : cloths) reaches.push_back(boxes_of(cloth, bodies[cloth.wearer], shot));
+  for (const ClothReach& cloth : cloths) reaches.push_back(boxes_of(cloth, bodies[cloth.wearer], shot, fastest_wind));
   DisjointSets together(primaries.size());
   for (std::size_t a = 0; a < cloths.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)

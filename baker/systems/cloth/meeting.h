@@ -32,6 +32,6 @@ struct ClothReach {
 
 /// Meetings in the order of their first wearer. primaries: all of the shot.
 std::vector<Meeting> find_meetings(const Shot& shot, std::span<const PrimaryPlan> primaries,
-                                   std::span<const ClothReach> cloths);
+                                   std::span<const ClothReach> cloths, double fastest_wind);
 
 }  // namespace ft::inline baker

@@ -206,9 +206,9 @@ void note_riding(const ClothGarment& garment, std::vector<std::string>& notes) {
 
 }  // namespace
 
-ClothSetup common_setup(const Shot& shot) {
+ClothSetup common_setup(const Shot& shot, const BakePlan& plan) {
   ClothSetup setup;
-  take_from_shot(shot, setup);
+  take_from_shot(shot, plan.wind, setup);
   setup.max_substeps = shot.solver.max_substeps;
   setup.newton_iterations = shot.solver.newton_iterations;
   setup.linear_tolerance = shot.solver.linear_tolerance;
@@ -220,7 +220,7 @@ ClothSetup common_setup(const Shot& shot) {
 Result<std::unique_ptr<ClothGroup>> cloths_of(const Shot& shot, std::size_t p, BakePlan& plan) {
   auto made = std::make_unique<ClothGroup>(p);
   ClothGroup& group = *made;
-  group.setup = common_setup(shot);
+  group.setup = common_setup(shot, plan);
   group.setup.primary = plan.primaries[p].trajectory;
   group.setup.teleports = plan.primaries[p].scan.teleports;
   std::vector<const ClothSpec*> worn;

@@ -14,6 +14,6 @@ Result<std::unique_ptr<ClothGroup>> cloths_of(const Shot& shot, std::size_t prim
 Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, BakePlan& plan);
 
 /// What all groups of a shot have in common.
-ClothSetup common_setup(const Shot& shot);
+ClothSetup common_setup(const Shot& shot, const BakePlan& plan);
 
 }  // namespace ft::inline baker

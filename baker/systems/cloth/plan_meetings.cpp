@@ -107,7 +107,7 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
       if (const std::string why = why_alone(plan.shot(), primary); !why.empty())
         plan.notes.push_back(
             fmt::format("cloth of others does not meet \"{}\", and its own meets nothing else: {}", primary.name, why));
-  for (const Meeting& meeting : find_meetings(shot, plan.primaries, reaches)) {
+  for (const Meeting& meeting : find_meetings(shot, plan.primaries, reaches, plan.wind->fastest())) {
     auto made = std::move(own[meeting.wearers[0]]);
     ClothGroup& group = *made;
     for (std::size_t w = 1; w < meeting.wearers.size(); ++w) merge_cloths(std::move(*own[meeting.wearers[w]]), group);

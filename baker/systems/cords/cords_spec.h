@@ -7,11 +7,12 @@
 
 #include "baker/core/types.h"
 #include "io/shot/secondary.h"
+#include "solvers/cords/cord_settings.h"
 
 namespace ft::inline baker {
 
 /// [cords.NAME]: what follows, of cords: a net, a rope, a chain of knots, the edges of a mesh.
-struct CordsSpec final : SecondarySpec {
+struct CordsSpec final : SecondarySpec, CordSettings {
   std::string shape;                           ///< "net", "rope", "knots", "mesh"
   int columns = 12, rows = 6;                  ///< net: loops at the rim, rings of knots below it
   double radius_top = 0.225;                   ///< net: of the rim [m]
@@ -24,16 +25,8 @@ struct CordsSpec final : SecondarySpec {
   std::filesystem::path mesh;                  ///< OBJ whose edges are cords
   double unit_scale = 1;                       ///< m per mesh unit
   std::string up = "y";                        ///< of the mesh
-  std::string held;        ///< rope, knots: "start", "end", "both", "none"; mesh: a vertex group or none
-  double mass = 0;         ///< kg, all of it
-  double stretch = 3000;   ///< EA: force at a strain of 1 [N]
-  double bend = 0;         ///< EI [N m2]
-  double damping = 1e-4;   ///< of stretch and bend, in units of their stiffness [s]
-  double radius = 1.5e-3;  ///< of a cord, drawn and in contact [m]
-  double friction = 0.4;   ///< Coulomb coefficient
-  bool self_collision = false;
+  std::string held;                     ///< rope, knots: "start", "end", "both", "none"; mesh: a vertex group or none
   std::vector<std::string> meets{"*"};  ///< patterns of primaries that they meet beside their own
-  double hold_stiffness = 2e4;          ///< of the springs that hold points [N/m]
 };
 
 }  // namespace ft::inline baker

@@ -28,14 +28,7 @@ Result<CordSystem> cord_system(const CordsSpec& spec) {
   CordSystem out;
   out.name = spec.name;
   out.graph = std::move(*graph);
-  out.mass = spec.mass;
-  out.stretch = spec.stretch;
-  out.bend = spec.bend;
-  out.damping = spec.damping;
-  out.radius = spec.radius;
-  out.friction = spec.friction;
-  out.hold_stiffness = spec.hold_stiffness;
-  out.self_collision = spec.self_collision;
+  static_cast<CordSettings&>(out) = spec;
   return out;
 }
 
@@ -162,7 +155,7 @@ Result<std::unique_ptr<CordsGroup>> cords_of(const Shot& shot, std::size_t p, Ba
   // What stands still needs no nodes of its own: it is met as other primaries are.
   if (two_way || !stands_still(shot, primary)) setup.prop = rigid_prop(*primary.prop, primary.track, two_way);
   if (const Status added = add_bodies(shot, specs, plan, *group); !added) return added.error();
-  take_from_shot(shot, setup);
+  take_from_shot(shot, plan.wind, setup);
   apply_quality(shot, setup);
   return group;
 }

@@ -16,6 +16,7 @@
 #include "solvers/cloth/model/cloth_settings.h"
 #include "solvers/energies/cloth_topology.h"
 #include "solvers/energies/hold_span.h"
+#include "solvers/wind/wind.h"
 
 namespace ft::inline solvers {
 
@@ -64,7 +65,7 @@ struct ClothSetup {
   double fps = 24;
   int preroll_frames = 24;
   Vec3 gravity = Vec3(0, -k_gravity, 0);    ///< m/s2
-  Vec3 wind = Vec3::Zero();                 ///< m/s
+  std::shared_ptr<const Wind> wind;         ///< null: the air stands still
   double air_density = 1.225;               ///< kg/m3; 0: vacuum
   int min_substeps = 3, max_substeps = 32;  ///< a frame
   double travel = 5.5;  ///< most that the body goes against the cloth in a substep, in contact radii; 16 is coarse

@@ -1,0 +1,2 @@
+# Run by samples/run.sh in this folder.
+"$make_set" flags --out .
