@@ -1,5 +1,5 @@
-# Includes go downwards only: core < io, collision < solvers < baker; no rooms (folders) include each other in a circle; FCL
-# and assimp only behind their own files.
+# Includes go downwards only: core < io, collision < solvers < baker; no rooms (folders) include each other in a circle; FCL,
+# assimp and OpenVDB only behind their own files.
 set(faults "")
 function(check folder pattern message)
   file(GLOB_RECURSE files ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp)
@@ -51,5 +51,9 @@ foreach(file ${all})
   file(STRINGS ${file} assimp_lines REGEX "#include [<\"]assimp/")
   if(assimp_lines AND NOT name MATCHES "^io/import/files/assimp_[a-z0-9_]+\\.(cpp|h)$")
     message(SEND_ERROR "${name}: assimp belongs in io/import/files/assimp_*.cpp")
+  endif()
+  file(STRINGS ${file} openvdb_lines REGEX "#include [<\"]openvdb/")
+  if(openvdb_lines AND NOT name MATCHES "^io/volume/openvdb_[a-z0-9_]+\\.cpp$")
+    message(SEND_ERROR "${name}: OpenVDB belongs in io/volume/openvdb_*.cpp")
   endif()
 endforeach()

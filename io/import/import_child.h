@@ -1,6 +1,5 @@
-// The parent's side of the import: a child process of this very program reads the file under limits on CPU time, memory
-// and wall-clock time, and hands over a Character. However the child ends, the parent gets a Character or one clear
-// Error.
+// The parent's side of the import: a guarded child process of this very program reads the file and hands over a
+// Character.
 #pragma once
 
 #include <filesystem>

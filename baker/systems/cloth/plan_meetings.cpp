@@ -112,8 +112,9 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
     ClothGroup& group = *made;
     for (std::size_t w = 1; w < meeting.wearers.size(); ++w) merge_cloths(std::move(*own[meeting.wearers[w]]), group);
     apply_quality(shot, group.setup);
-    // A sheet's collider is the sheet itself, whose caches are there, as those of a fixed member of several are.
-    if (meeting.bodies.size() > 1 || has_sheets(group.setup.primary->surface().parts)) {
+    // The collider of a sheet and of what stands still is the drawn body itself.
+    if (meeting.bodies.size() > 1 || has_sheets(group.setup.primary->surface().parts) ||
+        stands_still(shot, plan.primaries[meeting.bodies[0]])) {
       join_bodies(shot, plan, meeting, reaches, group);
     } else {
       group.setup.primary = with_quality(shot, group.setup, group.setup.primary);

@@ -10,13 +10,11 @@
 
 #include "baker/core/hash.h"
 #include "baker/core/trajectory.h"
+#include "io/reading/guarded_child.h"
 
 namespace ft::inline io {
 
-struct ImportLimits {
-  double seconds = 60;  ///< CPU time of the child
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
-};
+using ImportLimits = ChildLimits;
 
 struct ClipInfo {
   std::string name;

@@ -9,6 +9,7 @@
 #include "baker/core/file.h"
 #include "io/cache/cache.h"
 #include "io/import/repair/stray_vertices.h"
+#include "io/reading/numbered_files.h"
 #include "io/shot/mesh_file.h"
 
 namespace ft::inline io {
@@ -143,31 +144,9 @@ Result<std::vector<std::filesystem::path>> numbered_sequence(const std::filesyst
   while (begin > 0 && is_number(stem[begin - 1])) --begin;
   if (begin == end) return std::vector{file};
   const std::string prefix = stem.substr(0, begin), suffix = stem.substr(end) + file.extension().string();
-
-  std::vector<std::pair<std::uint64_t, std::filesystem::path>> found;
-  std::error_code failed;
-  const auto folder = file.parent_path().empty() ? std::filesystem::path(".") : file.parent_path();
-  for (std::filesystem::directory_iterator entry(folder, failed), last; !failed && entry != last;
-       entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix)) continue;
-    const std::string digits = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-    if (digits.size() > 12 || !std::all_of(digits.begin(), digits.end(),
-                                           [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }))
-      continue;
-    found.push_back({std::stoull(digits), file.parent_path() / name});
-  }
-  if (found.empty()) return input_error("no file of this sequence exists", file.string());
-  std::sort(found.begin(), found.end());
-  std::vector<std::filesystem::path> out;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (i > 0 && found[i].first != found[i - 1].first + 1)
-      return input_error(
-          "number " + std::to_string(found[i - 1].first + 1) + " is missing from the sequence, or is there twice",
-          file.string());
-    out.push_back(found[i].second);
-  }
-  return out;
+  auto numbered = numbered_files(file, prefix, suffix);
+  if (!numbered) return numbered.error();
+  return std::move(numbered->files);
 }
 
 Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, const std::filesystem::path& topology,
