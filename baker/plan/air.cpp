@@ -7,7 +7,7 @@
 
 #include "baker/plan/located.h"
 #include "io/shot/patterns.h"
-#include "io/shot/words.h"
+#include "io/volume/vdb_read.h"
 #include "solvers/wind/body_paths.h"
 #include "solvers/wind/registry.h"
 #include "solvers/wind/surface_shelter.h"
@@ -48,6 +48,33 @@ Result<std::shared_ptr<const BodyPaths>> plan_bodies(const Shot& shot, const Win
   return std::shared_ptr<const BodyPaths>(std::move(out));
 }
 
+/// Of a sequence the frames that the shot needs; file n is the shot's frame n.
+Result<std::shared_ptr<const VelocityGrid>> plan_grid(const Shot& shot, const WindKeys& keys,
+                                                      std::vector<std::string>& notes) {
+  auto found = find_vdb_sequence(keys.file);
+  if (!found) return found.error();
+  const std::int64_t count = static_cast<std::int64_t>(found->files.size());
+  const std::int64_t first = std::clamp<std::int64_t>(shot.first_frame - shot.preroll - found->first, 0, count - 1);
+  const std::int64_t last = std::clamp<std::int64_t>(shot.last_frame - found->first, first, count - 1);
+  if (count > 1 && (found->first > shot.first_frame || found->first + count - 1 < shot.last_frame))
+    notes.push_back(fmt::format("wind \"{}\": has files for the frames {} to {}; before and after it stays as in these",
+                                keys.name, found->first, found->first + count - 1));
+  NumberedFiles needed{found->first + first, {found->files.begin() + first, found->files.begin() + last + 1}};
+  auto frames = read_vdb_sequence(needed, keys.grid);
+  if (!frames) return frames.error();
+  std::vector<VelocityVoxels> voxels;
+  for (VdbVelocity& frame : *frames) {
+    to_metres(frame, keys.unit_scale, keys.up);
+    for (const std::string& note : frame.notes) {
+      const std::string said = "wind \"" + keys.name + "\": " + note;
+      if (std::find(notes.begin(), notes.end(), said) == notes.end()) notes.push_back(said);
+    }
+    voxels.push_back({frame.lowest, frame.count, frame.to_world, std::move(frame.velocities)});
+  }
+  const double start = count > 1 ? static_cast<double>(needed.first - shot.first_frame) / shot.fps : 0;
+  return std::shared_ptr<const VelocityGrid>(std::make_shared<VelocityGrid>(std::move(voxels), start, shot.fps));
+}
+
 Result<WindFieldSpec> field_spec(const Shot& shot, const WindKeys& k, std::span<const PrimaryPlan> primaries,
                                  std::vector<std::string>& notes) {
   WindFieldSpec out;
@@ -70,6 +97,11 @@ Result<WindFieldSpec> field_spec(const Shot& shot, const WindKeys& k, std::span<
   out.length = k.length;
   out.seed = static_cast<std::uint64_t>(k.seed);
   out.turbulence = k.turbulence;
+  if (k.kind == "grid") {
+    auto grid = plan_grid(shot, k, notes);
+    if (!grid) return grid.error();
+    out.grid = std::move(*grid);
+  }
   if (k.kind == "wake")
     for (const PrimaryPlan& primary : primaries) {
       if (primary.name != k.of) continue;

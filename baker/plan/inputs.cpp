@@ -8,6 +8,7 @@
 #include "baker/record/version.h"
 #include "baker/systems/interface/system.h"
 #include "io/cache/cache.h"
+#include "io/volume/vdb_read.h"
 
 namespace ft::inline baker {
 namespace {
@@ -124,6 +125,13 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
   for (const StandInKeys& standin : s.standins)
     if (const Status added = add_file(inputs, "standin." + standin.name + ".mesh", standin.mesh); !added)
       return added.error();
+  for (const WindKeys& wind : s.winds) {
+    if (wind.file.empty()) continue;
+    const auto found = find_vdb_sequence(wind.file);
+    if (!found) return found.error();
+    for (const auto& path : found->files)
+      if (const Status added = add_file(inputs, "wind." + wind.name + ".file", path); !added) return added.error();
+  }
   for (auto& [key, value] : settings(s))
     if (shapes_the_bake(key)) inputs.settings.emplace_back(key, value);
   for (const PrimarySpec& primary : s.primaries)

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "baker/plan/air.h"
 #include "baker/plan/carrier.h"
 #include "baker/plan/known_motion.h"
 #include "baker/plan/placed_trajectory.h"
 #include "baker/plan/quality.h"
+#include "baker/plan/repeated_trajectory.h"
 #include "io/shot/chains.h"
 
 namespace ft::inline baker {
@@ -42,7 +44,8 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.meshes = spec.meshes;
   request.surface = spec.surface;
   request.preroll = shot.preroll / shot.fps;
-  request.duration = (shot.last_frame - shot.first_frame) / shot.fps;
+  // What is repeated need not last as long as the shot; whether it does is looked at once its length is known.
+  request.duration = spec.repeat > 1 ? 0 : (shot.last_frame - shot.first_frame) / shot.fps;
   request.first_frame = shot.first_frame;
   request.cache_folder = cache;
   const auto asks = [&](const auto& s) { return s->on == spec.name && s->section->needs_character(); };
@@ -97,6 +100,34 @@ void note_pass(const HybridPass& pass, const std::string& primary, std::vector<s
   notes.insert(notes.end(), pass.notes.begin(), pass.notes.end());
 }
 
+/// As often in a row as `repeat` says.
+Status repeat_clip(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported,
+                   std::vector<std::string>& notes) {
+  if (spec.repeat <= 1) return {};
+  const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
+  if (is_hybrid(shot, spec.name)) return usage_error("what yields to stand-ins cannot be repeated", where);
+  const auto& clips = imported.info.clips;
+  const auto clip = std::find_if(clips.begin(), clips.end(),
+                                 [&](const ClipInfo& c) { return spec.clip.empty() || c.name == spec.clip; });
+  if (clip == clips.end()) return usage_error("repeat needs a clip to repeat", where);
+  const double period = (clip->duration - spec.clip_start) / spec.speed;
+  const double needed = (shot.last_frame - shot.first_frame) / shot.fps;
+  if (!(period > 0)) return usage_error("clip_start is behind the clip's end: there is nothing to repeat", where);
+  if (period * spec.repeat < needed - 1e-6)
+    return usage_error(fmt::format("{} times its clip last {:.4g} s, and the shot {:.4g} s", spec.repeat,
+                                   period * spec.repeat, needed),
+                       where, fmt::format("repeat = {}", static_cast<int>(std::ceil(needed / period))));
+  auto repeated = std::make_unique<RepeatedTrajectory>(std::move(imported.trajectory), period, spec.repeat);
+  constexpr double k_no_cycle = 0.02;  // m
+  if (repeated->misfit() > k_no_cycle)
+    notes.push_back(
+        fmt::format("primary \"{}\": its clip does not end as it begins: it jumps by {:.2g} cm where it "
+                    "is repeated",
+                    spec.name, 100 * repeated->misfit()));
+  imported.trajectory = std::move(repeated);
+  return {};
+}
+
 /// Where `position` and `rotation` have it.
 Status place_character(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported, Eigen::Isometry3d& place) {
   if (spec.position == Vec3::Zero() && spec.rotation_deg == Vec3::Zero()) return {};
@@ -115,6 +146,7 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   auto imported = importer(request);
   if (!imported) return imported.error();
   CHECK(imported->trajectory);
+  if (const Status repeated = repeat_clip(shot, spec, *imported, notes); !repeated) return repeated.error();
   for (const std::string& note : imported->info.notes) notes.push_back("primary \"" + spec.name + "\": " + note);
   if (const Status checked = check_primary(shot, spec, *imported->trajectory, imported->info, notes); !checked)
     return checked.error();

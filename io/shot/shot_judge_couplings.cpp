@@ -12,7 +12,8 @@ namespace {
 
 constexpr ChoiceKeys k_primary_shapes[] = {
     {"", "file",
-     "animation topology clip clip_start speed unit_scale up source_fps body height meshes surface ignore teleports "
+     "animation topology clip clip_start speed repeat unit_scale up source_fps body height meshes surface ignore "
+     "teleports "
      "limbs position rotation"},
     {"sphere", "radius", "position rotation velocity spin hollow"},
     {"box", "size", "position rotation velocity spin hollow"},
