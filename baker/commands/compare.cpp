@@ -35,7 +35,9 @@ Difference difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b, 
 
 /// Why the two cannot be compared; empty when they can.
 std::string mismatch(const CacheInfo& a, const CacheInfo& b) {
-  if (a.vertex_count != b.vertex_count)
+  if (a.content.shape != b.content.shape)
+    return fmt::format("another shape: {} against {}", shape_name(a.content.shape), shape_name(b.content.shape));
+  if (a.content.shape == OutputShape::k_mesh && a.vertex_count != b.vertex_count)
     return fmt::format("another topology: {} vertices against {}", a.vertex_count, b.vertex_count);
   if (a.has_topology && b.has_topology) {
     if (a.mesh.face_count() != b.mesh.face_count())
@@ -65,12 +67,23 @@ CompareReport incomparable(std::string system, const std::filesystem::path& a, c
   return r;
 }
 
-CompareReport compare_files(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance) {
-  auto reader_a = open_cache(a);
+struct Tolerances {
+  double metres, degrees;
+};
+
+/// Meshes of constant topology and instances can be compared so far.
+Result<std::unique_ptr<CacheReader>> open_comparable(const std::filesystem::path& path) {
+  auto reader = open_cache_of_any_shape(path);
+  if (reader && (*reader)->info().content.shape == OutputShape::k_instances) return reader;
+  return open_cache(path);
+}
+
+CompareReport compare_files(const std::filesystem::path& a, const std::filesystem::path& b, Tolerances tolerance) {
+  auto reader_a = open_comparable(a);
   if (!reader_a) return incomparable(a.stem().string(), a, b, reader_a.error().text());
-  auto reader_b = open_cache(b);
+  auto reader_b = open_comparable(b);
   if (!reader_b) return incomparable(a.stem().string(), a, b, reader_b.error().text());
-  CompareReport r = compare_caches(**reader_a, **reader_b, tolerance);
+  CompareReport r = compare_caches(**reader_a, **reader_b, tolerance.metres, tolerance.degrees);
   r.system = a.stem().string();
   r.a = a.string();
   r.b = b.string();
@@ -91,7 +104,7 @@ std::map<std::string, std::vector<std::filesystem::path>> caches_in(const std::f
 }
 
 std::vector<CompareReport> compare_folders(const std::filesystem::path& a, const std::filesystem::path& b,
-                                           double tolerance) {
+                                           Tolerances tolerance) {
   std::vector<CompareReport> reports;
   const auto in_a = caches_in(a), in_b = caches_in(b);
   for (const auto& [system, files] : in_a) {
@@ -121,7 +134,12 @@ int CompareReport::diverging_count() const {
       std::count_if(frames.begin(), frames.end(), [&](const FrameDifference& f) { return diverges(f); }));
 }
 
-CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
+std::string CompareReport::element(int index) const {
+  if (!instances) return "vertex " + std::to_string(index);
+  return "instance " + (index < 0 ? std::string("-") : std::to_string(instances->ids[at(index)]));
+}
+
+CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, double degrees) {
   const CacheInfo &info_a = a.info(), &info_b = b.info();
   CompareReport r;
   r.system = info_a.system;
@@ -129,13 +147,20 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
   r.vertex_count = info_a.vertex_count;
   r.first_frame = info_a.first_frame;
   r.velocities = info_a.has_velocity && info_b.has_velocity;
-  r.speed_tolerance = tolerance * (info_a.has_fps ? info_a.fps : info_b.fps);
+  const double fps = info_a.has_fps ? info_a.fps : info_b.fps;
+  r.speed_tolerance = tolerance * fps;
+  r.turn_tolerance = degrees;
+  r.spin_tolerance = degrees * fps;
   const auto give_up = [&](std::string reason) {
     r.verdict = CompareVerdict::k_incomparable;
     r.reason = std::move(reason);
     return r;
   };
   if (std::string reason = mismatch(info_a, info_b); !reason.empty()) return give_up(std::move(reason));
+  if (info_a.content.shape == OutputShape::k_instances) {
+    if (const Status s = compare_instances(a, b, r); !s) return give_up(s.error().text());
+    return r;
+  }
 
   double square_sum = 0, worst = 0;
   std::vector<Vec3f> x_a, x_b;
@@ -144,9 +169,11 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
     if (const Status s = a.read_frame(i, x_a); !s) return give_up(s.error().text());
     if (const Status s = b.read_frame(i, x_b); !s) return give_up(s.error().text());
     const Difference d = difference(x_a, x_b, &distances);
-    FrameDifference f{
-        r.first_frame + i, d.max, x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size())),
-        d.vertex,          0,     -1};
+    FrameDifference f;
+    f.frame = r.first_frame + i;
+    f.max = d.max;
+    f.rms = x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size()));
+    f.vertex = d.vertex;
     square_sum += d.square_sum;
     if (d.max > worst) r.worst = i;
     if (d.max > worst || (r.worst < 0 && i + 1 == info_a.frame_count)) {
@@ -170,8 +197,9 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance) {
   return r;
 }
 
-std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b,
-                                         double tolerance) {
+std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b, double metres,
+                                         double degrees) {
+  const Tolerances tolerance{metres, degrees};
   std::error_code ignored;
   const bool folder_a = std::filesystem::is_directory(a, ignored), folder_b = std::filesystem::is_directory(b, ignored);
   if (folder_a && folder_b) return compare_folders(a, b, tolerance);
@@ -197,7 +225,11 @@ int run_compare(const CompareOptions& options) {
     fmt::print(stderr, "--tolerance must be a distance in metres, 0 or more\n");
     return exit_code(ErrorKind::k_usage);
   }
-  const auto reports = compare_paths(options.a, options.b, options.tolerance);
+  if (!(options.degrees >= 0) || !std::isfinite(options.degrees)) {
+    fmt::print(stderr, "--degrees must be an angle in degrees, 0 or more\n");
+    return exit_code(ErrorKind::k_usage);
+  }
+  const auto reports = compare_paths(options.a, options.b, options.tolerance, options.degrees);
   std::vector<ForceComparison> forces;  // of folders that are bakes
   std::vector<PathComparison> paths;
   if (const auto a = read_manifest(options.a), b = read_manifest(options.b); a && b) {

@@ -1,13 +1,15 @@
 // compare: are two caches, or the caches of two bake folders, the same within a tolerance? For regression suites and
-// for artists who changed "nothing". Any two formats: what only one of them holds (topology, frame rate, velocities) is
-// not compared. compare_caches is pure: readers in, report out; compare_report.h turns reports into text, JSON, HTML
-// and JUnit.
+// for artists who changed "nothing". Meshes, and instances (compare_instances.h). Any two formats: what only one of
+// them holds (topology, frame rate, velocities) is not compared. compare_caches is pure: readers in, report out;
+// compare_report.h turns reports into text, JSON, HTML and JUnit.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "baker/commands/compare_instances.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
 #include "io/cache/cache.h"
@@ -18,11 +20,12 @@ struct CompareOptions {
   std::filesystem::path a, b;               ///< two caches or two folders with caches
   double tolerance = 0;                     ///< m, >= 0: distance of a vertex from its twin that still counts as equal
   std::filesystem::path json, html, junit;  ///< reports to write; empty: none
+  double degrees = 0;                       ///< >= 0: rotation of an instance that still counts as equal
 };
 
 enum class CompareVerdict {
   k_equal,         ///< exit code 0
-  k_different,     ///< 1: same topology and range, a vertex beyond the tolerance
+  k_different,     ///< 1: same topology and range, a vertex beyond the tolerance; instances that only one has
   k_incomparable,  ///< 3: another topology or frame range, or unreadable
 };
 
@@ -32,6 +35,11 @@ struct FrameDifference {
   int vertex = -1;          ///< where max is; -1: all are bit-equal
   double max_speed = 0;     ///< largest difference of velocities [m/s]; 0 where one cache has none
   int speed_vertex = -1;
+  // Of instances; vertex and speed_vertex are then indices into InstanceDifference::ids.
+  double turn = 0;  ///< largest angle between orientations [degrees]
+  int turn_vertex = -1;
+  double spin = 0;   ///< largest difference of angular velocities [degrees/s]
+  double scale = 0;  ///< largest difference of scales [1]
 };
 
 struct CompareReport {
@@ -41,6 +49,8 @@ struct CompareReport {
   std::string reason;          ///< of k_incomparable, in one sentence
   double tolerance = 0;        ///< m
   double speed_tolerance = 0;  ///< m/s: the tolerance within one frame
+  double turn_tolerance = 0;   ///< degrees
+  double spin_tolerance = 0;   ///< degrees/s: the tolerance within one frame
   int vertex_count = 0, first_frame = 0;
   bool velocities = false;  ///< both have them
   std::vector<FrameDifference> frames;
@@ -50,17 +60,24 @@ struct CompareReport {
   // The picture of where: vertices of b in the worst frame (the last one where nothing differs), and how far each is
   // from a.
   std::vector<Vec3f> picture_positions;
-  std::vector<float> picture_distances;  ///< m
+  std::vector<float> picture_distances;           ///< m
+  std::optional<InstanceDifference> instances{};  ///< of caches of instances
 
-  bool diverges(const FrameDifference& f) const { return f.max > tolerance || f.max_speed > speed_tolerance; }
+  bool diverges(const FrameDifference& f) const {
+    return f.max > tolerance || f.max_speed > speed_tolerance || f.turn > turn_tolerance || f.spin > spin_tolerance ||
+           f.scale > tolerance;
+  }
+  /// "vertex 12", or "instance 4031" by its id.
+  std::string element(int index) const;
   int diverging_count() const;
 };
 
-CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance);
+/// degrees: of instances.
+CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, double degrees = 0);
 
 /// Pairs up files or folders and compares all; one report per pair, sorted by name. Never empty.
 std::vector<CompareReport> compare_paths(const std::filesystem::path& a, const std::filesystem::path& b,
-                                         double tolerance);
+                                         double tolerance, double degrees = 0);
 
 /// The worst of all.
 CompareVerdict overall_verdict(const std::vector<CompareReport>& reports);

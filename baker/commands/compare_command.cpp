@@ -15,6 +15,9 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command->add_option("--tolerance", o->tolerance, "Distance that still counts as equal, in metres")
       ->check(CLI::NonNegativeNumber)
       ->type_name("METRES");
+  command->add_option("--degrees", o->degrees, "Rotation of an instance that still counts as equal, in degrees")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("DEGREES");
   command->add_option("--json", o->json, "Write the report as JSON")->type_name("FILE");
   command->add_option("--html", o->html, "Write the report as a page")->type_name("FILE");
   command->add_option("--junit", o->junit, "Write the report as JUnit XML")->type_name("FILE");

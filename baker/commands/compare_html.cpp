@@ -137,9 +137,8 @@ std::string pictures(const CompareReport& r) {
   const FrameDifference& f = r.frames[r.worst >= 0 ? static_cast<std::size_t>(r.worst) : r.frames.size() - 1];
   std::string text =
       r.worst >= 0
-          ? fmt::format(
-                "<p>Frame {}: dark vertices agree, yellow ones are {} off, the worst (vertex {}) is circled.</p>",
-                f.frame, length_text(f.max), f.vertex)
+          ? fmt::format("<p>Frame {}: dark vertices agree, yellow ones are {} off, the worst ({}) is circled.</p>",
+                        f.frame, length_text(f.max), r.element(f.vertex))
           : fmt::format("<p>Frame {}.</p>", f.frame);
   return text + view(r, order, 0, 1, "from the front (x to the right, y up)") +
          view(r, order, 2, -1, "from the right (z to the left, y up)");

@@ -15,11 +15,50 @@ const FrameDifference& at(const CompareReport& r, int index) {
   return r.frames[static_cast<std::size_t>(index)];
 }
 
-nlohmann::ordered_json to_json(const FrameDifference& f) {
+nlohmann::ordered_json to_json(const CompareReport& r, const FrameDifference& f) {
   nlohmann::ordered_json j = {{"frame", f.frame}, {"max", f.max}, {"rms", f.rms}};
-  if (f.vertex >= 0) j["vertex"] = f.vertex;
-  if (f.speed_vertex >= 0) j["max_speed"] = f.max_speed, j["speed_vertex"] = f.speed_vertex;
+  const auto place = [&](const char* of_mesh, const char* of_instances, int element) {
+    if (element < 0) return;
+    if (r.instances)
+      j[of_instances] = r.instances->ids[static_cast<std::size_t>(element)];
+    else
+      j[of_mesh] = element;
+  };
+  place("vertex", "instance", f.vertex);
+  if (f.speed_vertex >= 0) j["max_speed"] = f.max_speed;
+  place("speed_vertex", "speed_instance", f.speed_vertex);
+  if (!r.instances) return j;
+  j["max_degrees"] = f.turn;
+  place("", "degrees_instance", f.turn_vertex);
   return j;
+}
+
+nlohmann::ordered_json to_json(const InstanceDifference& d) {
+  return {{"common", d.common},
+          {"missing", d.missing},
+          {"extra", d.extra},
+          {"replaced", d.replaced},
+          {"p95", d.p95},
+          {"degrees_rms", d.turn_rms},
+          {"degrees_p95", d.turn_p95},
+          {"degrees_max", d.turn_max},
+          {"scale_max", d.scale_max}};
+}
+
+/// Of what differs first in a frame that is beyond a tolerance.
+std::string first_difference(const CompareReport& r, const FrameDifference& f) {
+  if (f.max > r.tolerance)
+    return fmt::format("first beyond the tolerance of {} in frame {}, {} ({})", length_text(r.tolerance), f.frame,
+                       r.element(f.vertex), length_text(f.max));
+  if (f.turn > r.turn_tolerance)
+    return fmt::format("first beyond the tolerance of {:.4g} degrees in frame {}, {} ({:.4g} degrees)",
+                       r.turn_tolerance, f.frame, r.element(f.turn_vertex), f.turn);
+  if (f.scale > r.tolerance) return fmt::format("scales first differ in frame {}, by {:.4g}", f.frame, f.scale);
+  if (f.max_speed > r.speed_tolerance)
+    return fmt::format("velocities first beyond the tolerance of {:.4g} m/s in frame {}, {} ({:.4g} m/s)",
+                       r.speed_tolerance, f.frame, r.element(f.speed_vertex), f.max_speed);
+  return fmt::format("angular velocities first beyond the tolerance of {:.4g} degrees/s in frame {} ({:.4g} degrees/s)",
+                     r.spin_tolerance, f.frame, f.spin);
 }
 
 }  // namespace
@@ -59,24 +98,22 @@ std::string escaped(std::string_view text) {
 std::string summary(const CompareReport& r) {
   if (r.verdict == CompareVerdict::k_incomparable) return r.reason;
   if (r.verdict == CompareVerdict::k_equal) {
-    const bool speeds_equal =
-        std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) { return f.max_speed == 0; });
+    const bool speeds_equal = std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) {
+      return f.max_speed == 0 && f.turn == 0 && f.spin == 0 && f.scale == 0;
+    });
     if (r.worst < 0 && speeds_equal) return "no difference at all";
-    if (r.worst < 0) return "positions do not differ, velocities within the tolerance";
+    if (r.worst < 0)
+      return std::string("positions do not differ, ") + (r.instances ? "rotations and " : "") +
+             "velocities within the tolerance";
     const FrameDifference& w = at(r, r.worst);
-    return fmt::format("largest difference {} in frame {}, vertex {}; RMS {}; tolerance {}", length_text(w.max),
-                       w.frame, w.vertex, length_text(r.rms), length_text(r.tolerance));
+    return fmt::format("largest difference {} in frame {}, {}; RMS {}; tolerance {}", length_text(w.max), w.frame,
+                       r.element(w.vertex), length_text(r.rms), length_text(r.tolerance));
   }
-  const FrameDifference& f = at(r, r.first_diverging);
-  std::string text =
-      f.max > r.tolerance
-          ? fmt::format("first beyond the tolerance of {} in frame {}, vertex {} ({})", length_text(r.tolerance),
-                        f.frame, f.vertex, length_text(f.max))
-          : fmt::format("velocities first beyond the tolerance of {:.4g} m/s in frame {}, vertex {} ({:.4g} m/s)",
-                        r.speed_tolerance, f.frame, f.speed_vertex, f.max_speed);
+  if (r.first_diverging < 0) return "the instances are not the same ones; those that both have do not differ";
+  std::string text = first_difference(r, at(r, r.first_diverging));
   if (r.worst >= 0)
-    text += fmt::format("; largest {} in frame {}, vertex {}; RMS {}", length_text(at(r, r.worst).max),
-                        at(r, r.worst).frame, at(r, r.worst).vertex, length_text(r.rms));
+    text += fmt::format("; largest {} in frame {}, {}; RMS {}", length_text(at(r, r.worst).max), at(r, r.worst).frame,
+                        r.element(at(r, r.worst).vertex), length_text(r.rms));
   return text + fmt::format("; {} of {} frames differ", r.diverging_count(), r.frames.size());
 }
 
@@ -84,13 +121,24 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
   std::string out;
   for (const CompareReport& r : reports) {
     out += fmt::format("{}: {}: {}\n  a: {}\n  b: {}\n", r.system, verdict_name(r.verdict), summary(r), r.a, r.b);
-    if (r.verdict != CompareVerdict::k_different) continue;
-    out += fmt::format("  {:>8} {:>12} {:>12} {:>8} {:>12}\n", "frame", "max [mm]", "rms [mm]", "vertex", "max [m/s]");
+    if (r.instances) out += instances_text(r);
+    if (r.verdict != CompareVerdict::k_different || r.first_diverging < 0) continue;
+    if (r.instances) {
+      out += fmt::format("  {:>8} {:>12} {:>12} {:>12} {:>12}\n", "frame", "max [mm]", "rms [mm]", "instance",
+                         "max [deg]");
+    } else
+      out +=
+          fmt::format("  {:>8} {:>12} {:>12} {:>8} {:>12}\n", "frame", "max [mm]", "rms [mm]", "vertex", "max [m/s]");
     int lines = 0;
     for (const FrameDifference& f : r.frames)
       if (r.diverges(f) && ++lines <= k_most_lines)
-        out += fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>8} {:>12}\n", f.frame, 1000 * f.max, 1000 * f.rms, f.vertex,
-                           r.velocities ? fmt::format("{:.4g}", f.max_speed) : "-");
+        out += r.instances
+                   ? fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>12} {:>12.4g}\n", f.frame, 1000 * f.max, 1000 * f.rms,
+                                 f.vertex < 0 ? std::string("-")
+                                              : std::to_string(r.instances->ids[static_cast<std::size_t>(f.vertex)]),
+                                 f.turn)
+                   : fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>8} {:>12}\n", f.frame, 1000 * f.max, 1000 * f.rms,
+                                 f.vertex, r.velocities ? fmt::format("{:.4g}", f.max_speed) : "-");
     if (lines > k_most_lines) out += fmt::format("  and {} more frames\n", lines - k_most_lines);
   }
   return out;
@@ -101,7 +149,7 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
   const CompareVerdict verdict = overall_verdict(reports);
   Json all = {{"verdict", verdict_name(verdict)},
               {"exit_code", exit_code(verdict)},
-              {"units", "m, m/s, N"},
+              {"units", "m, m/s, N, degrees"},
               {"caches", Json::array()}};
   for (const CompareReport& r : reports) {
     Json j = {
@@ -109,13 +157,14 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
     if (r.verdict != CompareVerdict::k_incomparable) {
       j["tolerance"] = r.tolerance;
       j["vertex_count"] = r.vertex_count;
+      if (r.instances) j["instances"] = to_json(*r.instances);
       j["velocities_compared"] = r.velocities;
       j["rms"] = r.rms;
       j["diverging_frames"] = r.diverging_count();
-      if (r.first_diverging >= 0) j["first_diverging"] = to_json(at(r, r.first_diverging));
-      if (r.worst >= 0) j["worst"] = to_json(at(r, r.worst));
+      if (r.first_diverging >= 0) j["first_diverging"] = to_json(r, at(r, r.first_diverging));
+      if (r.worst >= 0) j["worst"] = to_json(r, at(r, r.worst));
       j["frames"] = Json::array();
-      for (const FrameDifference& f : r.frames) j["frames"].push_back(to_json(f));
+      for (const FrameDifference& f : r.frames) j["frames"].push_back(to_json(r, f));
     }
     all["caches"].push_back(std::move(j));
   }

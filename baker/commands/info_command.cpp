@@ -46,7 +46,10 @@ Result<Lines> folder_info(const std::filesystem::path& path) {
     for (const ManifestCache& c : s.caches)
       files += " " + c.file + (c.bytes > 0 ? " (" + size_text(c.bytes) + ")" : "");
     out.push_back(
-        fmt::format("  {} \"{}\": {} vertices, {} faces:{}", s.role, s.name, s.vertex_count, s.face_count, files));
+        s.shape == OutputShape::k_mesh
+            ? fmt::format("  {} \"{}\": {} vertices, {} faces:{}", s.role, s.name, s.vertex_count, s.face_count, files)
+            : fmt::format("  {} \"{}\": {} {}, {} prototypes:{}", s.role, s.name, s.count, shape_key(s.shape),
+                          s.prototypes.size(), files));
   }
   int crossings = 0, incidents = 0;
   double deepest = 0, strain = 0;
@@ -118,12 +121,20 @@ Result<Lines> mesh_info(const std::filesystem::path& path) {
 
 Lines cache_info(CacheReader& reader) {
   const CacheInfo& info = reader.info();
-  Lines out{fmt::format("cache of \"{}\": {} frames from {}{}, {} vertices", info.system, info.frame_count,
+  const bool mesh = info.content.shape == OutputShape::k_mesh;
+  const std::string_view elements = mesh ? std::string_view("vertices") : shape_key(info.content.shape);
+  Lines out{fmt::format("cache of \"{}\": {} frames from {}{}, {} {}{}", info.system, info.frame_count,
                         info.first_frame, info.has_fps ? fmt::format(" at {:g} fps", info.fps) : std::string(),
-                        info.mesh.vertex_count())};
-  out.push_back(fmt::format("  {}, {}",
-                            info.has_topology ? fmt::format("{} faces", info.mesh.face_count()) : "points only",
-                            info.has_velocity ? "with velocities" : "without velocities"));
+                        mesh ? info.mesh.vertex_count() : info.vertex_count, elements,
+                        info.content.changes ? " in the first frame" : "")};
+  std::string what = info.has_topology ? fmt::format("{} faces", info.mesh.face_count()) : "points only";
+  if (info.content.shape == OutputShape::k_instances)
+    what = fmt::format("{} prototypes", info.instances.prototype_names.size());
+  else if (info.content.shape == OutputShape::k_curves)
+    what = fmt::format("{} curves", info.curves.curve_count());
+  else if (info.content.shape != OutputShape::k_mesh)
+    what = std::string(shape_name(info.content.shape));
+  out.push_back(fmt::format("  {}, {}", what, info.has_velocity ? "with velocities" : "without velocities"));
   Box box;
   std::vector<Vec3f> x;
   for (int i = 0; i < info.frame_count; ++i) {
@@ -149,7 +160,7 @@ Result<Lines> file_info(const std::filesystem::path& path, bool scan) {
   if (extension == ".obj") return mesh_info(path);
   for (const CacheFormat& format : cache_formats())
     if (extension == format.extension) {
-      auto cache = open_cache(path);
+      auto cache = open_cache_of_any_shape(path);
       if (!cache) return cache.error();
       return cache_info(**cache);
     }

@@ -62,6 +62,7 @@ Result<std::string> preview_page(std::span<const std::filesystem::path> bake_fol
   replace(page, "%STYLE%", embedded_style());
   replace(page, "%PLOTS%", embedded_plots());
   replace(page, "%PATHS%", embedded_paths());
+  replace(page, "%INSTANCES%", embedded_instances());
   replace(page, "%PLAYER%", embedded_player());
   replace(page, "%CONTROLS%", embedded_controls());
   replace(page, "%THREE%", embedded_three());

@@ -5,7 +5,9 @@
 #include <functional>
 #include <map>
 
+#include "baker/commands/base64.h"
 #include "baker/commands/preview.h"
+#include "baker/commands/preview_instances.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
@@ -20,23 +22,6 @@ namespace ft::inline baker {
 namespace {
 
 constexpr double k_strain_step = 0.0025;  ///< of the 8-bit strain; player.js knows it as 40 steps to 10 %
-
-std::string base64(std::span<const std::byte> data) {
-  constexpr const char* k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((data.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < data.size(); i += 3) {
-    const auto byte = [&](std::size_t k) { return i + k < data.size() ? static_cast<unsigned>(data[i + k]) : 0u; };
-    const unsigned bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k > data.size() ? '=' : k_digits[bits >> (18 - 6 * k) & 63];
-  }
-  return out;
-}
-
-template <class T>
-std::string base64_of(const std::vector<T>& values) {
-  return base64(std::as_bytes(std::span<const T>(values)));
-}
 
 /// A system on its way into the page.
 struct Clip {
@@ -101,7 +86,7 @@ void add_gap(Clip& clip, std::span<const Vec3> x, std::span<const Vec3> surface,
 /// feasible collider, else the drawn body.
 Status measure(std::vector<Clip>& clips, int frames) {
   for (Clip& clip : clips) {
-    if (!is_secondary(clip.system.role)) continue;
+    if (!is_secondary(clip.system.role) || clip.system.shape != OutputShape::k_mesh) continue;
     const SystemKind* kind = find_system_kind(clip.system.role);
     std::optional<RestEdges> rest = kind ? kind->rest_edges(clip.track) : std::nullopt;
     const bool strained = rest.has_value();
@@ -248,6 +233,9 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   for (const ManifestSystem& system : manifest->systems) {
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
+    if (system.shape != OutputShape::k_mesh && system.shape != OutputShape::k_instances)
+      return input_error(std::string("the page cannot show ") + std::string(shape_name(system.shape)) + " yet",
+                         (bake_folder / system.caches[0].file).string());
     frames = std::min(frames, track->reader->info().frame_count);
     clips.push_back({system, std::move(*track), {}, {}, {}, {}, {}});
   }
@@ -272,6 +260,12 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   bake["systems"] = Json::array();
   for (Clip& clip : clips) {
     if (clip.system.role == "collider" && has_body) continue;  // looks like the body and costs as much
+    if (clip.system.shape == OutputShape::k_instances) {
+      auto instances = preview_instances(clip.system, clip.track, frames);
+      if (!instances) return instances.error();
+      bake["systems"].push_back(std::move(*instances));
+      continue;
+    }
     if (const Status done = quantise(clip, frames); !done) return done.error();
     Json system = describe(clip);
     if (!is_secondary(clip.system.role)) system["absent"] = absent_rows(*manifest, clip.system, frames);

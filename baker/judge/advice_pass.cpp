@@ -142,7 +142,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     for (const SystemOutput& secondary : group->outputs) {
       Evidence e;
       e.primary = primary.name;
-      e.secondary = secondary.mesh->name;
+      e.secondary = secondary.name();
       e.two_way_possible = find_system_kind(group->role())->section().why_not_two_way().empty();
       const std::string& own = plan->primaries[secondary.primary].name;
       std::vector<Wrench> forces(reports.size());
@@ -165,7 +165,7 @@ Result<AdvicePass> run_advice_pass(const AdviceOptions& options, const BakeServi
     for (const auto& group : later.groups)
       for (const SystemOutput& output : group->outputs)
         out.notes.push_back(
-            fmt::format("\"{}\" is baked after what it refers to, and is not measured here", output.mesh->name));
+            fmt::format("\"{}\" is baked after what it refers to, and is not measured here", output.name()));
   const double frames = out.shot_frames + shot.preroll;
   for (Evidence& e : out.pairs) e.cycle_seconds = frames * frame_seconds;
   out.final_seconds = k_final_cost * frames * frame_seconds;

@@ -18,6 +18,7 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
   out.complete = manifest->complete;
   const CachedBake bake{bake_folder, *manifest};
   int frames = manifest->systems.empty() ? 0 : manifest->written_count();
+  std::vector<CacheTrack> shaped;  // what is no mesh
   for (const ManifestSystem& system : manifest->systems) {
     if (!manifest->complete && !bake.has_cache(system)) {
       frames = 0;
@@ -26,6 +27,7 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
     auto track = bake.open(system);
     if (!track) return track.error();
     frames = std::min(frames, track->reader->info().frame_count);
+    if (track->shape() != OutputShape::k_mesh) shaped.push_back(std::move(*track));
   }
   std::vector<std::unique_ptr<JudgedGroup>> groups;
   for (const SystemKind* kind : system_kinds()) {
@@ -42,6 +44,8 @@ Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder) {
   for (const FrameReport& frame : manifest->frames) absent[frame.frame] = frame.absent;
   for (int i = 0; i < frames; ++i) {
     const int frame = manifest->first_written + i;
+    for (FrameData data; const CacheTrack& track : shaped)
+      if (const Status sound = track.read(i, data); !sound) return sound.error();
     std::optional<FrameReport> all;
     for (const auto& group : groups) {
       const auto report = group->judge(i, frame, absent[frame]);

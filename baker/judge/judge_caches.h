@@ -23,7 +23,9 @@ struct CacheJudgement {
 };
 
 /// Reads every frame of every cache in the first format of each system, as far as all have it. Each kind of secondary
-/// judges its own systems (systems/system.h).
+/// judges its own systems (systems/system.h); of what is no mesh every frame is read whatever its kind looks at. Error:
+/// caches that do not belong to the manifest, frames that are not finite, instances that are not those of the manifest
+/// (k_input).
 Result<CacheJudgement> judge_caches(const std::filesystem::path& bake_folder);
 
 }  // namespace ft::inline baker

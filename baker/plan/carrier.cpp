@@ -70,9 +70,11 @@ std::vector<Carrier> carriers_of(const BakePlan& plan) {
   for (const auto& group : plan.groups) {
     const SystemKind* kind = find_system_kind(group->role());
     if (!kind || !kind->section().why_no_carrier().empty()) continue;
-    for (const SystemOutput& output : group->outputs)
+    for (const SystemOutput& output : group->outputs) {
+      if (!output.mesh) continue;
       out.push_back({std::string(kind->name()).append(".").append(output.mesh->name), output.mesh->name, output.mesh,
                      kind->is_sheet(), output.primary});
+    }
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "baker/plan/air.h"
 #include "baker/plan/carrier.h"
 #include "baker/plan/known_motion.h"
+#include "baker/plan/output_formats.h"
 #include "baker/plan/placed_trajectory.h"
 #include "baker/plan/quality.h"
 #include "baker/plan/repeated_trajectory.h"
@@ -255,7 +256,7 @@ Status plan_systems(BakePlan& plan) {
       plan.groups.push_back(std::make_unique<BodyGroup>(p, shot.first_frame, shot.preroll, shot.fps));
   std::stable_sort(plan.groups.begin(), plan.groups.end(),
                    [](const auto& a, const auto& b) { return a->primary < b->primary; });
-  return {};
+  return check_output_formats(plan);
 }
 
 /// So that what is wrong with a later stage shows now and not when the first is baked.

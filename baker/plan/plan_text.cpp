@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "baker/plan/air.h"
-#include "io/cache/cache.h"
+#include "baker/plan/output_formats.h"
 
 namespace ft::inline baker {
 namespace {
@@ -16,9 +16,8 @@ std::uint64_t cache_bytes(const BakePlan& plan) {
   for (const BakePlan& later : plan.later) sum += cache_bytes(later);
   for (const auto& group : plan.groups) {
     for (const SystemOutput& output : group->outputs)
-      for (const std::string& format : plan.shot().cache_formats)
-        sum += frames * find_cache_format(format)->bytes_per_frame(
-                            {}, {.elements = static_cast<std::uint64_t>(output.mesh->vertex_count())});
+      for (const CacheFormat* format : formats_for(plan.shot(), output.content()))
+        sum += frames * format->bytes_per_frame(output.content(), output.counts());
     // Body as drawn, and the collider: about as many vertices again before refinement.
     if (plan.shot().cache_collider)
       sum += 2 * 12 * frames *
@@ -71,7 +70,7 @@ std::string stage_line(const BakePlan& plan) {
   bool first = true;
   for (const auto& group : plan.groups)
     for (const SystemOutput& output : group->outputs) {
-      out += fmt::format("{}{} \"{}\" on \"{}\"", first ? "" : ", ", group->role(), output.mesh->name,
+      out += fmt::format("{}{} \"{}\" on \"{}\"", first ? "" : ", ", group->role(), output.name(),
                          plan.primaries[output.primary].name);
       first = false;
     }

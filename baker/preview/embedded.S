@@ -12,6 +12,7 @@ embed page, FT_PAGE_FILE
 embed style, FT_STYLE_FILE
 embed plots, FT_PLOTS_FILE
 embed paths, FT_PATHS_FILE
+embed instances, FT_INSTANCES_FILE
 embed player, FT_PLAYER_FILE
 embed three, FT_THREE_FILE
 embed controls, FT_CONTROLS_FILE

@@ -15,7 +15,7 @@
     bake.unpacked = true;
     for (const s of bake.systems) {
       s.positions = new Uint16Array(bytes(s.positions).buffer);
-      s.triangles = new Uint32Array(bytes(s.triangles).buffer);
+      if (s.triangles) s.triangles = new Uint32Array(bytes(s.triangles).buffer);
       if (s.strain) s.strain = new Int8Array(bytes(s.strain).buffer);
       if (s.gap) s.gap = bytes(s.gap);
     }
@@ -94,6 +94,15 @@
     const group = new THREE.Group();
     let garment = 0;
     for (const s of systems) {
+      if (s.instances) {
+        s.plain = palette[garment++ % palette.length];
+        s.copies = makeInstances(s, s.plain, bytes);
+        s.mesh = s.copies.group;
+        s.mesh.visible = !s.hidden;
+        s.copies.material.wireframe = $('wireframe').checked;
+        group.add(s.mesh);
+        continue;
+      }
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * s.vertices), 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
@@ -129,7 +138,8 @@
   /// Bounds of what is visible in the frame at hand.
   function bounds() {
     const b = new THREE.Box3();
-    for (const s of bake.systems) if (s.mesh && s.mesh.visible && !s.stands) b.union(new THREE.Box3().setFromBufferAttribute(s.mesh.geometry.attributes.position));
+    for (const s of bake.systems)
+      if (s.mesh && s.mesh.visible && !s.stands) b.union(s.copies ? s.copies.box : new THREE.Box3().setFromBufferAttribute(s.mesh.geometry.attributes.position));
     return b;
   }
   function fit() {
@@ -203,6 +213,10 @@
     frame = index;
     if (renderer && shown !== index) {
       for (const s of bake.systems) {
+        if (s.copies) {
+          s.copies.show(index);
+          continue;
+        }
         const attribute = s.mesh.geometry.attributes.position, to = attribute.array, from = 3 * index * s.vertices;
         for (let i = 0, n = 3 * s.vertices; i < n; i += 3) {
           to[i] = s.low[0] + s.positions[from + i] * s.step[0];
@@ -292,7 +306,7 @@
       tick.checked = s.mesh ? s.mesh.visible : s.role !== 'collider' && !s.hidden;
       tick.addEventListener('change', () => { if (s.mesh) s.mesh.visible = tick.checked; draw(); });
       colour.style.background = '#' + (s.plain || 0x888888).toString(16).padStart(6, '0');
-      return element('label', tick, colour, s.name + (s.sheet ? '' : ' (' + s.role + ')'), element('span', s.vertices + ' vertices'));
+      return element('label', tick, colour, s.name + (s.sheet ? '' : ' (' + s.role + ')'), element('span', s.vertices + (s.instances ? ' instances' : ' vertices')));
     }));
     if (bake.systems.some((s) => s.absent)) {
       const colour = element('i');
@@ -333,7 +347,7 @@
     $('colour').addEventListener('change', () => { legend(); shown = null; show(frame); });
     $('home').addEventListener('click', fit);
     $('wireframe').addEventListener('change', () => {
-      for (const s of bakes.flatMap((b) => b.systems)) if (s.mesh && secondary(s)) s.mesh.material.wireframe = $('wireframe').checked;
+      for (const s of bakes.flatMap((b) => b.systems)) if (s.mesh && secondary(s)) (s.copies || s.mesh).material.wireframe = $('wireframe').checked;
       draw();
     });
     $('bakes-row').hidden = bakes.length < 2;
@@ -382,6 +396,8 @@
     if ($('paths').checked) for (const path of paths.list) answer.paths[path.name] = paths.place(path, second(frame)).toArray();
     const [name, list] = wish.get('test').split(':');
     answer.vertices[name] = list.split(',').map((i) => vertex(name, +i));
+    const copies = (bake.systems.find((s) => s.name === name) || {}).copies;
+    if (copies) answer.axes = list.split(',').map((i) => copies.axis(+i));
     $('scrub').value = 0;
     $('scrub').dispatchEvent(new Event('input'));
     answer.scrubbed = first + frame;

@@ -19,13 +19,18 @@ struct CacheTrack {
   std::vector<Triangle> triangles{};  ///< of rest
   double pattern_scale = 0;           ///< m per unit of its uvs, which are the rest shape then; 0: the positions are
   bool sheet = false;                 ///< it has no inside
-  double weld = 0;  ///< what lies nearer than this at rest was joined for the simulation [m]; 0: nothing
+  double weld = 0;                 ///< what lies nearer than this at rest was joined for the simulation [m]; 0: nothing
+  std::vector<Mesh> prototypes{};  ///< of instances, from the topology file; rest is all of them as one mesh then
 
+  OutputShape shape() const { return reader->info().content.shape; }
   /// Appends the positions of a frame, counted from 0 [m].
   Status read(int index, std::vector<Vec3>& out) const;
+  /// All of a frame. Error: it is not what the cache says that its frames hold, or not finite (k_input).
+  Status read(int index, FrameData& out) const;
 };
 
-/// Opens the first cache of a system; refuses one whose topology or number of frames is not what the manifest says.
+/// Opens the first cache of a system; refuses one whose shape, topology or number of frames is not what the manifest
+/// says, and instances whose number, ids or prototypes are not.
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest);
 

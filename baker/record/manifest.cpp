@@ -19,10 +19,19 @@ Json system_json(const ManifestSystem& system) {
   Json caches = Json::array();
   for (const ManifestCache& c : system.caches)
     caches.push_back({{"format", c.format}, {"file", c.file}, {"bytes", c.bytes}, {"content", c.content}});
-  Json out{{"name", system.name},        {"role", system.role},
-           {"primary", system.primary},  {"vertices", system.vertex_count},
-           {"faces", system.face_count}, {"topology", system.topology},
-           {"caches", std::move(caches)}};
+  Json out{{"name", system.name}, {"role", system.role}, {"primary", system.primary}};
+  if (system.shape == OutputShape::k_mesh) {
+    out["vertices"] = system.vertex_count;
+    out["faces"] = system.face_count;
+  } else {
+    out["shape"] = shape_key(system.shape);
+    out["count"] = system.count;
+    if (!system.prototypes.empty()) out["prototypes"] = Json::array();
+    for (const ManifestPrototype& p : system.prototypes)
+      out["prototypes"].push_back({{"name", p.name}, {"vertices", p.vertex_count}, {"faces", p.face_count}});
+  }
+  out["topology"] = system.topology;
+  out["caches"] = std::move(caches);
   if (system.pattern_scale > 0) out["pattern_scale"] = system.pattern_scale;
   if (system.weld > 0) out["weld"] = system.weld;
   if (!system.meets.empty()) out["meets"] = system.meets;
@@ -35,8 +44,19 @@ ManifestSystem system_from(const Json& json) {
   out.name = json.at("name").get<std::string>();
   out.role = json.at("role").get<std::string>();
   out.primary = json.at("primary").get<std::string>();
-  out.vertex_count = json.at("vertices").get<int>();
-  out.face_count = json.at("faces").get<int>();
+  if (json.contains("shape")) {
+    const auto shape = find_shape(json["shape"].get<std::string>());
+    if (!shape) throw Json::other_error::create(501, "a system of an unknown shape", &json);
+    out.shape = *shape;
+    out.count = json.at("count").get<int>();
+    if (json.contains("prototypes"))
+      for (const Json& p : json["prototypes"])
+        out.prototypes.push_back(
+            {p.at("name").get<std::string>(), p.at("vertices").get<int>(), p.at("faces").get<int>()});
+  } else {
+    out.vertex_count = json.at("vertices").get<int>();
+    out.face_count = json.at("faces").get<int>();
+  }
   out.topology = json.at("topology").get<std::string>();
   out.pattern_scale = json.value("pattern_scale", 0.0);
   out.weld = json.value("weld", 0.0);

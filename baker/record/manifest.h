@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "baker/core/hash.h"
+#include "baker/core/output_shape.h"
 #include "baker/core/result.h"
 #include "io/shot/shot.h"
 #include "solvers/base/solver.h"
@@ -29,12 +30,18 @@ inline bool is_secondary(const std::string& role) {
   return role != "collider" && role != "body";
 }
 
+/// A mesh that instances are copies of.
+struct ManifestPrototype {
+  std::string name;
+  int vertex_count = 0, face_count = 0;
+};
+
 struct ManifestSystem {
   std::string name;
   std::string role;     ///< "collider" (the feasible one), "body" (as drawn), or the name of its kind: "cloth"
   std::string primary;  ///< whom it belongs to
-  int vertex_count = 0, face_count = 0;
-  std::string topology;  ///< OBJ of the rest shape, for formats that hold points only
+  int vertex_count = 0, face_count = 0;  ///< of a mesh
+  std::string topology;  ///< OBJ of the rest shape, for formats that hold points only; of instances, of the prototypes
   std::vector<ManifestCache> caches;
   double pattern_scale = 0;  ///< of a cloth whose rest lengths are those of its flat pattern: m per unit of vt; else 0
   double weld = 0;  ///< what lay nearer than this at rest was one vertex for the simulation [m]; 0: nothing was joined
@@ -42,6 +49,9 @@ struct ManifestSystem {
   /// where that is as drawn). Cloths with the same list were solved together. Empty: its primary's.
   std::vector<std::string> meets{};
   bool sheet = false;  ///< of a body: it has no inside
+  OutputShape shape = OutputShape::k_mesh;
+  int count = 0;                                ///< of what is no mesh: its elements; 0: their number changes
+  std::vector<ManifestPrototype> prototypes{};  ///< of instances, in the order in which the topology's file has them
 };
 
 /// A file beside the caches, of an adjusted motion.

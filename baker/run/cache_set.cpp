@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "baker/core/file.h"
+#include "baker/plan/output_formats.h"
 #include "baker/record/bake_folder.h"
 #include "baker/record/version.h"
+#include "baker/run/cached_shape.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
 
@@ -23,6 +25,10 @@ std::shared_ptr<const Mesh> shared(Mesh mesh) {
   return std::make_shared<const Mesh>(std::move(mesh));
 }
 
+FrameContent content_of(const SystemShape* shape) {
+  return shape ? shape->content : FrameContent();
+}
+
 }  // namespace
 
 CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder,
@@ -39,7 +45,11 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       const SystemOutput& output = outputs[static_cast<std::size_t>(s)];
       Source source{.group = g, .garment = s, .primary = output.primary};
       source.mesh = output.mesh;
-      add(std::move(source), output.mesh->name, std::string(plan.groups[g]->role()), true);
+      source.shape = output.shape;
+      const SystemShape* moved = solver.system_shape(s);
+      CHECK((moved != nullptr) == (output.shape != nullptr));
+      CHECK(!moved || (moved->content == output.content() && moved->instances.ids == output.shape->instances.ids));
+      add(std::move(source), output.name(), std::string(plan.groups[g]->role()), true);
       systems_.back().pattern_scale = output.pattern_scale;
       systems_.back().weld = output.weld;
       for (const ColliderSlice& slice : slices)
@@ -104,33 +114,51 @@ void CacheSet::add(Source source, std::string name, const std::string& role, boo
   system.name = std::move(name);
   system.role = role;
   system.primary = plan_.primaries[source.primary].name;
-  system.vertex_count = source.mesh->vertex_count();
-  system.face_count = source.mesh->face_count();
-  system.topology = system.name + ".obj";
-  for (const std::string& name_of_format : plan_.shot().cache_formats) {
-    const CacheFormat* format = find_cache_format(name_of_format);
-    CHECK(format);
-    system.caches.push_back({name_of_format, system.name + std::string(format->extension), 0, {}});
+  if (source.shape) {
+    CHECK(fault_of_prototypes(*source.shape).empty());
+    describe_shape(*source.shape, system);
+  } else {
+    system.vertex_count = source.mesh->vertex_count();
+    system.face_count = source.mesh->face_count();
+    system.topology = system.name + ".obj";
+  }
+  for (const CacheFormat* format : formats_for(plan_.shot(), content_of(source.shape.get()))) {
+    system.caches.push_back({std::string(format->name), system.name + std::string(format->extension), 0, {}});
     if (!all_formats) break;
   }
+  CHECK(!system.caches.empty());  // the plan has refused it
   sources_.push_back(std::move(source));
   systems_.push_back(std::move(system));
+}
+
+CacheInfo CacheSet::info_of(std::size_t system) const {
+  CacheInfo info;
+  info.system = systems_[system].name;
+  if (sources_[system].shape)
+    fill_info(*sources_[system].shape, info);
+  else
+    info.mesh = *sources_[system].mesh;
+  info.fps = plan_.shot().fps;
+  info.first_frame = plan_.first_written();
+  info.frame_count = plan_.written_count();
+  info.metadata = {
+      {"inputs", plan_.inputs.fingerprint.hex()}, {"program", "followthrough " + program_version()}, {"units", "m"}};
+  return info;
+}
+
+Status CacheSet::write_rest(std::size_t system) const {
+  const std::filesystem::path path = folder_ / systems_[system].topology;
+  const Source& source = sources_[system];
+  return source.shape ? write_prototypes(path, *source.shape) : write_obj(path, *source.mesh);
 }
 
 Status CacheSet::open(int last_kept) {
   CHECK(writers_.empty());
   const int keep_frames = std::max(0, last_kept - plan_.first_written() + 1);
-  const std::string version = "followthrough " + program_version();
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     if (keep_frames == 0)
-      if (const Status written = write_obj(folder_ / systems_[i].topology, *sources_[i].mesh); !written) return written;
-    CacheInfo info;
-    info.system = systems_[i].name;
-    info.mesh = *sources_[i].mesh;
-    info.fps = plan_.shot().fps;
-    info.first_frame = plan_.first_written();
-    info.frame_count = plan_.written_count();
-    info.metadata = {{"inputs", plan_.inputs.fingerprint.hex()}, {"program", version}, {"units", "m"}};
+      if (const Status written = write_rest(i); !written) return written;
+    const CacheInfo info = info_of(i);
     auto& writers = writers_.emplace_back();
     for (const ManifestCache& cache : systems_[i].caches) {
       auto writer = find_cache_format(cache.format)->open_writer(folder_ / cache.file, info, keep_frames);
@@ -146,7 +174,7 @@ Status CacheSet::open(int last_kept) {
 
 Status CacheSet::open_motion(std::size_t system, const CacheInfo& info, int keep_frames) {
   motions_.emplace_back();
-  if (plan_.is_last_stage() || sources_[system].garment < 0) return {};
+  if (plan_.is_last_stage() || sources_[system].garment < 0 || sources_[system].shape) return {};
   CacheInfo all = info;
   all.first_frame = begin();
   all.frame_count = plan_.shot().last_frame - begin() + 1;
@@ -179,23 +207,32 @@ std::vector<AbsentRuns> CacheSet::as_cached(std::size_t group, std::vector<Absen
   return out;
 }
 
+std::vector<Vec3> CacheSet::positions_of_mesh(std::size_t system, const State& state) const {
+  const Source& source = sources_[system];
+  std::vector<Vec3> x(static_cast<std::size_t>(systems_[system].vertex_count));
+  if (source.garment >= 0)
+    positions_of(source, state, x);
+  else if (!source.slice.empty())
+    slice_of(source, state, x);
+  else if (source.collider ||
+           (source.primary == plan_.groups[source.group]->primary && solvers_[source.group]->moves_primary()))
+    solvers_[source.group]->collider_positions(state, x);
+  else
+    plan_.primaries[source.primary].trajectory->sample(state.time, x);
+  return x;
+}
+
 Snapshot CacheSet::take(std::span<const State> states) const {
   Snapshot out;
   out.frame = states.empty() ? 0 : states[0].frame;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
     const State& state = states[source.group];
-    std::vector<Vec3> x(static_cast<std::size_t>(systems_[i].vertex_count));
-    if (source.garment >= 0)
-      positions_of(source, state, x);
-    else if (!source.slice.empty())
-      slice_of(source, state, x);
-    else if (source.collider ||
-             (source.primary == plan_.groups[source.group]->primary && solvers_[source.group]->moves_primary()))
-      solvers_[source.group]->collider_positions(state, x);
+    FrameData& frame = out.systems.emplace_back();
+    if (source.shape)
+      solvers_[source.group]->system_frame(state, source.garment, frame);
     else
-      plan_.primaries[source.primary].trajectory->sample(state.time, x);
-    out.positions.push_back(converted<Vec3f, Vec3>(x));
+      frame.positions = converted<Vec3f, Vec3>(positions_of_mesh(i, state));
   }
   return out;
 }
@@ -215,14 +252,19 @@ Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
   for (std::size_t i = 0; i < writers_.size(); ++i) {
     const bool is_cached = snapshot.frame >= plan_.first_written();
     if (!is_cached && !motions_[i]) continue;
-    const std::vector<Vec3> x = converted<Vec3, Vec3f>(snapshot.positions[i]);
+    if (sources_[i].shape) {
+      for (auto& writer : writers_[i])
+        if (const Status written = writer->write_frame(snapshot.systems[i].view()); !written) return written;
+      continue;
+    }
+    const std::vector<Vec3> x = converted<Vec3, Vec3f>(snapshot.systems[i].positions);
     if (motions_[i])
       if (const Status written = motions_[i]->write_frame(x, {}); !written) return written;
     if (!is_cached) continue;
     std::vector<Vec3> v;
     if (sources_[i].garment >= 0)
       v = velocities_of(sources_[i], snapshot.frame, x,
-                        before != nullptr ? std::span(before->positions[i]) : std::span<const Vec3f>());
+                        before != nullptr ? std::span(before->systems[i].positions) : std::span<const Vec3f>());
     for (auto& writer : writers_[i])
       if (const Status written = writer->write_frame(x, v); !written) return written;
   }
@@ -252,9 +294,11 @@ Status CacheSet::close() {
 std::uint64_t CacheSet::expected_bytes() const {
   std::uint64_t sum = 0;
   const auto frames = static_cast<std::uint64_t>(std::max(0, plan_.written_count()));
-  for (const ManifestSystem& system : systems_) {
-    const FrameContent content{.velocities = is_secondary(system.role)};
-    const FrameCounts counts{.elements = static_cast<std::uint64_t>(system.vertex_count)};
+  for (std::size_t i = 0; i < systems_.size(); ++i) {
+    const ManifestSystem& system = systems_[i];
+    const FrameContent content =
+        sources_[i].shape ? sources_[i].shape->content : FrameContent{.velocities = is_secondary(system.role)};
+    const FrameCounts counts{.elements = static_cast<std::uint64_t>(system.vertex_count + system.count)};
     for (const ManifestCache& cache : system.caches)
       sum += frames * find_cache_format(cache.format)->bytes_per_frame(content, counts);
   }

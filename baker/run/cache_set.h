@@ -1,5 +1,5 @@
-// All caches of one bake: every garment in every format, the feasible collider and the drawn body of each primary in
-// the first format. The walk takes a snapshot of a frame; the writer thread writes it.
+// All caches of one bake: every secondary in every format that takes its shape, the feasible collider and the drawn
+// body of each primary in the first format. The walk takes a snapshot of a frame; the writer thread writes it.
 #pragma once
 
 #include <filesystem>
@@ -16,10 +16,10 @@ namespace ft::inline baker {
 
 using Solvers = std::vector<std::unique_ptr<Solver>>;
 
-/// Positions of every cached system at one frame, as the files will have them [m].
+/// Every cached system at one frame, as the files will have it; of meshes the positions [m].
 struct Snapshot {
   int frame = 0;
-  std::vector<std::vector<Vec3f>> positions;
+  std::vector<FrameData> systems;
 };
 
 class CacheSet {
@@ -49,10 +49,13 @@ class CacheSet {
     std::size_t group = 0;
     int garment = -1;  ///< -1: the collider or the body
     bool collider = false;
-    std::size_t primary = 0;             ///< whom it belongs to
-    std::vector<int> slice{};            ///< of the collider's vertices; empty: all
-    std::shared_ptr<const Mesh> mesh{};  ///< rest shape; null once the files have it
+    std::size_t primary = 0;                     ///< whom it belongs to
+    std::vector<int> slice{};                    ///< of the collider's vertices; empty: all
+    std::shared_ptr<const Mesh> mesh{};          ///< rest shape; null once the files have it
+    std::shared_ptr<const SystemShape> shape{};  ///< of what is no mesh
   };
+  /// Of a mesh.
+  std::vector<Vec3> positions_of_mesh(std::size_t system, const State& state) const;
   /// Of a garment, in the order of its file.
   void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
   /// Of a garment at `frame` [m/s].
@@ -62,6 +65,8 @@ class CacheSet {
   void add_collider(std::size_t group, const ColliderSlice& slice, std::span<const Vec3> collider);
   void add_body(std::size_t group, std::size_t primary);
   std::vector<std::string> names() const;
+  CacheInfo info_of(std::size_t system) const;
+  Status write_rest(std::size_t system) const;
   void add(Source source, std::string name, const std::string& role, bool all_formats);
   int begin() const { return plan_.shot().first_frame - plan_.shot().preroll; }
   Status open_motion(std::size_t system, const CacheInfo& info, int keep_frames);

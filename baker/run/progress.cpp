@@ -33,8 +33,11 @@ std::string opening(const ProgressStart& s) {
   const std::string resumed = s.from_frame > s.first_frame - s.preroll + 1
                                   ? fmt::format(", resuming at frame {}", s.from_frame)
                                   : std::string();
-  return fmt::format("baking {}: frames {}-{} after {} of pre-roll, {} vertices, {} threads{}", s.shot, s.first_frame,
-                     s.last_frame, s.preroll, s.vertex_count, s.threads, resumed);
+  std::string what = s.instance_count > 0 ? fmt::format("{} instances", s.instance_count) : std::string();
+  if (s.vertex_count > 0 || what.empty())
+    what = fmt::format("{} vertices{}{}", s.vertex_count, what.empty() ? "" : ", ", what);
+  return fmt::format("baking {}: frames {}-{} after {} of pre-roll, {}, {} threads{}", s.shot, s.first_frame,
+                     s.last_frame, s.preroll, what, s.threads, resumed);
 }
 
 double percent(const ProgressFrame& f) {
@@ -151,6 +154,7 @@ class JsonLines final : public TextProgress {
                     {"preroll", s.preroll},
                     {"from", s.from_frame},
                     {"vertices", s.vertex_count},
+                    {"instances", s.instance_count},
                     {"threads", s.threads}});
   }
   void note(const std::string& text) override { write("note", {{"text", text}}); }

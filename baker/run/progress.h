@@ -27,6 +27,7 @@ struct ProgressStart {
   int from_frame = 0;  ///< first frame that is computed now; later than the start on resume
   int vertex_count = 0;
   int threads = 1;
+  int instance_count = 0;
 };
 
 struct ProgressFrame {

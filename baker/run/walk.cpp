@@ -37,9 +37,8 @@ int checkpoint_interval(std::span<const State> states) {
 }
 
 bool finite(const Snapshot& snapshot) {
-  return std::all_of(snapshot.positions.begin(), snapshot.positions.end(), [](const std::vector<Vec3f>& x) {
-    return std::all_of(x.begin(), x.end(), [](const Vec3f& p) { return p.allFinite(); });
-  });
+  return std::all_of(snapshot.systems.begin(), snapshot.systems.end(),
+                     [](const FrameData& frame) { return all_finite(frame); });
 }
 
 /// Mean of the last frames [s].
@@ -146,7 +145,7 @@ void Walk::number_as_in_file(std::size_t group, std::span<Incident> incidents) c
   const auto& outputs = plan_.groups[group]->outputs;
   for (Incident& incident : incidents)
     for (int s = 0; s < solvers_[group]->system_count() && incident.vertex >= 0; ++s)
-      if (solvers_[group]->system_mesh(s).name == incident.system) {
+      if (solvers_[group]->system_name(s) == incident.system) {
         incident.vertex = outputs[at(s)].in_file.vertex(incident.vertex);
         break;
       }
@@ -226,11 +225,15 @@ Status Walk::interrupted(std::string what) {
 Status Walk::frames() {
   const Shot& shot = plan_.shot();
   const int total = shot.last_frame - begin();
-  int vertices = 0;
+  int vertices = 0, instances = 0;
   for (const auto& solver : solvers_)
-    for (int s = 0; s < solver->system_count(); ++s) vertices += solver->system_mesh(s).vertex_count();
+    for (int s = 0; s < solver->system_count(); ++s)
+      if (const SystemShape* shape = solver->system_shape(s))
+        instances += static_cast<int>(shape->instances.ids.size());
+      else
+        vertices += solver->system_mesh(s).vertex_count();
   progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame,
-                   shot.preroll, states_[0].frame + 1, vertices, thread_count()});
+                   shot.preroll, states_[0].frame + 1, vertices, thread_count(), instances});
   if (const Status settled = settle(); !settled) return settled;
   Pace pace;
   SharedSnapshot before = take();  // in the caches already, where a bake goes on

@@ -7,22 +7,51 @@
 
 namespace ft::inline baker {
 
-std::span<const SystemKind* const> system_kinds() {
-  static const SystemKind* const kinds[] = {
+namespace {
+
+struct Registry {
+  std::vector<const SystemKind*> kinds = {
       cloth_kind(),
       cords_kind(),
       follow_kind(),
   };
-  return kinds;
+  std::vector<Metric> metrics = metrics_of(kinds);
+
+  static std::vector<Metric> metrics_of(std::span<const SystemKind* const> kinds) {
+    std::vector<Metric> out;
+    for (const SystemKind* kind : kinds) out.insert(out.end(), kind->metrics().begin(), kind->metrics().end());
+    return out;
+  }
+};
+
+Registry& registry() {
+  static Registry all;
+  return all;
+}
+
+}  // namespace
+
+std::span<const SystemKind* const> system_kinds() {
+  return registry().kinds;
+}
+
+AddedSystemKind::AddedSystemKind(const SystemKind& kind) : kind_(&kind) {
+  CHECK(!find_system_kind(kind.name()));
+  registry().kinds.push_back(kind_);
+  registry().metrics = Registry::metrics_of(registry().kinds);
+}
+
+AddedSystemKind::~AddedSystemKind() {
+  std::erase(registry().kinds, kind_);
+  registry().metrics = Registry::metrics_of(registry().kinds);
+}
+
+FrameCounts SystemOutput::counts() const {
+  return {.elements = static_cast<std::uint64_t>(shape ? shape->element_count() : mesh->vertex_count())};
 }
 
 std::span<const Metric> declared_metrics() {
-  static const std::vector<Metric> all = [] {
-    std::vector<Metric> out;
-    for (const SystemKind* kind : system_kinds()) out.insert(out.end(), kind->metrics().begin(), kind->metrics().end());
-    return out;
-  }();
-  return all;
+  return registry().metrics;
 }
 
 const Metric* find_metric(std::string_view key) {

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "baker/core/mesh.h"
+#include "baker/core/output_shape.h"
 #include "baker/core/result.h"
 #include "io/cache/frame.h"
-#include "io/cache/shape.h"
 
 namespace ft::inline io {
 

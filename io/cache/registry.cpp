@@ -73,17 +73,6 @@ Status CacheReader::read(int index, FrameData& frame) {
   return status && info().has_velocity ? read_velocities(index, frame.velocities) : status;
 }
 
-std::string_view shape_name(OutputShape shape) {
-  switch (shape) {
-    case OutputShape::k_mesh: return "a mesh";
-    case OutputShape::k_curves: return "curves";
-    case OutputShape::k_points: return "points";
-    case OutputShape::k_instances: return "instances";
-    case OutputShape::k_grid: return "a grid";
-  }
-  return "?";
-}
-
 int constant_element_count(const CacheInfo& info) {
   switch (info.content.shape) {
     case OutputShape::k_curves: return static_cast<int>(info.curves.rest.size());

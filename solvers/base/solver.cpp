@@ -1,5 +1,8 @@
 #include "solvers/base/solver.h"
 
+#include "baker/core/check.h"
+#include "baker/core/output_frame.h"
+
 namespace ft::inline solvers {
 namespace {
 
@@ -35,6 +38,23 @@ const char* name(Incident::Kind kind) {
     case Incident::Kind::k_cut_short: return "cut short";
   }
   return "unknown";
+}
+
+const Mesh& Solver::system_mesh(int) const {
+  check_failed("a system that has no other shape is a mesh", __FILE__, __LINE__);
+}
+
+void Solver::system_positions(const State&, int, std::span<Vec3>) const {
+  check_failed("a system that has no other shape is a mesh", __FILE__, __LINE__);
+}
+
+void Solver::system_frame(const State&, int, FrameData&) const {
+  check_failed("a system that has a shape has frames", __FILE__, __LINE__);
+}
+
+const std::string& Solver::system_name(int system) const {
+  const SystemShape* shape = system_shape(system);
+  return shape ? shape->name : system_mesh(system).name;
 }
 
 }  // namespace ft::inline solvers

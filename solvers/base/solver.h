@@ -13,6 +13,11 @@
 #include "baker/core/state.h"
 #include "baker/core/wrench.h"
 
+namespace ft {
+struct FrameData;
+struct SystemShape;
+}  // namespace ft
+
 namespace ft::inline solvers {
 
 /// Something that a user should look at: where, when, how bad.
@@ -31,7 +36,7 @@ struct Incident {
   Kind kind = Kind::k_crossing;
   int frame = 0;
   std::string system;         ///< name of the garment
-  int vertex = -1;            ///< of system_mesh(); in manifests, and of cords, of the cached mesh; from 0
+  int vertex = -1;            ///< of system_mesh(); in manifests, and of cords, of the cached mesh; from 0. Or instance
   Vec3 place = Vec3::Zero();  ///< m, world
   double depth = 0;           ///< m (or 1 for strain)
   std::string text;           ///< one sentence
@@ -112,12 +117,24 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// One system per cache: a garment, a rope.
+  /// One system per cache: a garment, a rope, the leaves of a tree.
   virtual int system_count() const = 0;
+
+  // A system is a mesh of constant topology, and then these two are all that a solver says of it;
   /// Its vertices and faces; what else a file says of them is not kept.
-  virtual const Mesh& system_mesh(int system) const = 0;
+  virtual const Mesh& system_mesh(int system) const;
   /// Positions in the vertex order of system_mesh().
-  virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const = 0;
+  virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const;
+
+  // or it has another shape, and then these two are (baker/core/output_shape.h, output_frame.h).
+  /// Null: a mesh. Stays for as long as the solver does.
+  virtual const SystemShape* system_shape(int /*system*/) const { return nullptr; }
+  /// Fills a frame, which may hold an older one, with all that the shape's content asks for, velocities included:
+  /// nobody takes differences of what is no mesh. Numbers of the elements never change where the shape lists their ids.
+  virtual void system_frame(const State& state, int system, FrameData& frame) const;
+
+  /// Of either: the name of its caches.
+  const std::string& system_name(int system) const;
 
   /// Topology of the feasible collider, and its positions at the state's time.
   virtual std::span<const Triangle> collider_triangles() const = 0;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "baker/record/bake_folder.h"
@@ -24,10 +25,14 @@ struct FakeBehaviour {
   bool absent = false;  ///< no garment meets the box
 };
 
+/// What the shot of a FakeScene has beside its sheet.
+enum class Beside { k_nothing, k_swarm };
+
 /// 3 x 3 x 3 sheet beside a box of 1 m; groups "top" (3 vertices) and "none" (weights 0).
 class FakeScene {
  public:
-  FakeScene();
+  /// A swarm flies about the box (swarm_kind.h); its kind is there for as long as the scene is.
+  explicit FakeScene(Beside beside = Beside::k_nothing);
 
   /// frames "1-N"; extra: lines of TOML at the end.
   void write_shot(int last_frame = 10, const std::string& cloth_lines = "", const std::string& extra = "");
@@ -48,6 +53,7 @@ class FakeScene {
 
  private:
   ScratchFolder scratch_;
+  std::optional<AddedSystemKind> swarm_;
 };
 
 /// All faults in one string.

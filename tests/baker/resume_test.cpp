@@ -17,6 +17,16 @@
 namespace ft::test {
 namespace {
 
+/// With cloth alone, and with instances beside it.
+class Resume : public testing::TestWithParam<Beside> {
+ protected:
+  /// Caches of the scene.
+  static std::vector<std::string> caches(std::vector<std::string> of_meshes) {
+    if (GetParam() == Beside::k_swarm) of_meshes.emplace_back("tokens.abc");
+    return of_meshes;
+  }
+};
+
 std::map<std::string, std::string> undisturbed(const FakeScene& scene) {
   BakeOptions options = scene.options();
   options.folder = scene.file("undisturbed");
@@ -32,8 +42,8 @@ BakeResult interrupted_after(const FakeScene& scene, int frame, int signal = SIG
   return bake(options, scene.services(), progress);
 }
 
-TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes_slow) {
-  FakeScene scene;
+TEST_P(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes_slow) {
+  FakeScene scene(GetParam());
   const auto expected = undisturbed(scene);
   for (int frame = -1; frame < 10; ++frame) {
     const BakeResult stopped = interrupted_after(scene, frame);
@@ -52,8 +62,8 @@ TEST(Resume, Interrupted_after_every_frame_it_goes_on_to_the_same_bytes_slow) {
   }
 }
 
-TEST(Resume, Interrupted_again_and_again_it_gives_the_same_bytes_slow) {
-  FakeScene scene;
+TEST_P(Resume, Interrupted_again_and_again_it_gives_the_same_bytes_slow) {
+  FakeScene scene(GetParam());
   const auto expected = undisturbed(scene);
   for (int frame = 0; frame < 10; frame += 2) {
     ASSERT_EQ(interrupted_after(scene, frame, SIGTERM, true).exit_code, 143);
@@ -64,18 +74,18 @@ TEST(Resume, Interrupted_again_and_again_it_gives_the_same_bytes_slow) {
   EXPECT_EQ(scene.products(), expected);
 }
 
-TEST(Resume, Finished_frames_of_an_interrupted_bake_can_be_read) {
-  FakeScene scene;
+TEST_P(Resume, Finished_frames_of_an_interrupted_bake_can_be_read) {
+  FakeScene scene(GetParam());
   ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
-  for (const char* name : {"sheet.abc", "sheet.pc2", "box.abc", "box.collider.abc"}) {
-    auto cache = open_cache(scene.folder().path / name);
+  for (const std::string& name : caches({"sheet.abc", "sheet.pc2", "box.abc", "box.collider.abc"})) {
+    auto cache = open_cache_of_any_shape(scene.folder().path / name);
     ASSERT_TRUE(cache) << cache.error().text();
     EXPECT_EQ((*cache)->info().frame_count, 4) << name;
   }
 }
 
-TEST(Resume, No_bake_is_complete_without_its_report) {
-  FakeScene scene;
+TEST_P(Resume, No_bake_is_complete_without_its_report) {
+  FakeScene scene(GetParam());
   const auto expected = undisturbed(scene);
   const auto report = scene.folder().report();
   // No file takes the place of a folder with something in it.
@@ -89,8 +99,8 @@ TEST(Resume, No_bake_is_complete_without_its_report) {
   EXPECT_EQ(scene.products(), expected);
 }
 
-TEST(Resume, Without_resume_an_unfinished_bake_starts_anew) {
-  FakeScene scene;
+TEST_P(Resume, Without_resume_an_unfinished_bake_starts_anew) {
+  FakeScene scene(GetParam());
   const auto expected = undisturbed(scene);
   ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
   RecordedProgress progress;
@@ -100,8 +110,8 @@ TEST(Resume, Without_resume_an_unfinished_bake_starts_anew) {
   EXPECT_EQ(scene.products(), expected);
 }
 
-TEST(Resume, Changed_settings_are_refused_with_the_reason) {
-  FakeScene scene;
+TEST_P(Resume, Changed_settings_are_refused_with_the_reason) {
+  FakeScene scene(GetParam());
   ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
   BakeOptions options = scene.options();
   options.resume = true;
@@ -116,7 +126,7 @@ TEST(Resume, Changed_settings_are_refused_with_the_reason) {
   EXPECT_EQ(scene.products(), undisturbed(scene));
 }
 
-TEST(Resume, With_nothing_to_resume_it_bakes) {
+TEST(ResumedBake, With_nothing_to_resume_it_bakes) {
   FakeScene scene;
   BakeOptions options = scene.options();
   options.resume = true;
@@ -124,8 +134,8 @@ TEST(Resume, With_nothing_to_resume_it_bakes) {
   EXPECT_NE(text(scene.run(options)).find("up to date"), std::string::npos);
 }
 
-TEST(Resume, Damaged_checkpoint_starts_anew_and_says_so) {
-  FakeScene scene;
+TEST_P(Resume, Damaged_checkpoint_starts_anew_and_says_so) {
+  FakeScene scene(GetParam());
   const auto expected = undisturbed(scene);
   ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
   std::filesystem::resize_file(scene.folder().checkpoint(), 40);
@@ -138,10 +148,10 @@ TEST(Resume, Damaged_checkpoint_starts_anew_and_says_so) {
   EXPECT_EQ(scene.products(), expected);
 }
 
-TEST(Resume, Damaged_or_lost_cache_is_not_continued_and_the_way_out_is_named_slow) {
-  FakeScene scene;
+TEST_P(Resume, Damaged_or_lost_cache_is_not_continued_and_the_way_out_is_named_slow) {
+  FakeScene scene(GetParam());
   const auto expected = undisturbed(scene);
-  for (const char* name : {"sheet.pc2", "sheet.abc", "box.collider.abc"})
+  for (const std::string& name : caches({"sheet.pc2", "sheet.abc", "box.collider.abc"}))
     for (const bool lost : {false, true}) {
       ASSERT_EQ(interrupted_after(scene, 4).exit_code, 130);
       if (lost)
@@ -179,8 +189,8 @@ int wait_for(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-TEST(Resume, Killed_at_25_random_instants_it_gives_the_same_bytes_slow) {
-  FakeScene scene;
+TEST_P(Resume, Killed_at_25_random_instants_it_gives_the_same_bytes_slow) {
+  FakeScene scene(GetParam());
   scene.write_shot(30);
   const auto expected = undisturbed(scene);
   // The instants lie within the bake, however fast the machine is now.
@@ -205,8 +215,8 @@ TEST(Resume, Killed_at_25_random_instants_it_gives_the_same_bytes_slow) {
   EXPECT_GE(killed, 25);  // else the instants were after the end, and nothing was tested
 }
 
-TEST(Resume, File_size_limit_gives_exit_code_6_and_resume_gives_the_same_bytes_slow) {
-  FakeScene scene;
+TEST_P(Resume, File_size_limit_gives_exit_code_6_and_resume_gives_the_same_bytes_slow) {
+  FakeScene scene(GetParam());
   scene.write_shot(40);
   const auto expected = undisturbed(scene);
   const rlim_t whole = std::filesystem::file_size(scene.file("undisturbed/sheet.abc"));
@@ -225,7 +235,7 @@ TEST(Resume, File_size_limit_gives_exit_code_6_and_resume_gives_the_same_bytes_s
   }
 }
 
-TEST(Resume, Second_signal_ends_the_program_at_once) {
+TEST(ResumedBake, Second_signal_ends_the_program_at_once) {
   FakeScene scene;
   const pid_t child = ::fork();
   if (child == 0) {
@@ -246,7 +256,7 @@ TEST(Resume, Second_signal_ends_the_program_at_once) {
   EXPECT_EQ(scene.products(), undisturbed(scene));
 }
 
-TEST(Resume, Two_bakes_do_not_write_one_folder) {
+TEST(ResumedBake, Two_bakes_do_not_write_one_folder) {
   FakeScene scene;
   ASSERT_TRUE(make_folders(scene.folder().state()));
   {
@@ -261,6 +271,9 @@ TEST(Resume, Two_bakes_do_not_write_one_folder) {
   EXPECT_EQ(scene.run().exit_code, 0);  // the lock went with its holder; the file alone locks nothing
   EXPECT_TRUE(std::filesystem::exists(scene.folder().lock()));
 }
+
+INSTANTIATE_TEST_SUITE_P(All, Resume, testing::Values(Beside::k_nothing, Beside::k_swarm),
+                         [](const auto& info) { return info.param == Beside::k_swarm ? "swarm" : "cloth"; });
 
 }  // namespace
 }  // namespace ft::test

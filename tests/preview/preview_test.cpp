@@ -16,11 +16,13 @@
 #include "io/shot/mesh_file.h"
 #include "tests/support/assets.h"
 #include "tests/support/scripted_body.h"
+#include "tests/support/shaped_samples.h"
 
 namespace ft {
 namespace {
 
 using test::ScratchFolder;
+using test::ShapedSample;
 
 constexpr int k_first = 101, k_frames = 12;
 
@@ -156,6 +158,66 @@ TEST(Preview, draws_the_paths_of_several_bakes_and_plays_the_one_that_is_chosen_
   // Of one bake with no prop they are not drawn unless they are asked for.
   ASSERT_EQ(run_preview({{folder / "moved"}, page}), 0);
   EXPECT_TRUE(ask(page, "test=ball:0")["paths"].empty());
+}
+
+/// Adds four leaves of two prototypes to a bake; the third never comes into being.
+ShapedSample add_leaves(const std::filesystem::path& folder) {
+  ShapedSample sample = test::leaves(k_frames);
+  sample.info.first_frame = k_first;
+  EXPECT_TRUE(test::write_shaped(*find_cache_format("abc"), folder / "leaves.abc", sample, k_frames, 0));
+  std::vector<Mesh> prototypes;
+  for (const char* name : {"maple", "oak"})
+    prototypes.push_back(
+        make_triangle_mesh(name, {{0, 0, 0}, {0.1, 0, 0}, {0, 0, 0.1}}, std::vector<Triangle>{{0, 2, 1}}));
+  EXPECT_TRUE(write_obj(folder / "leaves.obj", joined_meshes("leaves", prototypes)));
+  auto manifest = read_manifest(folder);
+  EXPECT_TRUE(manifest);
+  ManifestSystem& system = manifest->systems.emplace_back();
+  system.name = "leaves", system.role = "foliage", system.primary = "ball", system.topology = "leaves.obj";
+  system.shape = OutputShape::k_instances;
+  system.count = 4;
+  system.prototypes = {{"maple", 3, 1}, {"oak", 3, 1}};
+  system.caches = {{"abc", "leaves.abc", 0, ""}};
+  std::ofstream(folder / "manifest.json") << to_text(*manifest);
+  return sample;
+}
+
+TEST(Preview, holds_prototypes_once_and_of_instances_places_and_turns) {
+  const ScratchFolder folder;
+  make_bake(folder.path());
+  add_leaves(folder.path());
+  const auto bake = preview_bake(folder.path());
+  ASSERT_TRUE(bake) << bake.error().text();
+  const Json& leaves = (*bake)["systems"][2];
+  EXPECT_EQ(leaves["vertices"], 4);
+  EXPECT_EQ(leaves["positions"].get<std::string>().size(), (4u * 3 * 2 * k_frames + 2) / 3 * 4);
+  EXPECT_EQ(leaves["instances"]["turns"].get<std::string>().size(), (4u * 4 * 2 * k_frames + 2) / 3 * 4);
+  EXPECT_FALSE(leaves["instances"].contains("sizes"));  // they never change
+  ASSERT_EQ(leaves["instances"]["prototypes"].size(), 2u);
+  EXPECT_EQ(leaves["instances"]["prototypes"][1]["name"], "oak");
+}
+
+TEST(Preview, shows_instances_where_and_how_the_cache_has_them_slow) {
+  if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not installed";
+  const ScratchFolder folder;
+  make_bake(folder.path());
+  const ShapedSample sample = add_leaves(folder.path());
+  const auto page = folder.path() / "page.html";
+  ASSERT_EQ(run_preview({{folder.path()}, page}), 0);
+  const auto answer = ask(page, "frame=107&test=leaves:0,1,2,3");
+  ASSERT_TRUE(answer.is_object());
+  const FrameData& frame = sample.frames[107 - k_first];
+  for (std::size_t i = 0; i < 4; ++i) {
+    // The prototype's x axis: turned, and as long as its scale says.
+    const Vec3f axis = frame.scales[i].x() * (frame.orientations[i] * Vec3f::UnitX());
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(answer["vertices"]["leaves"][i][k].get<double>(), frame.positions[i][static_cast<int>(k)],
+                  0.5 * 4 / 65535 + 1e-6);  // half a step of 16 bits over at most four metres
+      EXPECT_NEAR(answer["axes"][i][k].get<double>(), axis[static_cast<int>(k)], 2e-4);  // 16 bits of each component
+    }
+  }
+  EXPECT_TRUE(answer["drawn"].get<bool>());
+  EXPECT_GT(answer["played"], k_first);
 }
 
 TEST(Preview, bakes_of_one_name_are_told_apart_by_the_folders_above) {

@@ -35,7 +35,7 @@ int vertex_count(const AbsentRuns& runs) {
 std::vector<AbsentRuns> absent_of(const Solver& solver, const State& state) {
   std::vector<AbsentRuns> out;
   for (int s = 0; s < solver.system_count(); ++s) {
-    AbsentRuns runs = runs_of(solver.system_mesh(s).name, solver.collider_absent(state, s));
+    AbsentRuns runs = runs_of(solver.system_name(s), solver.collider_absent(state, s));
     if (!runs.runs.empty()) out.push_back(std::move(runs));
   }
   return out;

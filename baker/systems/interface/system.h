@@ -14,6 +14,7 @@
 #include "baker/core/bytes.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/mesh.h"
+#include "baker/core/output_shape.h"
 #include "baker/core/result.h"
 #include "baker/systems/interface/collider_slice.h"
 #include "io/shot/file_numbers.h"
@@ -31,14 +32,22 @@ struct ManifestSystem;
 struct RoomReport;
 struct StartReport;
 
-/// How a secondary leaves: in the vertex order of its file, whatever was joined for the simulation.
+/// How a secondary leaves: as a mesh in the vertex order of its file, whatever was joined for the simulation; or in the
+/// shape that its solver has for it, too.
 struct SystemOutput {
   std::size_t primary = 0;           ///< whom it is on, into BakePlan::primaries
   std::shared_ptr<const Mesh> mesh;  ///< the file's, placed; with the simulated triangles if the shot file wants those
-  std::vector<int> joined_of;        ///< per vertex of the file: its vertex in the simulation; empty: the same
-  double pattern_scale = 0;          ///< of what is cut from a flat pattern: m per unit of its uvs; else 0
-  double weld = 0;                   ///< what is nearer than this was joined [m]; 0: nothing
-  FileNumbers in_file;               ///< of the simulated mesh
+  std::shared_ptr<const SystemShape> shape;  ///< in the place of the mesh, of what is none: Solver::system_shape()
+  std::vector<int> joined_of;                ///< per vertex of the file: its vertex in the simulation; empty: the same
+  double pattern_scale = 0;                  ///< of what is cut from a flat pattern: m per unit of its uvs; else 0
+  double weld = 0;                           ///< what is nearer than this was joined [m]; 0: nothing
+  FileNumbers in_file;                       ///< of the simulated mesh
+
+  const std::string& name() const { return shape ? shape->name : mesh->name; }
+  /// What formats are asked with.
+  FrameContent content() const { return shape ? shape->content : FrameContent(); }
+  /// In one frame.
+  FrameCounts counts() const;
 };
 
 /// A file beside the caches.
@@ -121,6 +130,18 @@ class SystemKind {
 
 /// All kinds, in the order in which their systems stand in plans and manifests.
 std::span<const SystemKind* const> system_kinds();
+/// Adds a kind of a program that links the library, for as long as this stands. Its name is new. Not while anything
+/// runs.
+class AddedSystemKind {
+ public:
+  explicit AddedSystemKind(const SystemKind& kind);
+  ~AddedSystemKind();
+  AddedSystemKind(const AddedSystemKind&) = delete;
+  AddedSystemKind& operator=(const AddedSystemKind&) = delete;
+
+ private:
+  const SystemKind* kind_;
+};
 /// The metrics of all kinds, beside frame_metrics().
 std::span<const Metric> declared_metrics();
 /// Among both; null: there is none of that name.

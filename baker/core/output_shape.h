@@ -7,23 +7,31 @@
 //   instances  InstanceSet: ids, prototypes              positions, orientations, scales, both kinds of velocity
 //   grid       no format takes it yet
 //
-// Which format takes what is a property of the format (cache.h). A frame itself is frame.h.
+// Solvers say which of them a system has (solvers/base/solver.h); which format takes what is a property of the format
+// (io/cache/cache.h). A frame itself is output_frame.h.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "baker/core/mesh.h"
 #include "baker/core/types.h"
 
-namespace ft::inline io {
+namespace ft {
 
 enum class OutputShape : std::uint8_t { k_mesh, k_curves, k_points, k_instances, k_grid };
 
 /// "a mesh", "curves" ...: for messages.
 std::string_view shape_name(OutputShape shape);
+/// "mesh", "curves", "points", "instances", "grid": for files.
+std::string_view shape_key(OutputShape shape);
+/// Of such a key; none: there is no such shape.
+std::optional<OutputShape> find_shape(std::string_view key);
 
 /// What the frames of a cache hold. A format is asked with it whether it takes them and what they cost.
 struct FrameContent {
@@ -71,4 +79,23 @@ struct InstanceSet {
   std::vector<std::string> prototype_names;
 };
 
-}  // namespace ft::inline io
+/// What a system is in the caches that is no mesh of constant topology, as far as it is the same in all frames.
+struct SystemShape {
+  std::string name;
+  FrameContent content;
+  CurveSet curves;
+  InstanceSet instances;
+  std::vector<Mesh> prototypes;  ///< of instances: a mesh for each of prototype_names, about its own origin [m]
+  std::vector<CacheAttribute> attributes{};  ///< of curves and instances
+
+  /// Vertices, points or instances in a frame; 0 where their number changes.
+  int element_count() const;
+};
+
+/// What of it does not fit together: numbers of prototypes and meshes, an index without a prototype. Empty: it fits.
+std::string fault_of_prototypes(const SystemShape& shape);
+
+/// Meshes as one, in turn, each a group of its name; uvs where all have them.
+Mesh joined_meshes(std::string name, std::span<const Mesh> meshes);
+
+}  // namespace ft

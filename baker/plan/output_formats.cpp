@@ -1,0 +1,55 @@
+#include "baker/plan/output_formats.h"
+
+#include <fmt/format.h>
+
+#include "baker/plan/located.h"
+
+namespace ft::inline baker {
+namespace {
+
+/// "alembic takes instances": formats that the program has and that take it.
+std::string who_takes(const FrameContent& content) {
+  std::string out;
+  for (const CacheFormat& format : cache_formats())
+    if (format.accepts(content)) out += (out.empty() ? "" : ", ") + std::string(format.name);
+  return out;
+}
+
+}  // namespace
+
+std::vector<const CacheFormat*> formats_for(const Shot& shot, const FrameContent& content) {
+  std::vector<const CacheFormat*> out;
+  for (const std::string& name : shot.cache_formats) {
+    const CacheFormat* format = find_cache_format(name);
+    CHECK(format);
+    if (format->accepts(content)) out.push_back(format);
+  }
+  return out;
+}
+
+Status check_output_formats(BakePlan& plan) {
+  const Shot& shot = plan.shot();
+  for (const auto& group : plan.groups)
+    for (const SystemOutput& output : group->outputs) {
+      const std::string owner = fmt::format("{} \"{}\"", group->role(), output.name());
+      const auto taken = formats_for(shot, output.content());
+      std::string refusals, names;
+      for (const CacheFormat* format : taken) names += (names.empty() ? "" : " and ") + std::string(format->name);
+      for (const std::string& name : shot.cache_formats)
+        if (const Status accepted = find_cache_format(name)->accepts(output.content()); !accepted)
+          refusals += (refusals.empty() ? "" : "; ") + accepted.error().what;
+      if (taken.empty()) {
+        const std::string others = who_takes(output.content());
+        return located(usage_error("no cache would hold it: " + refusals, {},
+                                   others.empty() ? std::string("no format takes it yet")
+                                                  : fmt::format("take {} for {}: formats = [\"{}\"] under [cache]",
+                                                                others, shape_name(output.content().shape), others)),
+                       shot, owner);
+      }
+      if (!refusals.empty())
+        plan.notes.push_back(fmt::format("{}: {}; it is written as {} only", owner, refusals, names));
+    }
+  return {};
+}
+
+}  // namespace ft::inline baker
