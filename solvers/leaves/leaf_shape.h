@@ -1,5 +1,5 @@
-// What follows from a prototype once: its mesh about its centre of mass, inertia, chords and panels; and from a leaf and
-// its prototype, the plate that flies.
+// What follows from a prototype once: its mesh about its centre of mass, inertia, chords and panels; and from a leaf
+// and its prototype, the plate that flies.
 #pragma once
 
 #include <vector>
@@ -14,11 +14,12 @@ struct LeafShape {
   std::vector<Vec3> positions;  ///< about the centre of mass [m]
   std::vector<Triangle> triangles;
   std::vector<Edge> edges;
-  double area = 0;               ///< of all triangles [m2]
-  Vec3 inertia = Vec3::Zero();   ///< for 1 kg/m2 [kg m2]; products of inertia, 0 for leaves alike on both sides, are left out
+  double area = 0;  ///< of all triangles [m2]
+  Vec3 inertia =
+      Vec3::Zero();  ///< for 1 kg/m2 [kg m2]; products of inertia, 0 for leaves alike on both sides, are left out
   Vec3 half_chord = Vec3::Zero();
   double panel_arm = 0;
-  double radius = 0;             ///< of the ball about the centre of mass that holds it [m]
+  double radius = 0;  ///< of the ball about the centre of mass that holds it [m]
 };
 
 LeafShape shape_of(const LeafPrototype& prototype);

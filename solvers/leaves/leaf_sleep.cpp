@@ -14,8 +14,7 @@ double lift_off_speed(const LeafPrototype& prototype, double mass_factor, double
   const double hold = holding_pressure(prototype, mass_factor, gravity);
   // 3/4 of the lift's half rho C_L u2, against 1/2.
   const double peel = 4.0 / 3 * hold / (air_density * prototype.lying_lift);
-  const double slide =
-      2 * friction * hold / (air_density * (prototype.lying_drag + friction * prototype.lying_lift));
+  const double slide = 2 * friction * hold / (air_density * (prototype.lying_drag + friction * prototype.lying_lift));
   return std::sqrt(std::min(peel, slide));
 }
 

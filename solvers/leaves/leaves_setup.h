@@ -24,8 +24,8 @@ struct LeafPrototype {
   double fold = 0;              ///< by which each panel rises from the rib [rad], as in positions; 0 flat, 0.2 usual
   bool strip = false;           ///< added mass of an endless strip along x, for comparison with two dimensions
   PlateCoefficients law;        ///< of the air
-  /// A lying leaf: lift by the air that is drawn from below it and drag, by dynamic pressure [1]. 0.08 lets a dry leaf go
-  /// at 3.5 m/s, where leaves on the ground begin to move (Beaufort 3).
+  /// A lying leaf: lift by the air that is drawn from below it and drag, by dynamic pressure [1]. 0.08 lets a dry leaf
+  /// go at 3.5 m/s, where leaves on the ground begin to move (Beaufort 3).
   double lying_lift = 0.08, lying_drag = 0.02;
   double adhesion = 0.1;  ///< holds a lying leaf [N/m2]. 0.1 dry, 2 to 5 wet; by its own weight it has 0.8
 };
@@ -35,16 +35,16 @@ struct LeafPrototype {
 LeafPrototype almond_leaf(std::string name, double length, double width, double fold, int stations = 5);
 
 struct Leaf {
-  int id = 0;                      ///< as caches know it; any, each once
-  int prototype = 0;               ///< into LeavesSetup::prototypes
-  Vec3 position = Vec3::Zero();    ///< of its centre of mass at the start [m]
+  int id = 0;                           ///< as caches know it; any, each once
+  int prototype = 0;                    ///< into LeavesSetup::prototypes
+  Vec3 position = Vec3::Zero();         ///< of its centre of mass at the start [m]
   Quat orientation = Quat::Identity();  ///< prototype to world; the identity lies level
-  double scale = 1;                ///< of the prototype's lengths, > 0
-  bool asleep = false;             ///< lies where it is until something moves it
+  double scale = 1;                     ///< of the prototype's lengths, > 0
+  bool asleep = false;                  ///< lies where it is until something moves it
 };
 
-/// What leaves meet and do not move: a character, a prop, a ground. Closed surfaces have an inside; of others the inside
-/// is where their triangles do not face.
+/// What leaves meet and do not move: a character, a prop, a ground. Closed surfaces have an inside; of others the
+/// inside is where their triangles do not face.
 struct LeafObstacle {
   std::string name;
   std::shared_ptr<const Trajectory> trajectory;
@@ -82,9 +82,9 @@ struct LeavesSetup {
 struct LeafState {
   int id = 0, prototype = 0;
   double scale = 1;
-  Vec3 position = Vec3::Zero();         ///< of the centre of mass [m]
-  Quat orientation = Quat::Identity();  ///< prototype (about its centre of mass) to world
-  Vec3 velocity = Vec3::Zero();         ///< m/s
+  Vec3 position = Vec3::Zero();          ///< of the centre of mass [m]
+  Quat orientation = Quat::Identity();   ///< prototype (about its centre of mass) to world
+  Vec3 velocity = Vec3::Zero();          ///< m/s
   Vec3 angular_velocity = Vec3::Zero();  ///< world axes [rad/s]
   bool asleep = false;
 };

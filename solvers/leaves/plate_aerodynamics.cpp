@@ -1,7 +1,8 @@
 // See plate_aerodynamics.h. In the plate's axes, with w the velocity through the air, s the spin, M = m + added mass:
 //
 //   M w' = -s x M w + F + m R^T (g - u')        J s' = -s x J s - w x M w + T
-//   F = sum over panels, with normal n, of  -1/2 rho S (A - B cos 2 alpha) |w| w + rho S C_T (w_n / |w|) (w_n w_t - w_t^2 n)
+//   F = sum over panels, with normal n, of  -1/2 rho S (A - B cos 2 alpha) |w| w + rho S C_T (w_n / |w|) (w_n w_t -
+//   w_t^2 n)
 //       + rho S C_R (a s) x w
 //
 // Runge-Kutta 4 after Lawson (1967): the drag that the plate has at the start of a step is taken out and integrated
@@ -32,7 +33,8 @@ Vec3 spin_damping(const PlateModel& p, double speed, const Vec3& spin) {
            (p.law.damping_speed * speed / a + p.law.damping_spin * std::abs(s));
   };
   const double a = p.half_chord[1];
-  return {across(p.half_chord[0], spin[0]), k_normal_damping * p.air_density * p.area * a * a * (speed + a * std::abs(spin[1])),
+  return {across(p.half_chord[0], spin[0]),
+          k_normal_damping * p.air_density * p.area * a * a * (speed + a * std::abs(spin[1])),
           across(p.half_chord[2], spin[2])};
 }
 
@@ -59,7 +61,8 @@ double fastest_rate(const PlateModel& p, const Vec3& w, const Vec3& spin) {
   const double speed = w.norm(), turning = spin.norm();
   const Vec3 masses = p.masses(), inertias = p.inertias();
   const double lightest = masses.minCoeff();
-  const double drag = p.air_density * p.area * speed * std::max(p.law.lift_translation, 0.5 * p.law.face_on()) / lightest;
+  const double drag =
+      p.air_density * p.area * speed * std::max(p.law.lift_translation, 0.5 * p.law.face_on()) / lightest;
   const double lift = p.air_density * p.area * p.law.lift_rotation * p.half_chord.maxCoeff() * turning / lightest;
   const double munk = speed * std::sqrt(p.added_mass[1] / std::min(inertias[0], inertias[2]));
   return std::max({drag, lift, munk, turning});
@@ -171,7 +174,8 @@ int advance_plate(const PlateModel& p, const Vec3& gravity, const PlateAir& air,
                              full_s.cwiseProduct(s) + h * half_s.cwiseProduct(k3.spin), q + h * k3.turn);
     m.velocity = full_w.cwiseProduct(w + h / 6 * k1.velocity) + h / 3 * half_w.cwiseProduct(k2.velocity + k3.velocity) +
                  h / 6 * k4.velocity;
-    m.spin = full_s.cwiseProduct(s + h / 6 * k1.spin) + h / 3 * half_s.cwiseProduct(k2.spin + k3.spin) + h / 6 * k4.spin;
+    m.spin =
+        full_s.cwiseProduct(s + h / 6 * k1.spin) + h / 3 * half_s.cwiseProduct(k2.spin + k3.spin) + h / 6 * k4.spin;
     m.place += h / 6 * (k1.place + 2 * (k2.place + k3.place) + k4.place);
     m.turn.coeffs() = q + h / 6 * (k1.turn + 2 * (k2.turn + k3.turn) + k4.turn);
     m.turn.normalize();

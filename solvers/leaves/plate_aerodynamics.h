@@ -16,13 +16,13 @@
 namespace ft::inline solvers {
 
 /// Coefficients of the law [1]. As they are here those of a finite plate such as a leaf: C_D 1.2 face on, as discs and
-/// squares have, and C_R and mu_1, mu_2 such that flat plates in air begin to tumble where Belmonte, Eisenberg and Moses
-/// 1998 saw it, at a Froude number of 0.67.
+/// squares have, and C_R and mu_1, mu_2 such that flat plates in air begin to tumble where Belmonte, Eisenberg and
+/// Moses 1998 saw it, at a Froude number of 0.67.
 struct PlateCoefficients {
   /// Drag: A - B cos 2 alpha, of the speed squared, along the motion. Face on A + B, edge on A - B.
   double drag_a = 0.7, drag_b = 0.5;
   double lift_translation = 1.0;  ///< C_T: lift C_T sin 2 alpha. 0: a parachute
-  double lift_rotation = 1.9;  ///< C_R
+  double lift_rotation = 1.9;     ///< C_R
   double damping_speed = 0.1;     ///< mu_1: of rotation, in proportion to the speed through the air
   double damping_spin = 0.1;      ///< mu_2: of rotation, in proportion to itself
 
@@ -34,15 +34,15 @@ PlateCoefficients strip_coefficients();
 
 /// What never changes of a plate. All about its centre of mass, in its axes.
 struct PlateModel {
-  double mass = 0;                         ///< kg, > 0
-  double area = 0;                         ///< m2, > 0
-  Vec3 inertia = Vec3::Zero();             ///< kg m2, > 0
-  Vec3 added_mass = Vec3::Zero();          ///< kg, of air of this density
-  Vec3 added_inertia = Vec3::Zero();       ///< kg m2
-  Vec3 half_chord = Vec3::Zero();          ///< mean half width across axes 0 and 2 [m], > 0; of 1 the mean of both
-  double air_density = 1.225;              ///< kg/m3
-  double fold = 0;                         ///< each of the two panels rises from the middle by this angle [rad]
-  double panel_arm = 0;                    ///< from the middle to a panel's centre [m]
+  double mass = 0;                    ///< kg, > 0
+  double area = 0;                    ///< m2, > 0
+  Vec3 inertia = Vec3::Zero();        ///< kg m2, > 0
+  Vec3 added_mass = Vec3::Zero();     ///< kg, of air of this density
+  Vec3 added_inertia = Vec3::Zero();  ///< kg m2
+  Vec3 half_chord = Vec3::Zero();     ///< mean half width across axes 0 and 2 [m], > 0; of 1 the mean of both
+  double air_density = 1.225;         ///< kg/m3
+  double fold = 0;                    ///< each of the two panels rises from the middle by this angle [rad]
+  double panel_arm = 0;               ///< from the middle to a panel's centre [m]
   PlateCoefficients law;
 
   Vec3 masses() const { return Vec3::Constant(mass) + added_mass; }
@@ -56,10 +56,10 @@ struct PlateModel {
 void add_air(PlateModel& plate, bool finite, double thickness_ratio = 0);
 
 struct PlateMotion {
-  Vec3 place = Vec3::Zero();      ///< of the centre of mass [m]
-  Quat turn = Quat::Identity();   ///< plate to world
-  Vec3 velocity = Vec3::Zero();   ///< through the air, in the plate's axes [m/s]
-  Vec3 spin = Vec3::Zero();       ///< in the plate's axes [rad/s]
+  Vec3 place = Vec3::Zero();     ///< of the centre of mass [m]
+  Quat turn = Quat::Identity();  ///< plate to world
+  Vec3 velocity = Vec3::Zero();  ///< through the air, in the plate's axes [m/s]
+  Vec3 spin = Vec3::Zero();      ///< in the plate's axes [rad/s]
 };
 
 /// The air along the way of a plate, over some time.
