@@ -17,8 +17,8 @@ namespace ft::inline solvers {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-/// Of the fastest of a plate's rates, a step [1]. Class boundaries and terminal speeds do not change below twice this.
-constexpr double k_step = 0.3;
+/// Of the fastest of a plate's rates, a step [1]. Where strips begin to tumble is the same with 0.3 and 0.7.
+constexpr double k_step = 0.5;
 /// Spin about the normal is slowed by the edges alone [1].
 constexpr double k_normal_damping = 0.05;
 

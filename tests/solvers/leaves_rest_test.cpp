@@ -85,8 +85,8 @@ TEST(Leaves, A_lying_leaf_lifts_off_at_the_speed_that_its_threshold_says) {
     setup.prototypes[0].adhesion = adhesion;
     setup.prototypes[0].fold = 0.0;
     const double expected = lift_off_speed(setup.prototypes[0], 1, 0.5);
-    // Still for two seconds, then growing by 0.5 m/s each second from half of it.
-    const auto speed = [=](double t) { return t < 2 ? 0.0 : 0.5 * expected + 0.5 * (t - 2); };
+    // Still for two seconds, then growing by 0.1 m/s each second from nine tenths of it.
+    const auto speed = [=](double t) { return t < 2 ? 0.0 : 0.9 * expected + 0.1 * (t - 2); };
     setup.wind = wind_of([=](const Vec3&, double t) { return Vec3(speed(t), 0, 0); }, 100);
     const auto solver = solver_of(setup);
     State state = solver->initial_state();
@@ -107,7 +107,7 @@ TEST(Leaves, Lying_leaves_cost_next_to_nothing) {
   LeavesSetup setup = many_leaves(5000, 0.01, 0.1, 0);
   for (Leaf& l : setup.leaves) l.asleep = true;
   setup.grounds.push_back({});
-  setup.wind = wind_of([](const Vec3& p, double t) { return Vec3(2 + std::sin(p.x() + t), 0, std::cos(p.z())); }, 4);
+  setup.wind = wind_of([](const Vec3& p, double t) { return Vec3(1 + std::sin(p.x() + t), 0, std::cos(p.z())); }, 4);
   const auto solver = solver_of(setup);
   State state = solver->initial_state();
   std::vector<double> ms;
