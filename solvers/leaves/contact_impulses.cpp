@@ -1,0 +1,80 @@
+// See leaf_contact.h: the impulses of one leaf's contacts.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/leaves/leaf_contact.h"
+
+namespace ft::inline solvers {
+namespace {
+
+constexpr int k_sweeps = 16;
+/// A sweep that changes no velocity by more than this is the last [m/s].
+constexpr double k_settled = 2e-5;
+/// A leaf that is too near is put right no faster than the body comes and so much [m/s].
+constexpr double k_put_right = 2.0;
+
+}  // namespace
+
+LeafVelocity solve_contacts(std::span<const LeafContact> contacts, double inverse_mass, const Mat3& inverse_inertia,
+                            double time, double margin, const LeafVelocity& wanted, ContactScratch& s,
+                            LeafVelocity& kept, bool& pushed) {
+  const std::size_t n = contacts.size();
+  pushed = false;
+  const auto moves_off = [&](const LeafContact& k) {
+    return (wanted.linear + wanted.angular.cross(k.arm)).dot(k.normal) * time >= margin - k.gap;
+  };
+  if (std::all_of(contacts.begin(), contacts.end(), moves_off)) return kept = wanted;
+  double farthest = 0;
+  for (const LeafContact& k : contacts) farthest = std::max(farthest, k.arm.norm());
+  s.share.resize(n);  // inverse of the effective mass: along the normal, and across it at most
+  for (std::size_t c = 0; c < n; ++c) {
+    const LeafContact& k = contacts[c];
+    const Vec3 turn = k.arm.cross(k.normal);
+    const double normal = inverse_mass + turn.dot(inverse_inertia * turn);
+    // Across: the largest that any direction can have, so that the step never overshoots.
+    const Vec3 t1 = k.normal.unitOrthogonal(), t2 = k.normal.cross(t1);
+    const Vec3 r1 = k.arm.cross(t1), r2 = k.arm.cross(t2);
+    const double across = inverse_mass + r1.dot(inverse_inertia * r1) + r2.dot(inverse_inertia * r2);
+    s.share[c] = Vec3(1 / normal, 1 / across, 0);
+  }
+  const auto solve = [&](bool for_way) {
+    LeafVelocity v = wanted;
+    s.impulse.assign(n, Vec3::Zero());
+    for (int sweep = 0; sweep < k_sweeps; ++sweep) {
+      const LeafVelocity before_sweep = v;
+      for (std::size_t c = 0; c < n; ++c) {
+        const LeafContact& k = contacts[c];
+        const double approach = k.velocity.dot(k.normal), want = (margin - k.gap) / time;
+        // Of the way: it may use up the gap. Of what is kept: the body's own velocity is enough.
+        const double least = for_way ? std::min(want, std::max(approach, 0.0) + k_put_right) : std::min(want, approach);
+        const Vec3 at_contact = v.linear + v.angular.cross(k.arm);
+        const double before = s.impulse[c].dot(k.normal);
+        const double now = std::max(0.0, before + s.share[c][0] * (least - at_contact.dot(k.normal)));
+        const auto apply = [&](const Vec3& impulse) {
+          v.linear += inverse_mass * impulse;
+          v.angular += inverse_inertia * k.arm.cross(impulse);
+        };
+        if (now == 0 && before == 0) continue;  // then it has no friction either
+        apply((now - before) * k.normal);
+        // Friction, across the normal.
+        const Vec3 slip_all = v.linear + v.angular.cross(k.arm) - k.velocity;
+        const Vec3 slip = slip_all - slip_all.dot(k.normal) * k.normal;
+        const Vec3 old = s.impulse[c] - before * k.normal;
+        Vec3 friction = old - s.share[c][1] * slip;
+        const double most = k.friction * now, size = friction.norm();
+        if (size > most) friction *= size > 0 ? most / size : 0.0;
+        apply(friction - old);
+        s.impulse[c] = now * k.normal + friction;
+      }
+      const double turn = (v.angular - before_sweep.angular).norm() * farthest;
+      if ((v.linear - before_sweep.linear).norm() + turn < k_settled) break;
+    }
+    for (const Vec3& i : s.impulse) pushed = pushed || i.squaredNorm() > 0;
+    return v;
+  };
+  const LeafVelocity way = solve(true);
+  kept = pushed ? solve(false) : way;
+  return way;
+}
+
+}  // namespace ft::inline solvers

@@ -1,0 +1,204 @@
+// See leaves_solver.h: what one leaf does in a frame.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/leaves/leaf_certificate.h"
+#include "solvers/leaves/leaf_frame.h"
+#include "solvers/leaves/leaf_sleep.h"
+
+namespace ft::inline solvers {
+namespace {
+
+/// In the steps of a leaf near something, its points go no farther than this [m], in at most so many steps of a slice.
+constexpr double k_near_way = 0.004;
+constexpr int k_near_steps = 48;
+constexpr int k_flight_steps = 200;  ///< of a slice, at most
+/// Beyond the margin, a gap that counts as touching [m].
+constexpr double k_touch = 0.8e-3;
+/// What lies flatter than the first on its ground is under the law of lying leaves, beyond the second of flying ones;
+/// sines [1].
+constexpr double k_flat = 0.17, k_tilted = 0.34;
+/// The air between a lying leaf and its ground resists its turning and rising [1/s]. Tuned: leaves that settle do so
+/// within half a second.
+constexpr double k_cushion = 12;
+
+Quat turned(const Quat& q, const Vec3& angle) {
+  const double size = angle.norm();
+  if (size < 1e-15) return q;
+  return (Quat(Eigen::AngleAxisd(size, angle / size)) * q).normalized();
+}
+
+void place_rim(const LeafShape& shape, const Vec3& x, const Quat& q, std::vector<Vec3>& out) {
+  const Mat3 turn = q.toRotationMatrix();
+  out.resize(shape.positions.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = x + turn * shape.positions[i];
+}
+
+}  // namespace
+
+int LeavesSolver::near_step(const Frame&, std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& m,
+                            ContactScratch& s, Touch& touch) const {
+  const Model& model = leaves_[leaf];
+  place_rim(model.shape, m.x, m.q, s.rim);
+  find_contacts(bodies_, setup_.grounds, model.shape, step, m.x, s);
+
+  // How it lies.
+  Vec3 ground = Vec3::Zero(), ground_velocity = Vec3::Zero();
+  int touching = 0;
+  touch = {};
+  for (const LeafContact& c : s.contacts)
+    if (c.gap < step.margin + k_touch) {
+      ground += c.normal, ground_velocity += c.velocity;
+      ++touching;
+      touch.moves = touch.moves || c.moves;
+    }
+  touch.lies = touching > 0;
+  double lying = 0;
+  if (touching > 0 && ground.norm() > 0.3 * touching) {
+    ground.normalize();
+    ground_velocity /= touching;
+    const double sine = (m.q * Vec3::UnitY()).cross(ground).norm();
+    lying = std::clamp((k_tilted - sine) / (k_tilted - k_flat), 0.0, 1.0);
+  }
+
+  const double h = step.time;
+  Moving flown = m;
+  int steps = 0;
+  if (lying < 1) {
+    PlateMotion motion{m.x, m.q, m.q.conjugate() * (m.v - air.velocity), m.q.conjugate() * m.spin};
+    steps = advance_plate(model.plate, setup_.gravity, air, h, k_flight_steps, motion);
+    flown = {motion.place, motion.turn * motion.velocity + air.velocity + h * air.change, motion.turn * motion.spin,
+             motion.turn};
+  }
+  const Mat3 turn = m.q.toRotationMatrix();
+  const Mat3 inverse_inertia = turn * model.plate.inertia.cwiseInverse().asDiagonal() * turn.transpose();
+  if (lying > 0) {
+    for (Vec3& p : s.rim) p -= m.x;
+    const LyingForce f = lying_force(setup_.prototypes[at(setup_.leaves[leaf].prototype)], model.plate, ground,
+                                     air.velocity - m.v, s.rim);
+    const double damp = 1 / (1 + h * k_cushion);
+    Vec3 v = m.v + h * (setup_.gravity + f.force / model.plate.mass) - ground_velocity;
+    const double rising = v.dot(ground);
+    v += (damp - 1) * std::max(rising, 0.0) * ground + ground_velocity;
+    const Vec3 spin = damp * (m.spin + h * (inverse_inertia * f.torque));
+    flown.v = lying * v + (1 - lying) * flown.v;
+    flown.spin = lying * spin + (1 - lying) * flown.spin;
+  }
+  LeafVelocity kept{flown.v, flown.spin};
+  bool pushed = lying > 0;
+  LeafVelocity way = kept;
+  if (!s.contacts.empty()) {
+    bool any = false;
+    way = solve_contacts(s.contacts, 1 / model.plate.mass, inverse_inertia, h, step.margin, kept, s, kept, any);
+    pushed = pushed || any;
+  }
+  if (!pushed) {
+    m = flown;
+    return std::max(steps, 1);
+  }
+  m.x += h * way.linear;
+  m.q = turned(m.q, h * way.angular);
+  m.v = kept.linear;
+  m.spin = kept.angular;
+  return std::max(steps, 1);
+}
+
+int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice, Moving& m, ContactScratch& s,
+                                Touch& touch) const {
+  const Model& model = leaves_[leaf];
+  const double time = (frame.t1 - frame.t0) / LeafBodies::k_slices, radius = model.shape.radius;
+  PlateAir air;
+  if (is_windy(frame, m.x)) {
+    air.velocity = frame.air[at(slice)]->velocity(m.x);
+    const Vec3 next = frame.air[at(slice) + 1]->velocity(m.x + time * m.v);
+    air.change = (next - air.velocity) / time;
+    if (!air.velocity.allFinite() || !air.change.allFinite()) air = {};
+  }
+  // How far it can get in this slice: as fast as it is, or as the air takes it.
+  const double speed = m.v.norm() + (air.velocity - m.v).norm() + time * (air.change.norm() + setup_.gravity.norm());
+  const double reach = radius + model.margin + time * speed;
+  find_near(bodies_, slice, m.x, reach, s.near);
+  bool near = !s.near.empty();
+  for (const LeafGround& ground : setup_.grounds) near = near || m.x.y() - reach < ground.height;
+  int steps = 0;
+  touch = {};
+  if (!near) {
+    PlateMotion motion{m.x, m.q, m.q.conjugate() * (m.v - air.velocity), m.q.conjugate() * m.spin};
+    steps = advance_plate(model.plate, setup_.gravity, air, time, k_flight_steps, motion);
+    m = {motion.place, motion.turn * motion.velocity + air.velocity + time * air.change, motion.turn * motion.spin,
+         motion.turn};
+    return steps;
+  }
+  double way = 0;
+  for (const NearTriangle& n : s.near) way = std::max(way, bodies_.way(n.body, slice));
+  for (double done = 0; done < 1 - 1e-9;) {
+    const double fastest = m.v.norm() + m.spin.norm() * radius + 0.1 * (air.velocity - m.v).norm();
+    const double wanted = std::ceil((time * fastest + way) / k_near_way);
+    const double share = 1 / std::clamp(wanted, 2.0, static_cast<double>(k_near_steps));
+    const double to = done + share > 1 - 1e-9 ? 1 : done + share;
+    ContactStep step{slice, done, to, (to - done) * time, model.margin, 0};
+    step.reach = model.margin + k_touch + step.time * (fastest + 0.2) + 1.2 * (to - done) * way;
+    PlateAir here = air;
+    here.velocity += done * time * air.change;
+    steps += near_step(frame, leaf, step, here, m, s, touch);
+    done = to;
+  }
+  return steps;
+}
+
+LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t leaf, Moving& m, double& rest,
+                                               double& asleep) const {
+  thread_local ContactScratch scratch;
+  const Model& model = leaves_[leaf];
+  const Moving before = m;
+  Tally out;
+  Touch touch;
+  int steps = 0;
+  for (int slice = 0; slice < LeafBodies::k_slices; ++slice)
+    steps += advance_slice(frame, leaf, slice, m, scratch, touch);
+  if (!m.x.allFinite() || !m.v.allFinite() || !m.spin.allFinite() || !m.q.coeffs().allFinite()) {
+    m = {before.x, Vec3::Zero(), Vec3::Zero(), before.q};
+    out.finite = false;
+  }
+  const double frame_time = frame.t1 - frame.t0, slice_time = frame_time / LeafBodies::k_slices;
+  constexpr int last = LeafBodies::k_slices - 1;
+  place_rim(model.shape, m.x, m.q, scratch.rim);
+  LeafVerdict verdict = judge_leaf(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time);
+  if (!verdict.ok()) {
+    const Vec3 velocity = verdict.velocity;
+    bring_out(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time, model.margin, verdict);
+    m.v = velocity;
+    m.spin.setZero();
+    out.brought_out = 1;
+    // What the mesh of all leaves will be, from the moved centre.
+    place_rim(model.shape, m.x, m.q, scratch.rim);
+    verdict = judge_leaf(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time);
+  }
+  out.crossings = verdict.crossings;
+  out.inside = verdict.inside;
+  out.deepest = std::max(verdict.below_ground, verdict.inside ? verdict.depth : 0.0);
+  out.steps = out.longest = steps;
+
+  const double speed = m.v.norm() + m.spin.norm() * model.shape.radius;
+  const double went = (m.x - before.x).norm() + m.q.angularDistance(before.q) * model.shape.radius;
+  const bool still = touch.lies && !touch.moves && speed < k_sleep_speed && went < k_sleep_speed * frame_time;
+  rest = still ? rest + frame_time : 0;
+  if (setup_.may_sleep && rest >= k_sleep_after) {
+    const double holds = lift_off_speed(setup_.prototypes[at(setup_.leaves[leaf].prototype)], model.mass_factor,
+                                        lowest_friction(setup_), setup_.gravity.norm(), setup_.air_density);
+    const bool calm =
+        !is_windy(frame, m.x) || frame.air[LeafBodies::k_slices]->velocity(m.x).norm() < k_sleep_wind * holds;
+    if (calm) {
+      m.v.setZero(), m.spin.setZero();
+      asleep = 1, rest = 0;
+    }
+  }
+  out.awake = asleep == 0;
+  out.fastest = m.v.norm();
+  const Vec3 body_spin = m.q.conjugate() * m.spin;
+  out.energy =
+      0.5 * model.plate.mass * m.v.squaredNorm() + 0.5 * body_spin.dot(model.plate.inertia.cwiseProduct(body_spin));
+  return out;
+}
+
+}  // namespace ft::inline solvers

@@ -1,0 +1,43 @@
+// What is known of a frame of leaves, and what is counted in it. Between leaves_solver.cpp and leaf_flight.cpp.
+#pragma once
+
+#include "solvers/leaves/leaf_contact.h"
+#include "solvers/leaves/leaves_solver.h"
+
+namespace ft::inline solvers {
+
+struct LeavesSolver::Frame {
+  double t0 = 0, t1 = 0;  ///< s
+  bool has_wind = false;
+  std::vector<std::unique_ptr<AirNow>> air;  ///< at the ends of the slices
+  std::vector<Box> windy;
+  std::vector<char> woken;  ///< per leaf: by the wind 1, by a body 2
+};
+
+struct LeavesSolver::Tally {
+  int crossings = 0, inside = 0, awake = 0, brought_out = 0, longest = 0;
+  double steps = 0, energy = 0, deepest = 0, fastest = 0;
+  bool finite = true;
+
+  Tally operator+(const Tally& b) const {
+    return {crossings + b.crossings,      inside + b.inside, awake + b.awake,   brought_out + b.brought_out,
+            std::max(longest, b.longest), steps + b.steps,   energy + b.energy, std::max(deepest, b.deepest),
+            std::max(fastest, b.fastest), finite && b.finite};
+  }
+};
+
+/// What a leaf touched in its last step.
+struct LeavesSolver::Touch {
+  bool lies = false;   ///< against something
+  bool moves = false;  ///< that moves in this frame
+  double friction = 0.5;
+};
+
+inline double lowest_friction(const LeavesSetup& setup) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const LeafObstacle& o : setup.bodies) least = std::min(least, o.friction);
+  for (const LeafGround& g : setup.grounds) least = std::min(least, g.friction);
+  return std::isfinite(least) ? least : 0.5;
+}
+
+}  // namespace ft::inline solvers

@@ -1,0 +1,253 @@
+// See leaves_solver.h: setting up, states, and the walk of a frame. What one leaf does in it is in leaf_flight.cpp.
+#include "solvers/leaves/leaves_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "baker/core/parallel.h"
+#include "baker/core/random.h"
+#include "baker/core/state_points.h"
+#include "solvers/leaves/leaf_frame.h"
+#include "solvers/leaves/leaf_sleep.h"
+
+namespace ft::inline solvers {
+namespace {
+
+constexpr std::size_t k_block = 16;
+/// A leaf is kept at least so far away [m]; each has up to as much again for itself.
+constexpr double k_margin = 0.6e-3;
+/// Of a sleeping leaf: a moving body that comes so near wakes it [m].
+constexpr double k_approach = 0.01;
+
+}  // namespace
+
+Result<std::unique_ptr<LeavesSolver>> LeavesSolver::make(LeavesSetup setup) {
+  const auto refuse = [&](const std::string& what) {
+    return usage_error(fmt::format("leaves \"{}\": {}", setup.name, what));
+  };
+  if (!(setup.fps > 0) || !(setup.air_density > 0)) return refuse("fps and air density must be positive");
+  if (!(setup.mass_variation >= 0 && setup.mass_variation <= 0.9)) return refuse("mass variation is 0 to 0.9");
+  for (const LeafPrototype& p : setup.prototypes) {
+    double area = 0;
+    if (p.positions.size() < 3 || p.positions.size() > 64 || !all_finite(p.positions))
+      return refuse("a prototype has 3 to 64 vertices");
+    for (const Triangle& t : p.triangles) {
+      for (const int v : t)
+        if (v < 0 || at(v) >= p.positions.size())
+          return refuse("a prototype's triangle names a vertex that is not there");
+      area += triangle_area(p.positions[at(t[0])], p.positions[at(t[1])], p.positions[at(t[2])]);
+    }
+    if (!(area > 0)) return refuse("a prototype has no area");
+    if (!(p.mass_per_area > 0) || !(p.lying_lift > 0)) return refuse("a prototype's mass and lift must be positive");
+  }
+  for (const Leaf& l : setup.leaves) {
+    if (l.prototype < 0 || at(l.prototype) >= setup.prototypes.size()) return refuse("a leaf has no prototype");
+    if (!(l.scale > 0) || !l.position.allFinite() || !(l.orientation.norm() > 0.5))
+      return refuse("a leaf has no size, place or orientation");
+  }
+  return std::unique_ptr<LeavesSolver>(new LeavesSolver(std::move(setup)));
+}
+
+LeavesSolver::LeavesSolver(LeavesSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies) {
+  for (const LeafPrototype& p : setup_.prototypes) shapes_.push_back(shape_of(p));
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  const double gravity = setup_.gravity.norm();
+  slowest_lift_off_ = std::numeric_limits<double>::infinity();
+  for (const Leaf& leaf : setup_.leaves) {
+    const LeafPrototype& prototype = setup_.prototypes[at(leaf.prototype)];
+    const RandomKey key{setup_.seed, 0x1eaf, 0, static_cast<std::uint64_t>(leaf.id)};
+    Model m;
+    m.mass_factor = 1 + setup_.mass_variation * (2 * random_uniform(key) - 1);
+    m.plate = plate_of(prototype, shapes_[at(leaf.prototype)], leaf.scale, m.mass_factor, setup_.air_density);
+    m.shape = shapes_[at(leaf.prototype)];
+    for (Vec3& p : m.shape.positions) p *= leaf.scale;
+    m.shape.radius *= leaf.scale;
+    m.margin = k_margin * (1 + random_uniform(key, 1));
+    slowest_lift_off_ = std::min(slowest_lift_off_, lift_off_speed(prototype, m.mass_factor, lowest_friction(setup_),
+                                                                   gravity, setup_.air_density));
+    const int first = static_cast<int>(positions.size());
+    for (const Vec3& p : m.shape.positions) positions.push_back(leaf.position + leaf.orientation.normalized() * p);
+    for (const Triangle& t : m.shape.triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    leaves_.push_back(std::move(m));
+  }
+  mesh_ = make_triangle_mesh(setup_.name, std::move(positions), triangles);
+}
+
+State LeavesSolver::initial_state() const {
+  State state;
+  state.frame = setup_.first_frame - setup_.preroll_frames;
+  state.time = -setup_.preroll_frames / setup_.fps;
+  std::vector<double> x, q, asleep;
+  for (const Leaf& leaf : setup_.leaves) {
+    const Quat turn = leaf.orientation.normalized();
+    x.insert(x.end(), {leaf.position.x(), leaf.position.y(), leaf.position.z()});
+    q.insert(q.end(), {turn.x(), turn.y(), turn.z(), turn.w()});
+    asleep.push_back(leaf.asleep && setup_.may_sleep ? 1 : 0);
+  }
+  const std::size_t n = setup_.leaves.size();
+  state.set("x", std::move(x));
+  state.set("q", std::move(q));
+  state.set("v", std::vector<double>(3 * n));
+  state.set("spin", std::vector<double>(3 * n));
+  state.set("asleep", std::move(asleep));
+  state.set("rest", std::vector<double>(n));
+  return state;
+}
+
+void LeavesSolver::leaf_states(const State& state, std::span<LeafState> out) const {
+  CHECK(out.size() == leaves_.size());
+  const auto &x = *state.find("x"), &q = *state.find("q"), &v = *state.find("v"), &spin = *state.find("spin"),
+             &asleep = *state.find("asleep");
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Leaf& leaf = setup_.leaves[i];
+    out[i] = {leaf.id,
+              leaf.prototype,
+              leaf.scale,
+              as_points(x)[i],
+              Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]),
+              as_points(v)[i],
+              as_points(spin)[i],
+              asleep[i] != 0};
+  }
+}
+
+void LeavesSolver::system_positions(const State& state, int, std::span<Vec3> positions) const {
+  const auto &x = *state.find("x"), &q = *state.find("q");
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    const Mat3 turn = Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]).toRotationMatrix();
+    for (const Vec3& p : leaves_[i].shape.positions) positions[next++] = as_points(x)[i] + turn * p;
+  }
+}
+
+/// Whether anything that moves comes near a sleeping leaf in this frame.
+bool LeavesSolver::is_approached(const Vec3& place, double radius) const {
+  for (int body = 0; body < bodies_.count(); ++body) {
+    if (!bodies_.moves(body)) continue;
+    const Vec3 reach = Vec3::Constant(radius + k_approach);
+    if (!Box{place - reach, place + reach}.overlaps(bodies_.box(body))) continue;
+    for (int slice = 0; slice < LeafBodies::k_slices; ++slice) {
+      const Vec3 grown = reach + Vec3::Constant(bodies_.way(body, slice));
+      const auto now = bodies_.places(body, slice), before = bodies_.places(body, slice - 1);
+      bool near = false;
+      bodies_.tree(body, slice).for_each_near(TreeBox::around(place - grown, place + grown), [&](int t) {
+        if (near) return;
+        Box box;
+        for (const int v : bodies_.triangles(body)[at(t)]) box.include(now[at(v)]), box.include(before[at(v)]);
+        near = box.overlaps(Box{place - reach, place + reach});
+      });
+      if (near) return true;
+    }
+  }
+  return false;
+}
+
+bool LeavesSolver::is_windy(const Frame& frame, const Vec3& place) const {
+  if (!frame.has_wind || !setup_.windy) return frame.has_wind;
+  return std::any_of(frame.windy.begin(), frame.windy.end(), [&](const Box& box) {
+    return (place.array() >= box.lo.array()).all() && (place.array() <= box.hi.array()).all();
+  });
+}
+
+/// Sleeping leaves that the wind or a body gets hold of.
+void LeavesSolver::wake(Frame& frame, State& state, FrameReport& report) const {
+  const auto& asleep = *state.find("asleep");
+  const auto x = as_points(*state.find("x"));
+  bool any_moves = false;
+  for (int b = 0; b < bodies_.count(); ++b) any_moves = any_moves || bodies_.moves(b);
+  const bool ask_wind = frame.has_wind && setup_.wind->fastest() > slowest_lift_off_;
+  frame.woken.assign(leaves_.size(), 0);
+  if (any_moves || ask_wind)
+    parallel_for(leaves_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (asleep[i] == 0) continue;
+        if (any_moves && is_approached(x[i], leaves_[i].shape.radius)) frame.woken[i] = 2;
+        if (frame.woken[i] != 0 || !ask_wind || !is_windy(frame, x[i])) continue;
+        const Vec3 u = frame.air[LeafBodies::k_slices]->velocity(x[i]);
+        const double speed2 = u.squaredNorm();
+        if (speed2 <= slowest_lift_off_ * slowest_lift_off_) continue;
+        const double own = lift_off_speed(setup_.prototypes[at(setup_.leaves[i].prototype)], leaves_[i].mass_factor,
+                                          lowest_friction(setup_), setup_.gravity.norm(), setup_.air_density);
+        if (speed2 > own * own) frame.woken[i] = 1;
+      }
+    });
+  int lifted = 0, woken = 0;
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    if (frame.woken[i] != 0) {
+      (frame.woken[i] == 1 ? lifted : woken)++;
+      state.block("asleep")[i] = 0;
+      state.block("rest")[i] = 0;
+    }
+  }
+  report.own["leaves_lifted"] = lifted;
+  report.own["leaves_woken"] = woken;
+}
+
+FrameReport LeavesSolver::advance_frame(State& state) {
+  const std::lock_guard lock(one_at_a_time_);
+  const auto clock = std::chrono::steady_clock::now();
+  FrameReport report;
+  report.frame = state.frame + 1;
+  Frame frame;
+  frame.t0 = (state.frame - setup_.first_frame) / setup_.fps;
+  frame.t1 = (report.frame - setup_.first_frame) / setup_.fps;
+  bodies_.begin_frame(frame.t0, frame.t1);
+  frame.has_wind = setup_.wind && !setup_.wind->is_still();
+  if (frame.has_wind) {
+    for (int k = 0; k <= LeafBodies::k_slices; ++k)
+      frame.air.push_back(setup_.wind->at_time(frame.t0 + (frame.t1 - frame.t0) * k / LeafBodies::k_slices));
+    if (setup_.windy) frame.windy = setup_.windy(frame.t1);
+  }
+  wake(frame, state, report);
+  std::vector<std::size_t> awake;
+  const auto& asleep_before = *state.find("asleep");
+  for (std::size_t i = 0; i < leaves_.size(); ++i)
+    if (asleep_before[i] == 0) awake.push_back(i);
+  Tally sum;
+  if (!awake.empty()) {
+    auto &x = state.block("x"), &q = state.block("q"), &v = state.block("v"), &spin = state.block("spin"),
+         &asleep = state.block("asleep"), &rest = state.block("rest");
+    sum = parallel_sum(awake.size(), k_block, Tally{}, [&](std::size_t begin, std::size_t end) {
+      Tally part;
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = awake[k];
+        Moving m{as_points(x)[i], as_points(v)[i], as_points(spin)[i],
+                 Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2])};
+        part = part + advance_leaf(frame, i, m, rest[i], asleep[i]);
+        as_points(x)[i] = m.x;
+        as_points(v)[i] = m.v;
+        as_points(spin)[i] = m.spin;
+        for (int c = 0; c < 4; ++c) q[4 * i + at(c)] = m.q.coeffs()[c];
+      }
+      return part;
+    });
+  }
+  report.substeps = sum.longest;
+  report.crossings_body = report.crossings_drawn = sum.crossings;
+  report.inside_body = sum.inside;
+  report.deepest_drawn = sum.deepest;
+  report.kinetic_energy = sum.energy;
+  report.finite = sum.finite;
+  report.own["leaves_awake"] = sum.awake;
+  report.own["leaves_brought_out"] = sum.brought_out;
+  report.own["leaves_fastest"] = sum.fastest;
+  report.own["leaf_steps"] = sum.steps;
+  if (sum.crossings > 0 || sum.inside > 0) {
+    Incident& incident = report.incidents.emplace_back();
+    incident.kind = Incident::Kind::k_crossing;
+    incident.frame = report.frame;
+    incident.system = setup_.name;
+    incident.text =
+        fmt::format("{} edges of leaves cross a body, and {} leaves are inside one", sum.crossings, sum.inside);
+  }
+  state.frame = report.frame;
+  state.time = frame.t1;
+  report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return report;
+}
+
+}  // namespace ft::inline solvers

@@ -1,0 +1,125 @@
+// Leaves on the ground and against bodies: none in them, none creeps, all come to rest, and go when the wind says so.
+#include "baker/core/parallel.h"
+#include "collision/check/crossings.h"
+#include "solvers/leaves/leaf_sleep.h"
+#include "tests/solvers/leaf_scenes.h"
+
+namespace ft {
+namespace {
+
+using namespace test;
+
+TEST(Leaves, Nothing_falls_through_a_ground_a_box_and_a_moving_capsule_slow) {
+  LeavesSetup setup = many_leaves(500, 1.2, 0.06, 0.3);
+  const TriangleSurface box = box_surface(Vec3(0.5, 0.3, 0.4)), capsule = capsule_surface(0.12, 0.5, 2);
+  setup.grounds.push_back({});
+  setup.bodies.push_back(obstacle_of("box", box, Vec3(-0.3, 0.16, 0.1)));
+  // It walks about for three seconds and stands still then.
+  const auto way = [](double t) {
+    const double s = std::min(t, 3.0);
+    return Vec3(0.6 * std::sin(2.5 * s), 0.1 * std::sin(4 * s), 0.5 * std::sin(1.7 * s));
+  };
+  setup.bodies.push_back(obstacle_of("capsule", capsule, Vec3(0.3, 0.5, -0.2), way));
+  const auto bodies = setup.bodies;
+  const auto solver = solver_of(setup);
+  State state = solver->initial_state();
+  std::vector<Vec3> x(solver->system_mesh(0).positions.size());
+  const auto triangles = triangulate(solver->system_mesh(0));
+  double awake = 500, brought_out = 0, ms = 0;
+  int frame = 0;
+  for (; frame < 24 * 15 && awake > 0; ++frame) {
+    const FrameReport report = solver->advance_frame(state);
+    ms = std::max(ms, 1e3 * report.profile.total);
+    awake = report.own.at("leaves_awake");
+    brought_out += report.own.at("leaves_brought_out");
+    ASSERT_TRUE(report.finite);
+    ASSERT_EQ(report.crossings_body, 0) << frame;
+    ASSERT_EQ(report.inside_body, 0) << frame;
+    solver->system_positions(state, 0, x);
+    for (const Vec3& p : x) ASSERT_GT(p.y(), 0) << frame;
+    if (frame % 4 != 0) continue;
+    for (const LeafObstacle& body : bodies) {
+      std::vector<Vec3> y(at(body.trajectory->surface().vertex_count()));
+      body.trajectory->sample(state.time, y);
+      ASSERT_TRUE(crossings_between(x, triangles, y, body.trajectory->surface().triangles).empty()) << frame;
+    }
+    if (frame % 24 == 0 && std::getenv("FT_PRINT"))
+      printf("frame %d awake %.0f out %.0f e %.2g ms %.1f\n", frame, awake, brought_out, report.kinetic_energy,
+             1e3 * report.profile.total);
+  }
+  EXPECT_EQ(awake, 0);
+  EXPECT_LT(frame, 24 * 15);
+  RecordProperty("frames", frame);
+  printf("all asleep after %d frames, %.0f brought out, slowest frame %.1f ms\n", frame, brought_out, ms);
+}
+
+/// One leaf that lies level on the ground, as deep as it is kept.
+LeavesSetup lying_leaf() {
+  LeavesSetup setup = many_leaves(1, 0.02, 1, 0);
+  setup.leaves[0].orientation = Quat::Identity();
+  setup.mass_variation = 0;
+  setup.grounds.push_back({});
+  return setup;
+}
+
+TEST(Leaves, A_leaf_on_the_ground_does_not_creep) {
+  LeavesSetup setup = lying_leaf();
+  setup.may_sleep = false;
+  const auto solver = solver_of(setup);
+  State state = solver->initial_state();
+  for (int f = 0; f < 48; ++f) solver->advance_frame(state);
+  const LeafState before = leaves_of(*solver, state)[0];
+  double farthest = 0;
+  for (int f = 0; f < 240; ++f) {
+    const FrameReport report = solver->advance_frame(state);
+    EXPECT_EQ(report.crossings_body, 0);
+    farthest = std::max(farthest, (leaves_of(*solver, state)[0].position - before.position).norm());
+  }
+  EXPECT_LT(farthest, 1e-4);
+  printf("crept %.2e m in 10 s\n", farthest);
+}
+
+TEST(Leaves, A_lying_leaf_lifts_off_at_the_speed_that_its_threshold_says) {
+  for (const double adhesion : {0.0, 0.1, 0.6}) {
+    LeavesSetup setup = lying_leaf();
+    setup.prototypes[0].adhesion = adhesion;
+    setup.prototypes[0].fold = 0.0;
+    const double expected = lift_off_speed(setup.prototypes[0], 1, 0.5);
+    // Still for two seconds, then growing by 0.1 m/s each second from nine tenths of it.
+    const auto speed = [=](double t) { return t < 2 ? 0.0 : 0.9 * expected + 0.1 * (t - 2); };
+    setup.wind = wind_of([=](const Vec3&, double t) { return Vec3(speed(t), 0, 0); }, 100);
+    const auto solver = solver_of(setup);
+    State state = solver->initial_state();
+    double lifted = 0;
+    for (int f = 0; f < 24 * 20 && lifted == 0; ++f) {
+      solver->advance_frame(state);
+      if (f == 40) {
+        EXPECT_TRUE(leaves_of(*solver, state)[0].asleep);
+      }
+      if (f > 48 && leaves_of(*solver, state)[0].position.y() > 0.03) lifted = speed(state.time);
+    }
+    printf("adhesion %.1f: lifts off at %.2f m/s, expected %.2f\n", adhesion, lifted, expected);
+    EXPECT_NEAR(lifted, expected, 0.05 * expected) << adhesion;
+  }
+}
+
+TEST(Leaves, Lying_leaves_cost_next_to_nothing) {
+  LeavesSetup setup = many_leaves(5000, 0.01, 0.1, 0);
+  for (Leaf& l : setup.leaves) l.asleep = true;
+  setup.grounds.push_back({});
+  setup.wind = wind_of([](const Vec3& p, double t) { return Vec3(1 + std::sin(p.x() + t), 0, std::cos(p.z())); }, 4);
+  const auto solver = solver_of(setup);
+  State state = solver->initial_state();
+  std::vector<double> ms;
+  for (int f = 0; f < 21; ++f) {
+    const FrameReport report = solver->advance_frame(state);
+    EXPECT_EQ(report.own.at("leaves_awake"), 0);
+    ms.push_back(1e3 * report.profile.total);
+  }
+  std::nth_element(ms.begin(), ms.begin() + 10, ms.end());
+  printf("5000 lying leaves: %.2f ms a frame\n", ms[10]);
+  EXPECT_LT(ms[10], 20);  // 2 measured on a quiet machine; tests run on busy ones
+}
+
+}  // namespace
+}  // namespace ft
