@@ -39,7 +39,14 @@ LeafVelocity solve_contacts(std::span<const LeafContact> contacts, double invers
   }
   const auto solve = [&](bool for_way) {
     LeafVelocity v = wanted;
-    s.impulse.assign(n, Vec3::Zero());
+    if (for_way) {
+      s.impulse.assign(n, Vec3::Zero());
+    } else {  // from those of the way, which are nearly the same
+      for (std::size_t c = 0; c < n; ++c) {
+        v.linear += inverse_mass * s.impulse[c];
+        v.angular += inverse_inertia * contacts[c].arm.cross(s.impulse[c]);
+      }
+    }
     for (int sweep = 0; sweep < k_sweeps; ++sweep) {
       const LeafVelocity before_sweep = v;
       for (std::size_t c = 0; c < n; ++c) {

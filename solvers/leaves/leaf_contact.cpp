@@ -163,6 +163,16 @@ void meet_edges(const LeafBodies& bodies, const LeafShape& shape, const ContactS
   }
 }
 
+/// The vertices that can come as near as touching in the step.
+void meet_ground(const LeafGround& ground, const ContactStep& step, const Vec3& centre, ContactScratch& s) {
+  constexpr double k_gain = 0.12;  // of speed in a step [m/s]
+  for (const Vec3& p : s.rim) {
+    const double gap = p.y() - ground.height, approach = -(step.velocity + step.spin.cross(p - centre)).y();
+    if (gap < step.touch + step.time * std::max(0.0, approach + k_gain))
+      s.contacts.push_back({p - centre, Vec3::UnitY(), Vec3::Zero(), gap, ground.friction, false});
+  }
+}
+
 }  // namespace
 
 void find_near(const LeafBodies& bodies, int slice, const Vec3& centre, double reach, std::vector<NearTriangle>& out) {
@@ -185,9 +195,7 @@ void find_contacts(const LeafBodies& bodies, std::span<const LeafGround> grounds
   s.contacts.clear();
   for (const LeafGround& ground : grounds) {
     if (centre.y() - shape.radius * 4 > ground.height + step.reach) continue;
-    for (const Vec3& p : s.rim)
-      if (p.y() - ground.height < step.reach)
-        s.contacts.push_back({p - centre, Vec3::UnitY(), Vec3::Zero(), p.y() - ground.height, ground.friction, false});
+    meet_ground(ground, step, centre, s);
   }
   if (s.near.empty()) return;
   Box around = bounds(s.rim);

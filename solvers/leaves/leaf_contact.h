@@ -59,6 +59,8 @@ struct ContactStep {
   double time = 0;          ///< s
   double margin = 0;        ///< m
   double reach = 0;         ///< gaps beyond it are no contacts [m]
+  double touch = 0;         ///< gaps below it are contacts with a ground, whatever the leaf does [m]
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the leaf [m/s], [rad/s]
 };
 
 /// Contacts of the leaf whose vertices are scratch.rim, about `centre`, with scratch.near and the grounds.
