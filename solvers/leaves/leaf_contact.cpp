@@ -179,11 +179,16 @@ void find_near(const LeafBodies& bodies, int slice, const Vec3& centre, double r
   out.clear();
   for (int body = 0; body < bodies.count(); ++body) {
     const Vec3 grown = Vec3::Constant(reach + bodies.way(body, slice));
-    Box box{centre - grown, centre + grown};
+    const Box box{centre - grown, centre + grown};
     if (!box.overlaps(bodies.box(body))) continue;
     const std::size_t first = out.size();
+    const Box exact{centre - Vec3::Constant(reach), centre + Vec3::Constant(reach)};
+    const auto before = bodies.places(body, slice - 1), after = bodies.places(body, slice);
     bodies.tree(body, slice).for_each_near(TreeBox::around(box.lo, box.hi), [&](int triangle) {
-      out.push_back({body, triangle});
+      Box swept;
+      for (const int v : bodies.triangles(body)[at(triangle)])
+        swept.include(before[at(v)]), swept.include(after[at(v)]);
+      if (swept.overlaps(exact)) out.push_back({body, triangle});
     });
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
               [](const NearTriangle& a, const NearTriangle& b) { return a.triangle < b.triangle; });
