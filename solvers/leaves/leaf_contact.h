@@ -47,7 +47,7 @@ struct ContactScratch {
   };
   std::vector<Local> local;
   std::vector<std::pair<int, int>> corners, edges;  ///< body and vertex or edge, each once
-  std::vector<Vec3> impulse, share;
+  std::vector<Vec3> impulse, share, turn;
 };
 
 /// All triangles that a leaf can meet which stays within `reach` of centre during a slice.
