@@ -26,7 +26,8 @@ LeafVelocity solve_contacts(std::span<const LeafContact> contacts, double invers
   if (std::all_of(contacts.begin(), contacts.end(), moves_off)) return kept = wanted;
   double farthest = 0;
   for (const LeafContact& k : contacts) farthest = std::max(farthest, k.arm.norm());
-  s.share.resize(n);  // inverse of the effective mass: along the normal, and across it at most
+  s.turn.resize(2 * n);  // of each contact: what a unit impulse along its normal turns, and by how much
+  s.share.resize(n);     // inverse of the effective mass: along the normal, and across it at most
   for (std::size_t c = 0; c < n; ++c) {
     const LeafContact& k = contacts[c];
     const Vec3 turn = k.arm.cross(k.normal);
@@ -36,10 +37,18 @@ LeafVelocity solve_contacts(std::span<const LeafContact> contacts, double invers
     const Vec3 r1 = k.arm.cross(t1), r2 = k.arm.cross(t2);
     const double across = inverse_mass + r1.dot(inverse_inertia * r1) + r2.dot(inverse_inertia * r2);
     s.share[c] = Vec3(1 / normal, 1 / across, 0);
+    s.turn[2 * c] = turn, s.turn[2 * c + 1] = inverse_inertia * turn;
   }
   const auto solve = [&](bool for_way) {
     LeafVelocity v = wanted;
-    s.impulse.assign(n, Vec3::Zero());
+    if (for_way) {
+      s.impulse.assign(n, Vec3::Zero());
+    } else {  // from those of the way, which are nearly the same
+      for (std::size_t c = 0; c < n; ++c) {
+        v.linear += inverse_mass * s.impulse[c];
+        v.angular += inverse_inertia * contacts[c].arm.cross(s.impulse[c]);
+      }
+    }
     for (int sweep = 0; sweep < k_sweeps; ++sweep) {
       const LeafVelocity before_sweep = v;
       for (std::size_t c = 0; c < n; ++c) {
@@ -47,15 +56,16 @@ LeafVelocity solve_contacts(std::span<const LeafContact> contacts, double invers
         const double approach = k.velocity.dot(k.normal), want = (margin - k.gap) / time;
         // Of the way: it may use up the gap. Of what is kept: the body's own velocity is enough.
         const double least = for_way ? std::min(want, std::max(approach, 0.0) + k_put_right) : std::min(want, approach);
-        const Vec3 at_contact = v.linear + v.angular.cross(k.arm);
+        const double closing = v.linear.dot(k.normal) + v.angular.dot(s.turn[2 * c]);
         const double before = s.impulse[c].dot(k.normal);
-        const double now = std::max(0.0, before + s.share[c][0] * (least - at_contact.dot(k.normal)));
+        const double now = std::max(0.0, before + s.share[c][0] * (least - closing));
         const auto apply = [&](const Vec3& impulse) {
           v.linear += inverse_mass * impulse;
           v.angular += inverse_inertia * k.arm.cross(impulse);
         };
         if (now == 0 && before == 0) continue;  // then it has no friction either
-        apply((now - before) * k.normal);
+        v.linear += inverse_mass * (now - before) * k.normal;
+        v.angular += (now - before) * s.turn[2 * c + 1];
         // Friction, across the normal.
         const Vec3 slip_all = v.linear + v.angular.cross(k.arm) - k.velocity;
         const Vec3 slip = slip_all - slip_all.dot(k.normal) * k.normal;

@@ -47,7 +47,7 @@ struct ContactScratch {
   };
   std::vector<Local> local;
   std::vector<std::pair<int, int>> corners, edges;  ///< body and vertex or edge, each once
-  std::vector<Vec3> impulse, share;
+  std::vector<Vec3> impulse, share, turn;
 };
 
 /// All triangles that a leaf can meet which stays within `reach` of centre during a slice.
@@ -59,6 +59,8 @@ struct ContactStep {
   double time = 0;          ///< s
   double margin = 0;        ///< m
   double reach = 0;         ///< gaps beyond it are no contacts [m]
+  double touch = 0;         ///< gaps below it are contacts with a ground, whatever the leaf does [m]
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the leaf [m/s], [rad/s]
 };
 
 /// Contacts of the leaf whose vertices are scratch.rim, about `centre`, with scratch.near and the grounds.

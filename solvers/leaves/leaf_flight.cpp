@@ -132,12 +132,29 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
   double way = 0;
   for (const NearTriangle& n : s.near) way = std::max(way, bodies_.way(n.body, slice));
   for (double done = 0; done < 1 - 1e-9;) {
-    const double fastest = m.v.norm() + m.spin.norm() * radius + 0.1 * (air.velocity - m.v).norm();
-    const double wanted = std::ceil((time * fastest + way) / k_near_way);
-    const double share = 1 / std::clamp(wanted, 2.0, static_cast<double>(k_near_steps));
+    const double turning = m.spin.norm() * radius, gusting = 0.1 * (air.velocity - m.v).norm();
+    double fastest = m.v.norm() + turning + gusting, share = 1;
+    if (s.near.empty()) {
+      // Half-spaces: what goes along them meets nothing new, and until it gets there nothing has to be looked at.
+      fastest = std::abs(m.v.y()) + turning + gusting;
+      double gap = std::numeric_limits<double>::infinity();
+      for (const LeafGround& ground : setup_.grounds) gap = std::min(gap, m.x.y() - radius - ground.height);
+      const double careful = k_near_way / (time * (turning + 0.3 * (fastest - turning)) + 1e-12);
+      share = std::max({careful, gap / (time * (fastest + time * setup_.gravity.norm()) + 1e-12), 1.0 / k_near_steps});
+    } else {
+      share = 1 / std::clamp(std::ceil((time * fastest + way) / k_near_way), 2.0, static_cast<double>(k_near_steps));
+    }
+    share = std::min(share, 1 - done);
     const double to = done + share > 1 - 1e-9 ? 1 : done + share;
-    ContactStep step{slice, done, to, (to - done) * time, model.margin, 0};
+    ContactStep step;
+    step.slice = slice;
+    step.from = done, step.to = to;
+    step.time = (to - done) * time;
+    step.margin = model.margin;
     step.reach = model.margin + k_touch + step.time * (fastest + 0.2) + 1.2 * (to - done) * way;
+    step.touch = model.margin + k_touch;
+    step.velocity = m.v;
+    step.spin = m.spin;
     PlateAir here = air;
     here.velocity += done * time * air.change;
     steps += near_step(frame, leaf, step, here, m, s, touch);

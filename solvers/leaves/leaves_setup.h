@@ -26,7 +26,7 @@ struct LeafPrototype {
   PlateCoefficients law;        ///< of the air
   /// A lying leaf: lift by the air that is drawn from below it and drag, by dynamic pressure [1]. 0.08 lets a dry leaf
   /// go at 3.5 m/s, where leaves on the ground begin to move (Beaufort 3).
-  double lying_lift = 0.08, lying_drag = 0.02;
+  double lying_lift = 0.08, lying_drag = 0.01;
   double adhesion = 0.1;  ///< holds a lying leaf [N/m2]. 0.1 dry, 2 to 5 wet; by its own weight it has 0.8
 };
 

@@ -79,7 +79,10 @@ TEST(Leaves, Any_leaf_in_any_wind_stays_finite_and_is_no_faster_than_the_air) {
             ASSERT_NEAR(l.orientation.norm(), 1, 1e-9);
           }
         }
-        EXPECT_LT(fastest, 1.2 * speed + terminal) << area_mass << " " << speed << " " << gusts;
+        // Through the air a leaf gains no energy from the air. Steady: no faster than it. A gust that jumps by J makes
+        // it glide at J through the air, in any direction.
+        const double jump = gusts ? 0.47 * speed + 0.4 * speed : 0.0;
+        EXPECT_LT(fastest, (gusts ? 1.0 : 1.2) * speed + jump + terminal) << area_mass << " " << speed << " " << gusts;
       }
 }
 

@@ -53,6 +53,86 @@ TEST(Leaves, Nothing_falls_through_a_ground_a_box_and_a_moving_capsule_slow) {
   printf("all asleep after %d frames, %.0f brought out, slowest frame %.1f ms\n", frame, brought_out, ms);
 }
 
+/// An open surface that faces upwards: hills of a metre, 5 cm high.
+TriangleSurface hills(double side, int cells) {
+  const Mesh sheet = make_sheet(side, cells, 0);
+  TriangleSurface out{sheet.positions, triangulate(sheet)};
+  for (Vec3& p : out.positions) p.y() = 0.05 * std::sin(6 * p.x()) * std::cos(5 * p.z());
+  if ((out.positions[at(out.triangles[0][1])] - out.positions[at(out.triangles[0][0])])
+          .cross(out.positions[at(out.triangles[0][2])] - out.positions[at(out.triangles[0][0])])
+          .y() < 0)
+    for (Triangle& t : out.triangles) std::swap(t[1], t[2]);
+  return out;
+}
+
+TEST(Leaves, Leaves_lie_still_on_a_meshed_ground_slow) {
+  LeavesSetup setup = many_leaves(200, 0.8, 0.08, 0.3);
+  const TriangleSurface ground = hills(8, 60);
+  setup.bodies.push_back(obstacle_of("hills", ground, Vec3::Zero()));
+  const auto solver = solver_of(setup);
+  State state = solver->initial_state();
+  const auto triangles = triangulate(solver->system_mesh(0));
+  std::vector<Vec3> x(solver->system_mesh(0).positions.size());
+  double awake = 200, brought_out = 0, ms = 0;
+  int frame = 0;
+  for (; frame < 24 * 15 && awake > 0; ++frame) {
+    const FrameReport report = solver->advance_frame(state);
+    awake = report.own.at("leaves_awake");
+    brought_out += report.own.at("leaves_brought_out");
+    ms = std::max(ms, 1e3 * report.profile.total);
+    ASSERT_EQ(report.crossings_body, 0) << frame;
+    if (frame % 6 != 0) continue;
+    solver->system_positions(state, 0, x);
+    ASSERT_TRUE(crossings_between(x, triangles, ground.positions, ground.triangles).empty()) << frame;
+  }
+  for (const Vec3& p : x) EXPECT_GT(p.y(), -0.051);
+  printf("hills: all asleep after %d frames, %.0f brought out, slowest frame %.1f ms\n", frame, brought_out, ms);
+  EXPECT_EQ(awake, 0);
+}
+
+TEST(Leaves, A_runner_passes_over_lying_leaves_slow) {
+  LeavesSetup setup = many_leaves(5000, 0.02, 0.07, 0.05);
+  setup.grounds.push_back({});
+  // A leg and a trunk at 7 m/s, 0.02 m above the ground, with the air that they drag along and push aside.
+  const auto way = [](double t) { return Vec3(7 * (t - 1.5) - 1.5, 0.05 * std::sin(18 * t), 0); };
+  const auto air = [=](const Vec3& p, double t) {
+    const Vec3 from = p - way(t);
+    const double behind = -from.x(), r2 = from.z() * from.z() + 0.3 * p.y() * p.y();
+    if (behind < -0.8 || behind > 12) return Vec3(0, 0, 0);
+    const double width = 0.35 + 0.08 * std::max(behind, 0.0), fade = std::exp(-r2 / (width * width));
+    const double strength = behind < 0 ? 1 + behind / 0.8 : 1 / (1 + 0.5 * behind);
+    return Vec3(5 * strength * fade, 1.5 * strength * fade * std::sin(9 * p.x() + 7 * t),
+                2 * strength * fade * std::sin(5 * p.x()));
+  };
+  setup.wind = wind_of(air, 8);
+  setup.bodies.push_back(obstacle_of("leg", capsule_surface(0.1, 0.7, 4), Vec3(0, 0.55, 0.05), way));
+  const auto solver = solver_of(setup);
+  State state = solver->initial_state();
+  double most_awake = 0, lifted = 0, woken = 0, slowest = 0, brought_out = 0, awake = 0;
+  std::vector<double> ms;
+  for (int frame = 0; frame < 24 * 8; ++frame) {
+    const FrameReport report = solver->advance_frame(state);
+    ASSERT_EQ(report.crossings_body + report.inside_body, 0) << frame;
+    ASSERT_EQ(report.deepest_drawn, 0) << frame;
+    awake = report.own.at("leaves_awake");
+    lifted += report.own.at("leaves_lifted"), woken += report.own.at("leaves_woken");
+    brought_out += report.own.at("leaves_brought_out");
+    if (std::getenv("FT_PRINT") && frame % 8 == 0)
+      printf("%d awake %.0f lifted %.0f woken %.0f fastest %.1f %.1f ms\n", frame, awake,
+             report.own.at("leaves_lifted"), report.own.at("leaves_woken"), report.own.at("leaves_fastest"),
+             1e3 * report.profile.total);
+    if (frame < 30) continue;
+    most_awake = std::max(most_awake, awake);
+    ms.push_back(1e3 * report.profile.total);
+    slowest = std::max(slowest, ms.back());
+  }
+  std::nth_element(ms.begin(), ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2), ms.end());
+  printf(
+      "runner: at most %.0f awake, %.0f lifted, %.0f met, %.0f brought out; median %.1f ms, slowest %.1f ms a frame\n",
+      most_awake, lifted, woken, brought_out, ms[ms.size() / 2], slowest);
+  EXPECT_GT(lifted, 100);
+}
+
 /// One leaf that lies level on the ground, as deep as it is kept.
 LeavesSetup lying_leaf() {
   LeavesSetup setup = many_leaves(1, 0.02, 1, 0);
@@ -82,8 +162,8 @@ TEST(Leaves, A_leaf_on_the_ground_does_not_creep) {
 TEST(Leaves, A_lying_leaf_lifts_off_at_the_speed_that_its_threshold_says) {
   for (const double adhesion : {0.0, 0.1, 0.6}) {
     LeavesSetup setup = lying_leaf();
+    setup.prototypes[0] = almond_leaf("flat", 0.08, 0.05, 0);
     setup.prototypes[0].adhesion = adhesion;
-    setup.prototypes[0].fold = 0.0;
     const double expected = lift_off_speed(setup.prototypes[0], 1, 0.5);
     // Still for two seconds, then growing by 0.1 m/s each second from nine tenths of it.
     const auto speed = [=](double t) { return t < 2 ? 0.0 : 0.9 * expected + 0.1 * (t - 2); };
