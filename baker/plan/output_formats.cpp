@@ -7,7 +7,7 @@
 namespace ft::inline baker {
 namespace {
 
-/// "alembic takes instances": formats that the program has and that take it.
+/// "abc": the formats that the program has and that take it.
 std::string who_takes(const FrameContent& content) {
   std::string out;
   for (const CacheFormat& format : cache_formats())

@@ -19,7 +19,7 @@ function makeInstances(s, colour, unpack) {
   function shade(id, to, at) {
     const c = new THREE.Color(colour), hsl = c.getHSL({});
     c.setHSL((hsl.h + 1 + 0.09 * (random(id, 1) - 0.5)) % 1, Math.min(1, hsl.s * (0.75 + 0.5 * random(id, 2))),
-      Math.min(0.9, hsl.l * (0.7 + 0.6 * random(id, 3))));
+      Math.min(0.9, hsl.l * (0.9 + 0.6 * random(id, 3))));
     c.toArray(to, at);
   }
 

@@ -273,7 +273,7 @@ TEST(ResumedBake, Two_bakes_do_not_write_one_folder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Resume, testing::Values(Beside::k_nothing, Beside::k_swarm),
-                         [](const auto& info) { return info.param == Beside::k_swarm ? "swarm" : "cloth"; });
+                         [](const auto& beside) { return beside.param == Beside::k_swarm ? "swarm" : "cloth"; });
 
 }  // namespace
 }  // namespace ft::test

@@ -26,11 +26,12 @@ class SwarmSolver final : public Solver {
     for (std::size_t i = 0; i < shape_->instances.ids.size(); ++i) {
       const Vec3 place(x[k_numbers * i], x[k_numbers * i + 1], x[k_numbers * i + 2]);
       out.positions.push_back(place.cast<float>());
-      if (state.frame == spec_.spoilt && i == 1) out.positions.back().x() = std::nanf("");
+      if (spec_.spoilt > 0 && state.frame == spec_.spoilt && i == 1) out.positions.back().x() = std::nanf("");
       out.velocities.push_back(velocity(place).cast<float>());
       out.orientations.push_back(turn(x, i).cast<float>().normalized());
       out.angular_velocities.push_back(spin(i).cast<float>());
-      out.scales.push_back(state.frame < first_ + static_cast<int>(i % 4) ? Vec3f::Zero() : Vec3f(1, 1, 0.5f));
+      out.scales.push_back(state.frame < first_ + static_cast<int>(shape_->instances.ids[i] % 4) ? Vec3f::Zero()
+                                                                                                 : Vec3f(1, 1, 0.5f));
     }
   }
   std::span<const Triangle> collider_triangles() const override { return {}; }

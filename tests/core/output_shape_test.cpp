@@ -31,7 +31,7 @@ TEST(OutputShape, Prototypes_and_their_meshes_go_together) {
 
 TEST(OutputShape, Joined_meshes_keep_their_faces_in_groups_of_their_own) {
   Mesh a = make_sheet(1, 2, 0), b = make_sheet(2, 1, 1);
-  a.name = "a", b.name = "b";
+  a.name = std::string("a"), b.name = std::string("b");
   const std::vector<Mesh> both = {a, b};
   const Mesh joined = joined_meshes("both", both);
   EXPECT_EQ(joined.vertex_count(), a.vertex_count() + b.vertex_count());
