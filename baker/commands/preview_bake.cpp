@@ -1,5 +1,7 @@
 #include "baker/commands/preview_bake.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -196,11 +198,14 @@ bool has_prop(const Manifest& manifest) {
   });
 }
 
-/// Whether a primary is a set that stands still, such as a ground: cloth of others was solved with its drawn body for a
-/// collider.
+/// Whether a primary is a set that stands still: a ground, or what cloth of others was solved with the drawn body of
+/// for a collider.
 bool stands(const Manifest& manifest, const std::string& primary) {
   if (std::ranges::any_of(manifest.systems, [&](const ManifestSystem& s) { return s.name == primary && s.sheet; }))
     return false;
+  const auto shape =
+      std::ranges::find(manifest.settings, "primary." + primary + ".shape", &Settings::value_type::first);
+  if (shape != manifest.settings.end() && shape->second == fmt::format("\"{}\"", k_ground)) return true;
   return std::any_of(manifest.systems.begin(), manifest.systems.end(), [&](const ManifestSystem& cloth) {
     return cloth.primary != primary && std::find(cloth.meets.begin(), cloth.meets.end(), primary) != cloth.meets.end();
   });

@@ -95,7 +95,7 @@
     let garment = 0;
     for (const s of systems) {
       if (s.instances) {
-        s.plain = palette[garment++ % palette.length];
+        s.plain = 0xb87333;  // as fallen leaves have it
         s.copies = makeInstances(s, s.plain, bytes);
         s.mesh = s.copies.group;
         s.mesh.visible = !s.hidden;

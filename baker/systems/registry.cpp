@@ -4,6 +4,7 @@
 #include "baker/systems/cords/cords_kind.h"
 #include "baker/systems/follow/follow_kind.h"
 #include "baker/systems/interface/system.h"
+#include "baker/systems/leaves/leaves_kind.h"
 
 namespace ft::inline baker {
 
@@ -14,6 +15,7 @@ struct Registry {
       cloth_kind(),
       cords_kind(),
       follow_kind(),
+      leaves_kind(),
   };
   std::vector<Metric> metrics = metrics_of(kinds);
 

@@ -16,13 +16,14 @@ double radius_of(double drag_area) {
   return std::sqrt(drag_area / pi);
 }
 
-constexpr double k_birth_width = 0.6;    ///< sigma_0 by the radius: the wake is never faster than 0.7 U
-constexpr double k_spread = 0.055;       ///< c: sigma = 0.7 theta (x / theta)^(1/3), theta^2 = C_d A / (2 pi)
-constexpr double k_swirl = 0.3;          ///< of the vortices at their middle, by the wake's velocity there
-constexpr double k_reach = 3.5;          ///< widths; beyond there is nothing
-constexpr double k_slow = 0.03;          ///< at its middle; up to this it is over, from twice as much on whole [m/s]
-constexpr double k_near = 3, k_far = 4;  ///< between so many radii the flow ahead fades out
-constexpr double k_eddies = 1.5;         ///< length of the larger eddies, by the radius of the largest body
+constexpr double k_birth_width = 0.6;  ///< sigma_0 by the radius: the wake is never faster than 0.7 U
+constexpr double k_spread = 0.055;     ///< c: sigma = 0.7 theta (x / theta)^(1/3), theta^2 = C_d A / (2 pi)
+constexpr double k_swirl = 0.3;        ///< of the vortices at their middle, by the wake's velocity there
+constexpr double k_reach = 3.5;        ///< widths; beyond there is nothing
+constexpr double k_slow = 0.1;         ///< at its middle; up to this it is over, from twice as much on whole [m/s]
+constexpr double k_whole = 2, k_fading = 3;  ///< what ground and air around leave of it after some seconds [s]
+constexpr double k_near = 3, k_far = 4;      ///< between so many radii the flow ahead fades out
+constexpr double k_eddies = 1.5;             ///< length of the larger eddies, by the radius of the largest body
 
 double smooth(double share) {
   const double s = std::clamp(share, 0.0, 1.0);
@@ -164,6 +165,7 @@ std::unique_ptr<AirNow> Wake::at_time(double time) const {
       Puff puff;
       puff.width = width(path.drag_area, std::max(0.0, way_now[b] - ways_[b][at(s)]));
       puff.flow = 0.5 * speed * path.drag_area;
+      puff.flow *= 1 - smooth((time - bodies.time_of(s) - k_whole) / k_fading);
       puff.flow *= smooth(puff.flow / (2 * pi * puff.width * puff.width) / k_slow - 1);
       if (puff.flow == 0) continue;
       const double length = share * speed * bodies.interval();

@@ -15,7 +15,7 @@ class FormulaWind final : public WindField {
  public:
   using Formula = std::function<Vec3(const Vec3& place, double time)>;
   FormulaWind(Formula formula, double fastest) : WindField({}), formula_(std::move(formula)), fastest_(fastest) {}
-  std::unique_ptr<AirNow> at(double time) const override {
+  std::unique_ptr<AirNow> at_time(double time) const override {
     struct Now final : AirNow {
       Formula formula;
       double time;

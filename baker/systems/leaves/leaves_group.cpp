@@ -1,0 +1,147 @@
+#include "baker/systems/leaves/leaves_group.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "baker/core/output_frame.h"
+#include "baker/plan/located.h"
+#include "baker/plan/meets.h"
+#include "baker/systems/interface/plan_common.h"
+#include "baker/systems/leaves/scatter.h"
+#include "io/shot/words.h"
+#include "solvers/leaves/leaf_sleep.h"
+#include "solvers/leaves/leaves_solver.h"
+
+namespace ft::inline baker {
+namespace {
+
+/// Leaves as instances.
+class LeavesBake final : public Solver {
+ public:
+  LeavesBake(std::unique_ptr<LeavesSolver> leaves, std::shared_ptr<const SystemShape> shape)
+      : leaves_(std::move(leaves)), shape_(std::move(shape)), count_(at(leaves_->leaf_count())) {}
+
+  int system_count() const override { return 1; }
+  const SystemShape* system_shape(int) const override { return shape_.get(); }
+  void system_frame(const State& state, int, FrameData& out) const override {
+    std::vector<LeafState> now(count_);
+    leaves_->leaf_states(state, now);
+    out = {};
+    for (const LeafState& leaf : now) {
+      out.positions.push_back(leaf.position.cast<float>());
+      out.velocities.push_back(leaf.velocity.cast<float>());
+      out.orientations.push_back(leaf.orientation.cast<float>().normalized());
+      out.angular_velocities.push_back(leaf.angular_velocity.cast<float>());
+      out.scales.push_back(Vec3f::Constant(static_cast<float>(leaf.scale)));
+    }
+  }
+  std::span<const Triangle> collider_triangles() const override { return {}; }
+  void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
+  State initial_state() const override { return leaves_->initial_state(); }
+  FrameReport advance_frame(State& state) override { return leaves_->advance_frame(state); }
+
+ private:
+  std::unique_ptr<LeavesSolver> leaves_;
+  std::shared_ptr<const SystemShape> shape_;
+  std::size_t count_;
+};
+
+/// The shape of its caches.
+std::shared_ptr<const SystemShape> shape_of_caches(const std::string& name, const LeavesSetup& setup) {
+  auto out = std::make_shared<SystemShape>();
+  out->name = name;
+  out->content.shape = OutputShape::k_instances;
+  out->content.angular_velocities = true;
+  out->content.scales = true;
+  for (const LeafPrototype& prototype : setup.prototypes) {
+    const LeafShape shape = shape_of(prototype);
+    out->instances.prototype_names.push_back(prototype.name);
+    out->prototypes.push_back(make_triangle_mesh(prototype.name, shape.positions, shape.triangles));
+  }
+  for (const Leaf& leaf : setup.leaves) {
+    out->instances.ids.push_back(static_cast<std::uint64_t>(leaf.id));
+    out->instances.prototypes.push_back(leaf.prototype);
+  }
+  return out;
+}
+
+/// What they lie on and what comes by.
+Status add_bodies(const Shot& shot, const LeavesSpec& spec, const BakePlan& plan, LeavesGroup& group) {
+  const auto meets = meets_of(spec.meets, spec.on, plan.primaries);
+  if (!meets) return meets.error();
+  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+    const PrimaryPlan& primary = plan.primaries[p];
+    if ((*meets)[p] == 0 && primary.name != spec.on) continue;
+    group.meets.push_back(p);
+    const auto own = std::find_if(shot.primaries.begin(), shot.primaries.end(),
+                                  [&](const PrimarySpec& s) { return s.name == primary.name; });
+    if (own != shot.primaries.end() && own->shape == k_ground)
+      group.setup.grounds.push_back({own->position.y(), spec.friction});
+    else
+      group.setup.bodies.push_back({primary.name, primary.trajectory, spec.friction, stands_still(shot, primary)});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LeavesGroup>> plan_leaves(const Shot& shot, const LeavesSpec& spec, std::size_t primary,
+                                                 BakePlan& plan) {
+  auto group = std::make_unique<LeavesGroup>(primary);
+  LeavesSetup& setup = group->setup;
+  setup.name = spec.name;
+  take_from_shot(shot, plan.wind, setup);
+  setup.seed = static_cast<std::uint64_t>(spec.seed);
+  setup.mass_variation = spec.variation;
+  auto prototype = leaf_prototype(spec);
+  if (!prototype) return located(prototype.error(), shot, spec.owner());
+  auto leaves = scatter(spec, *prototype);
+  if (!leaves) return located(leaves.error(), shot, spec.owner());
+  setup.prototypes.push_back(std::move(*prototype));
+  setup.leaves = std::move(*leaves);
+  if (const Status added = add_bodies(shot, spec, plan, *group); !added)
+    return located(added.error(), shot, spec.owner());
+  for (const PrimaryPlan& other : plan.primaries)
+    if (!other.scan.teleports.empty())
+      plan.notes.push_back(
+          fmt::format("{}: \"{}\" jumps to another place; leaves on its way are pushed there and not "
+                      "taken along",
+                      spec.owner(), other.name));
+  SystemOutput output;
+  output.primary = primary;
+  output.shape = shape_of_caches(spec.name, setup);
+  group->outputs.push_back(std::move(output));
+  return group;
+}
+
+Result<std::unique_ptr<Solver>> LeavesGroup::make_solver() {
+  auto solver = LeavesSolver::make(std::move(setup));
+  if (!solver) return solver.error();
+  return std::unique_ptr<Solver>(std::make_unique<LeavesBake>(std::move(*solver), outputs.at(0).shape));
+}
+
+std::vector<std::string> LeavesGroup::lines(const BakePlan& plan) const {
+  const LeafPrototype& leaf = setup.prototypes.at(0);
+  const auto lying = std::count_if(setup.leaves.begin(), setup.leaves.end(), [](const Leaf& l) { return l.asleep; });
+  std::vector<std::string> met;
+  for (const std::size_t p : meets) met.push_back(in_quotes(plan.primaries[p].name));
+  double friction = 0.5;
+  for (const LeafGround& ground : setup.grounds) friction = ground.friction;
+  return {
+      fmt::format("leaves \"{}\" on \"{}\": {}, of which {} lie, with {} vertices each and {:.2g} g; those that lie "
+                  "are lifted by winds from {:.2g} m/s on; they meet {}",
+                  setup.name, plan.primaries[primary].name, setup.leaves.size(), lying, leaf.positions.size(),
+                  1e3 * leaf.mass_per_area * shape_of(leaf).area,
+                  lift_off_speed(leaf, 1, friction, setup.gravity.norm(), setup.air_density), joined(met))};
+}
+
+/// All of them are met as they are drawn.
+std::vector<ColliderSlice> LeavesGroup::slices(const BakePlan& plan, std::span<const std::string>) const {
+  std::vector<ColliderSlice> out;
+  for (const std::size_t p : meets)
+    out.push_back({.primary = p, .name = plan.primaries[p].name, .fixed = true, .vertices = {}, .triangles = {}});
+  return out;
+}
+
+}  // namespace ft::inline baker

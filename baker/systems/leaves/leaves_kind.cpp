@@ -1,0 +1,45 @@
+#include "baker/systems/leaves/leaves_kind.h"
+
+#include "baker/systems/leaves/leaves_group.h"
+#include "baker/systems/leaves/leaves_section.h"
+
+namespace ft::inline baker {
+namespace {
+
+class LeavesKind final : public SystemKind {
+ public:
+  const SecondarySection& section() const override { return leaves_section(); }
+  Result<SystemGroups> plan(const Shot& shot, BakePlan& plan) const override {
+    SystemGroups out;
+    for (const LeavesSpec* spec : specs_of<LeavesSpec>(shot.secondaries))
+      for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+        if (plan.primaries[p].name != spec->on) continue;
+        auto group = plan_leaves(shot, *spec, p, plan);
+        if (!group) return group.error();
+        out.push_back(std::move(*group));
+      }
+    return out;
+  }
+  /// The bake has the crossings of every leaf in its manifest; its caches are looked at for what is no leaf.
+  Result<std::vector<std::unique_ptr<JudgedGroup>>> judge(const CachedBake&) const override {
+    return std::vector<std::unique_ptr<JudgedGroup>>();
+  }
+  bool is_sheet() const override { return true; }
+  std::span<const Metric> metrics() const override {
+    static const Metric metrics[] = {{"leaves_awake", "", Metric::Merge::k_sum},
+                                     {"leaves_lifted", "", Metric::Merge::k_sum},
+                                     {"leaves_woken", "", Metric::Merge::k_sum},
+                                     {"leaves_brought_out", "", Metric::Merge::k_sum},
+                                     {"leaves_fastest", "m/s", Metric::Merge::k_max}};
+    return metrics;
+  }
+};
+
+}  // namespace
+
+const SystemKind* leaves_kind() {
+  static const LeavesKind kind;
+  return &kind;
+}
+
+}  // namespace ft::inline baker
