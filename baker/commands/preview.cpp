@@ -63,6 +63,7 @@ Result<std::string> preview_page(std::span<const std::filesystem::path> bake_fol
   replace(page, "%PLOTS%", embedded_plots());
   replace(page, "%PATHS%", embedded_paths());
   replace(page, "%INSTANCES%", embedded_instances());
+  replace(page, "%WIND%", embedded_wind());
   replace(page, "%PLAYER%", embedded_player());
   replace(page, "%CONTROLS%", embedded_controls());
   replace(page, "%THREE%", embedded_three());

@@ -16,6 +16,7 @@
 #include "baker/record/bake_folder.h"
 #include "baker/record/cache_track.h"
 #include "baker/record/primary_paths.h"
+#include "baker/run/wind_file.h"
 #include "baker/systems/interface/absent_runs.h"
 #include "baker/systems/interface/system.h"
 #include "collision/geometry/triangle_tree.h"
@@ -253,6 +254,14 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   auto paths = path_rows(bake_folder, *manifest, frames);
   if (!paths) return paths.error();
   bake["paths"] = std::move(*paths);
+  if (const auto file = std::ranges::find(manifest->files, k_wind_file, &ManifestFile::file);
+      file != manifest->files.end()) {
+    const auto text = read_text(bake_folder / k_wind_file, file->bytes);
+    if (!text) return text.error();
+    if (hash_bytes(std::as_bytes(std::span(*text))).hex() != file->content)
+      return input_error("is not what its bake has written", (bake_folder / k_wind_file).string());
+    bake["wind"] = Json::parse(*text);
+  }
   bake["frames"] = frame_rows(*manifest, folder, frames);
   bake["metrics"] = Json::array();
   for (const Metric& metric : declared_metrics())

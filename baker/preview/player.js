@@ -82,6 +82,11 @@
     scene.add(grid);
 
     scene.add(paths.build());
+    for (const b of bakes)
+      if (b.wind) {
+        b.air = makeWind(b.wind);
+        scene.add(b.air.lines);
+      }
     controls = new THREE.OrbitControls(camera, renderer.domElement);
     controls.enableDamping = false;
     controls.addEventListener('change', draw);
@@ -227,6 +232,11 @@
         s.mesh.geometry.computeVertexNormals();
         paint(s);
       }
+      for (const b of bakes) {
+        if (!b.air) continue;
+        b.air.lines.visible = b === bake && $('wind').checked;
+        if (b.air.lines.visible) b.air.show(index);
+      }
       const middle = bounds().getCenter(new THREE.Vector3());
       if (centre && $('follow_camera').checked) {
         const move = middle.clone().sub(centre);
@@ -353,6 +363,9 @@
     $('bakes-row').hidden = bakes.length < 2;
     $('bakes').append(...bakes.map((b) => element('option', b.name)));
     $('bakes').addEventListener('change', () => choose(bakes[$('bakes').selectedIndex]));
+    $('wind-row').hidden = !bakes.some((b) => b.wind);
+    $('wind').checked = wish.get('wind') === '1';
+    $('wind').addEventListener('change', () => { shown = null; show(frame); });
     $('paths-row').hidden = paths.list.length === 0;
     $('paths').checked = paths.list.length > 0 && (wish.has('paths') ? wish.get('paths') !== '0' : bakes.length > 1 || bakes[0].prop);
     const legend_of_paths = () => { $('paths-legend').hidden = !$('paths').checked; };
@@ -370,7 +383,7 @@
     });
   }
 
-  // #frame=12&colour=strain&bake=two-way&paths=0&incident=0&test=skirt:0,40 : where to start; test writes those vertices into the page.
+  // #frame=12&colour=strain&bake=two-way&paths=0&wind=1&incident=0&test=skirt:0,40 : where to start; test writes those vertices into the page.
   const wish = new URLSearchParams(location.hash.slice(1));
   try {
     build();

@@ -10,6 +10,7 @@
 #include "baker/run/finished_stages.h"
 #include "baker/run/hybrid_files.h"
 #include "baker/run/signals.h"
+#include "baker/run/wind_file.h"
 
 namespace ft::inline baker {
 namespace {
@@ -81,6 +82,11 @@ Status StageBake::write_files(const BakePlan& plan, Manifest& manifest) const {
     auto files = write_hybrid_files(plan, folder_.path, manifest.notes);
     if (!files) return files.error();
     manifest.files = std::move(*files);
+    if (!plan.wind->is_still()) {
+      const std::string text = wind_samples(plan);
+      if (const Status s = write_text_durably(folder_.path / k_wind_file, text); !s) return s;
+      manifest.files.push_back({k_wind_file, text.size(), hash_bytes(std::as_bytes(std::span(text))).hex()});
+    }
   }
   for (const auto& group : plan.groups) {
     auto beside = group->files(plan, manifest.notes);
@@ -105,10 +111,10 @@ Result<WalkResult> StageBake::bake(BakePlan& plan, Manifest manifest) {
   if (!solvers) return solvers.error();
   if (signal_received() != 0) return Error{ErrorKind::k_interrupted, "interrupted before the first frame", {}, {}};
   CacheSet caches(plan, *solvers, folder_.path, manifest.systems);
+  if (const Status written = write_files(plan, manifest); !written) return written.error();
   for (const auto& group : plan.groups)
     for (SystemOutput& output : group->outputs) output.mesh.reset();  // the caches have them, and forget them in turn
   warn_of_space(folder_, caches.expected_bytes(), progress_);
-  if (const Status written = write_files(plan, manifest); !written) return written.error();
   if (!from_ && plan.stage == 0)
     if (const Status removed = remove_left_behind(folder_, before_, caches.systems(), manifest.files); !removed)
       return removed.error();

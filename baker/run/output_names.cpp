@@ -1,5 +1,6 @@
 #include "baker/run/output_names.h"
 
+#include "baker/run/wind_file.h"
 #include "io/cache/cache.h"
 
 namespace ft::inline baker {
@@ -15,6 +16,7 @@ std::vector<std::string> output_names(const Shot& shot) {
     add_system(secondary->name);
     for (std::string& file : secondary->section->written_files(*secondary)) out.push_back(std::move(file));
   }
+  if (!shot.winds.empty() || shot.wind.velocity != Vec3::Zero()) out.emplace_back(k_wind_file);
   for (const PrimarySpec& primary : shot.primaries) {
     add_system(primary.name);
     add_system(primary.name + ".collider");

@@ -21,13 +21,19 @@ constexpr ChoiceKeys k_winds[] = {
 
 /// What a field lacks to do anything; empty: nothing.
 std::string_view lacks(const WindKeys& w, const Value& table) {
-  const auto is_zero = [&](std::string_view key, bool zero) { return table.find(key) != nullptr && zero; };
-  if ((w.kind == "uniform" || w.kind == "doublet") && is_zero("velocity", w.velocity == Vec3::Zero()))
-    return "a direction: its velocity is 0";
-  if (w.kind == "vortex" && is_zero("axis", w.axis == Vec3::Zero())) return "a direction: its axis is 0";
-  if ((w.kind == "source" || w.kind == "sink") && is_zero("flow", w.flow == 0)) return "a flow above 0";
-  if (w.kind == "vortex" && is_zero("circulation", w.circulation == 0)) return "a circulation";
-  if (w.kind == "turbulence" && is_zero("intensity", w.intensity == 0)) return "an intensity above 0";
+  // What the file says, for what it says out of range has its own fault.
+  const auto is_zero = [&](std::string_view key) {
+    const Member* member = table.find(key);
+    if (!member) return false;
+    const Value& value = member->value;
+    return value.items.empty() ? value.number == 0
+                               : std::ranges::all_of(value.items, [](const Value& v) { return v.number == 0; });
+  };
+  if ((w.kind == "uniform" || w.kind == "doublet") && is_zero("velocity")) return "a direction: its velocity is 0";
+  if (w.kind == "vortex" && is_zero("axis")) return "a direction: its axis is 0";
+  if ((w.kind == "source" || w.kind == "sink") && is_zero("flow")) return "a flow above 0";
+  if (w.kind == "vortex" && is_zero("circulation")) return "a circulation";
+  if (w.kind == "turbulence" && is_zero("intensity")) return "an intensity above 0";
   return {};
 }
 

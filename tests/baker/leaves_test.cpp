@@ -150,7 +150,7 @@ TEST_F(LeavesShot, What_makes_no_sense_is_refused_with_its_place) {
 TEST_F(LeavesShot, Winds_that_make_no_sense_are_refused_with_their_place) {
   for (const auto& [lines, words] : {
            std::pair("kind = \"uniform\"\nvelocity = [0, 0, 0]\n", "a direction"),
-           {"kind = \"uniform\"\nvelocity = [900, 0, 0]\n", "-100 to 100"},
+           {"kind = \"uniform\"\nvelocity = [900, 0, 0]\n", "outside [-100, 100]"},
            {"kind = \"uniform\"\n", "velocity is missing"},
            {"kind = \"breeze\"\n", "uniform"},
            {"kind = \"wake\"\n", "of is missing"},

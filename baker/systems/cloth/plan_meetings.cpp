@@ -112,9 +112,10 @@ Result<std::vector<std::unique_ptr<ClothGroup>>> plan_cloths(const Shot& shot, B
     ClothGroup& group = *made;
     for (std::size_t w = 1; w < meeting.wearers.size(); ++w) merge_cloths(std::move(*own[meeting.wearers[w]]), group);
     apply_quality(shot, group.setup);
-    // The collider of a sheet and of what stands still is the drawn body itself.
+    // The collider of a sheet and of a prop that stands still is the drawn body itself.
+    const PrimaryPlan& first = plan.primaries[meeting.bodies[0]];
     if (meeting.bodies.size() > 1 || has_sheets(group.setup.primary->surface().parts) ||
-        stands_still(shot, plan.primaries[meeting.bodies[0]])) {
+        (first.prop && stands_still(shot, first))) {
       join_bodies(shot, plan, meeting, reaches, group);
     } else {
       group.setup.primary = with_quality(shot, group.setup, group.setup.primary);
