@@ -11,6 +11,7 @@
 #include "baker/plan/known_motion.h"
 #include "baker/plan/output_formats.h"
 #include "baker/plan/placed_trajectory.h"
+#include "baker/plan/preroll_speed.h"
 #include "baker/plan/quality.h"
 #include "baker/plan/repeated_trajectory.h"
 #include "io/shot/chains.h"
@@ -156,6 +157,7 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   out.name = spec.name;
   out.scan = scan_of(shot, spec, *imported->trajectory);
   for (std::string& note : teleport_notes(out.scan, spec.name)) notes.push_back(std::move(note));
+  if (auto note = hasty_preroll(shot, spec.name, *imported->trajectory)) notes.push_back(std::move(*note));
   out.mass = primary_mass(spec, *imported->trajectory);
   out.trajectory = std::move(imported->trajectory);
   out.info = std::move(imported->info);

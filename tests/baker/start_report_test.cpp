@@ -117,5 +117,27 @@ TEST(StartReport, A_primary_that_does_not_move_is_said_to_stand_still) {
   EXPECT_EQ(text(scene.run(options)).find("does not move"), std::string::npos);
 }
 
+TEST(StartReport, A_preroll_that_is_much_faster_than_the_shot_is_a_note) {
+  const FakeScene scene;  // 24 fps, 3 frames of pre-roll
+  const auto notes = [&](double metres) {
+    FakeBehaviour hasty;
+    hasty.move = [metres](const Trajectory& box, const ImportRequest& request) -> std::unique_ptr<Trajectory> {
+      std::vector<Vec3> corners(8);
+      box.bind_pose(corners);
+      return std::make_unique<ScriptedBody>(
+          box.surface(), corners, request.preroll, [metres](double time, std::span<Vec3> x) {
+            for (Vec3& p : x) p.z() += time < 0 ? -8 * metres * time : 0.1 * time;  // in an eighth of a second
+          });
+    };
+    BakeOptions options = scene.options();
+    options.dry_run = true;
+    return text(scene.run(options, hasty));
+  };
+  expect_words(notes(0.5),
+               "goes from its bind pose to the first frame at up to 4 m/s, where the shot has 0.1 m/s at most");
+  expect_words(notes(0.5), "preroll = 5 is calmer");
+  EXPECT_EQ(notes(0.2).find("bind pose to the first frame"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ft::test
