@@ -48,11 +48,10 @@ void LeafBodies::begin_frame(double t0, double t1) {
       body.places[k].resize(at(surface.vertex_count()));
       obstacle.trajectory->sample(t0 + (t1 - t0) * static_cast<double>(k) / k_slices, body.places[k]);
     };
+    // Always from the same pose: the order of the triangles must not hang on the frame at which a bake goes on.
     const auto grow = [&](std::size_t k) {
-      if (body.trees[k].empty())
-        body.trees[k] = TriangleTree(body.places[k], surface.triangles);
-      else
-        body.trees[k].refit(body.places[k], surface.triangles);
+      if (body.trees[k].empty()) body.trees[k] = TriangleTree(bind_pose_of(*obstacle.trajectory), surface.triangles);
+      body.trees[k].refit(body.places[k], surface.triangles);
     };
     const std::vector<Vec3> before = body.places[0];
     sample(0);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "baker/record/cache_track.h"
+#include "baker/record/met_bodies.h"
 #include "baker/systems/cords/cords_section.h"
 #include "baker/systems/cords/judge_cords.h"
 #include "baker/systems/cords/plan_cords.h"
@@ -16,12 +17,12 @@ namespace {
 /// Cords and what they meet, which is as drawn.
 class JudgedCords final : public JudgedGroup {
  public:
-  JudgedCords(CacheTrack track, MiddleLines lines, std::vector<CacheTrack> bodies, std::vector<std::string> missing)
-      : track_(std::move(track)), lines_(std::move(lines)), bodies_(std::move(bodies)), missing_(std::move(missing)) {}
+  JudgedCords(CacheTrack track, MiddleLines lines, MetBodies met)
+      : track_(std::move(track)), lines_(std::move(lines)), met_(std::move(met)) {}
   Result<FrameReport> judge(int index, int frame, std::span<const AbsentRuns> absent) const override;
   std::vector<std::string> notes() const override {
     std::vector<std::string> out;
-    for (const std::string& name : missing_)
+    for (const std::string& name : met_.missing)
       out.push_back("\"" + name + "\" is not cached: crossings of cords with it are not judged");
     return out;
   }
@@ -29,8 +30,7 @@ class JudgedCords final : public JudgedGroup {
  private:
   CacheTrack track_;
   MiddleLines lines_;
-  std::vector<CacheTrack> bodies_;
-  std::vector<std::string> missing_;  ///< what they meet and is not cached
+  MetBodies met_;
 };
 
 Result<FrameReport> JudgedCords::judge(int index, int frame, std::span<const AbsentRuns>) const {
@@ -45,7 +45,7 @@ Result<FrameReport> JudgedCords::judge(int index, int frame, std::span<const Abs
   report.strain_mean = strain.mean;
   report.strain_p99 = strain.p99;
   report.strain_max = strain.max;
-  for (const CacheTrack& body : bodies_) {
+  for (const CacheTrack& body : met_.bodies) {
     std::vector<Vec3> y;
     if (const Status read = body.read(index, y); !read) return read.error();
     const CordsAndBody found = judge_cords(lines_.cords.edges, points, y, body.triangles);
@@ -70,18 +70,10 @@ Result<std::unique_ptr<JudgedGroup>> judged(const CachedBake& bake, const Manife
   if (!track) return track.error();
   auto lines = middle_lines(track->rest);
   if (!lines) return lines.error();
-  std::vector<CacheTrack> bodies;
-  std::vector<std::string> missing = system.meets.empty() ? std::vector{system.primary} : system.meets;
-  for (const ManifestSystem& other : bake.manifest.systems) {
-    const auto met = std::find(missing.begin(), missing.end(), other.name);
-    if (other.role != "body" || met == missing.end() || !bake.has_cache(other)) continue;
-    auto body = bake.open(other);
-    if (!body) return body.error();
-    bodies.push_back(std::move(*body));
-    missing.erase(met);
-  }
+  auto met = met_bodies(bake, system);
+  if (!met) return met.error();
   return std::unique_ptr<JudgedGroup>(
-      std::make_unique<JudgedCords>(std::move(*track), std::move(*lines), std::move(bodies), std::move(missing)));
+      std::make_unique<JudgedCords>(std::move(*track), std::move(*lines), std::move(*met)));
 }
 
 class CordsKind final : public SystemKind {

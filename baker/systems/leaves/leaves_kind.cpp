@@ -1,5 +1,6 @@
 #include "baker/systems/leaves/leaves_kind.h"
 
+#include "baker/systems/leaves/judge_leaves.h"
 #include "baker/systems/leaves/leaves_group.h"
 #include "baker/systems/leaves/leaves_section.h"
 
@@ -20,17 +21,22 @@ class LeavesKind final : public SystemKind {
       }
     return out;
   }
-  /// The bake has the crossings of every leaf in its manifest; its caches are looked at for what is no leaf.
-  Result<std::vector<std::unique_ptr<JudgedGroup>>> judge(const CachedBake&) const override {
-    return std::vector<std::unique_ptr<JudgedGroup>>();
+  Result<std::vector<std::unique_ptr<JudgedGroup>>> judge(const CachedBake& bake) const override {
+    std::vector<std::unique_ptr<JudgedGroup>> out;
+    for (const ManifestSystem& system : bake.manifest.systems) {
+      if (system.role != name() || !bake.has_cache(system)) continue;
+      auto one = judged_leaves(bake, system);
+      if (!one) return one.error();
+      out.push_back(std::move(*one));
+    }
+    return out;
   }
   bool is_sheet() const override { return true; }
   std::span<const Metric> metrics() const override {
-    static const Metric metrics[] = {{"leaves_awake", "", Metric::Merge::k_sum},
-                                     {"leaves_lifted", "", Metric::Merge::k_sum},
-                                     {"leaves_woken", "", Metric::Merge::k_sum},
-                                     {"leaves_brought_out", "", Metric::Merge::k_sum},
-                                     {"leaves_fastest", "m/s", Metric::Merge::k_max}};
+    static const Metric metrics[] = {
+        {"leaves_awake", "", Metric::Merge::k_sum},      {"leaves_lifted", "", Metric::Merge::k_sum},
+        {"leaves_woken", "", Metric::Merge::k_sum},      {"leaves_brought_out", "", Metric::Merge::k_sum},
+        {"leaves_fastest", "m/s", Metric::Merge::k_max}, {"leaf_steps", "", Metric::Merge::k_sum}};
     return metrics;
   }
 };

@@ -1,0 +1,94 @@
+// Leaves baked for real: their caches are the same whatever the threads and interruptions, and check judges them.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "baker/core/parallel.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
+#include "baker/run/bake.h"
+#include "baker/run/wind_file.h"
+#include "tests/baker/fake_bake.h"
+
+namespace ft::test {
+namespace {
+
+constexpr int k_last_frame = 16;
+
+class LeavesBakeTest : public testing::Test {
+ protected:
+  /// A ball rolls over a floor of leaves, at a distance to the side.
+  void write_shot(double aside = 0) const {
+    std::ofstream(folder_ / "shot.toml")
+        << "[shot]\nframes = \"1-" << k_last_frame
+        << "\"\nfps = 24\npreroll = 0\n[primary.floor]\nshape = \"ground\"\n[primary.ball]\nshape = \"sphere\"\n"
+           "radius = 0.15\nvelocity = [4, 0, 0]\nposition = [-1.2, 0.152, "
+        << aside
+        << "]\nrelease = 9999\n[leaves.oak]\n"
+           "on = \"floor\"\ncount = 200\nsize = [2, 0, 0.6]\n[wind.wake]\nkind = \"wake\"\nof = \"ball\"\n"
+           "[cache]\nformats = [\"abc\", \"pc2\"]\n";
+  }
+  BakeResult run(const std::string& name, int threads = 1, int interrupted_after = 0, bool resume = false) const {
+    BakeOptions options;
+    options.shot_file = folder_ / "shot.toml";
+    options.folder = folder_ / name;
+    options.resume = resume;
+    const ThreadLimit limit(threads);
+    RecordedProgress progress;
+    int count = 0;
+    progress.on_frame = [&](int) { ++count == interrupted_after ? void(std::raise(SIGINT)) : void(); };
+    const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> { return input_error("no files here"); };
+    return bake(options, {none, make_group_solver}, progress);
+  }
+  std::map<std::string, std::string> products(const std::string& name) const {
+    return FakeScene().products(folder_ / name);
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(LeavesBakeTest, Threads_and_interruptions_change_no_byte) {
+  write_shot();
+  ASSERT_EQ(run("one").exit_code, 0);
+  ASSERT_EQ(run("two", 2).exit_code, 0);
+  EXPECT_EQ(products("two"), products("one"));
+  EXPECT_EQ(run("again", 1, 7).exit_code, 130);
+  ASSERT_EQ(run("again", 2, 0, true).exit_code, 0);
+  EXPECT_EQ(products("again"), products("one"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "one/oak.abc"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "one/oak.pc2")) << "PC2 cannot hold instances";
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / k_wind_file));
+}
+
+TEST_F(LeavesBakeTest, Check_finds_no_crossing_in_the_caches_and_one_where_bodies_were_moved) {
+  write_shot();
+  ASSERT_EQ(run("out").exit_code, 0);
+  const auto manifest = read_manifest(folder_ / "out");
+  ASSERT_TRUE(manifest) << manifest.error().text();
+  double woken = 0;
+  for (const FrameReport& frame : manifest->frames) {
+    EXPECT_EQ(frame.crossings_body, 0) << frame.frame;
+    if (frame.own.contains("leaves_woken")) woken += frame.own.at("leaves_woken");
+  }
+  EXPECT_GT(woken, 0) << "the ball rolls over some";
+  auto judged = judge_caches(folder_ / "out");
+  ASSERT_TRUE(judged) << judged.error().text();
+  ASSERT_EQ(judged->frames.size(), at(k_last_frame));
+  for (const FrameReport& frame : judged->frames) EXPECT_EQ(frame.crossings_body, 0) << frame.frame;
+
+  // The same leaves beside a ball that rolls elsewhere.
+  write_shot(0.2);
+  ASSERT_EQ(run("aside").exit_code, 0);
+  for (const char* file : {"ball.abc", "ball.obj"})
+    std::filesystem::copy_file(folder_ / "aside" / file, folder_ / "out" / file,
+                               std::filesystem::copy_options::overwrite_existing);
+  judged = judge_caches(folder_ / "out");
+  ASSERT_TRUE(judged) << judged.error().text();
+  int crossings = 0;
+  for (const FrameReport& frame : judged->frames) crossings += frame.crossings_body;
+  EXPECT_GT(crossings, 0);
+}
+
+}  // namespace
+}  // namespace ft::test
