@@ -32,7 +32,7 @@ constexpr double k_settled_drift = 0.05;
 /// creep for ever. Cloth that moves less in a step than a share of what gravity moves in it, root mean square, may rest
 /// soon: there an iteration may move it by no more than k_settled_creep of what the step does. On bodies that stand
 /// still the share is the larger one: what is left of each step keeps cloth awake there, and nothing else does [1].
-constexpr double k_may_rest = 0.25, k_may_rest_on_still = 1, k_settled_creep = 0.03;
+constexpr double k_may_rest = 0.25, k_may_rest_on_still = 0.7, k_settled_creep = 0.03;
 /// A step is halved until the potential goes down, but no oftener: contacts that come into reach on the way are not in
 /// the direction, and cloth that glides over edges would stop there for good.
 constexpr int k_most_halvings = 4;
