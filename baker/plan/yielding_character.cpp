@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/smooth_step.h"
 #include "baker/plan/driven_body.h"
 #include "baker/plan/located.h"
 #include "baker/plan/primary_mass.h"
@@ -117,8 +118,7 @@ std::vector<AdjustedLimb> planted_legs(const Shot& shot, const std::vector<const
     std::vector<double> weight, sinks;
     for (const Vec3& p : lowest[i]) {
       const Ground under = ground_at(p, stand_ins, ground);
-      const double s = std::clamp((p.y() - under.level - k_on_ground) / (k_off_ground - k_on_ground), 0.0, 1.0);
-      weight.push_back(1 - s * s * (3 - 2 * s));
+      weight.push_back(1 - smooth_step((p.y() - under.level - k_on_ground) / (k_off_ground - k_on_ground)));
       sinks.push_back(under.is_mat ? 1 : 0);
     }
     AdjustedLimb limb;

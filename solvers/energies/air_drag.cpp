@@ -5,6 +5,7 @@
 
 #include "baker/core/check.h"
 #include "baker/core/parallel.h"
+#include "baker/core/smooth_step.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -14,8 +15,7 @@ constexpr std::size_t k_block = 512;
 /// Share of the flow that stays on a plate: all of it below 15 degrees, nothing from 25 on.
 double attached(double normal, double tangential) {
   constexpr double k_first = 0.2679, k_last = 0.4663;  // tangents
-  const double share = std::clamp((k_last * tangential - normal) / ((k_last - k_first) * tangential + 1e-30), 0.0, 1.0);
-  return share * share * (3 - 2 * share);
+  return smooth_step((k_last * tangential - normal) / ((k_last - k_first) * tangential + 1e-30));
 }
 
 }  // namespace

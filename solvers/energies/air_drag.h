@@ -1,11 +1,11 @@
 // Air drag of cloth panels, per area, relative to the wind:
 //   f = -rho/2 A (Cn |vn| vn + Ct |vt| vt),   vn, vt: the velocity against the wind, normal and tangential to the panel
 // As options of a fabric: the lift of a thin plate, rho/2 A C_l |vt| vn, at angles below 15 degrees, beyond which the
-// flow leaves it; and the air that a light cloth takes along, a layer of its density that resists being accelerated
-// along the normal against the wind. A third of each panel moves with each of its corners. The normal and the speed are
-// those expected at the end of the step, the law is linearised about the velocity at its start: |v| v = 2 |v0| v - |v0|
-// v0, so that the potential is quadratic, stable for any wind and step, and second order in time. Vacuum (density or
-// coefficients 0) is exactly nothing.
+// flow leaves it; and the air that a light cloth takes along, a layer that resists being accelerated along the
+// normal, in which the wind itself counts as steady. A third of each panel moves with each of its corners. The normal
+// and the speed are those expected at the end of the step, the law is linearised about the velocity at its start: |v| v
+// = 2 |v0| v - |v0| v0, so that the potential is quadratic, stable for any wind and step, and second order in time.
+// Vacuum (density or coefficients 0) is exactly nothing.
 #pragma once
 
 #include <array>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "baker/core/smooth_step.h"
 #include "baker/core/types.h"
 
 namespace ft::inline io {
@@ -16,8 +17,7 @@ constexpr double k_blend_share = 0.6;
 /// How much of the first frame's pose there is at a time of the pre-roll, the rest being the bind pose: 0 at its start;
 /// time < 0, preroll > 0, in s.
 inline double blend_weight(double time, double preroll) {
-  const double s = std::clamp((time + preroll) / (k_blend_share * preroll), 0.0, 1.0);
-  return s * s * (3 - 2 * s);
+  return smooth_step((time + preroll) / (k_blend_share * preroll));
 }
 
 /// Over which the speed at the first frame is measured [s].

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/smooth_step.h"
 #include "collision/check/crossings.h"
 #include "collision/check/penetration.h"
 
@@ -26,10 +27,7 @@ MovingCollider::MovingCollider(std::shared_ptr<const FeasiblePoses> poses) : pos
 double MovingCollider::inset_share(double time) const {
   const double preroll = trajectory().preroll();
   if (preroll <= 0) return 0;
-  const double t = (time + preroll) / (0.6 * preroll);
-  if (t <= 0) return 1;
-  if (t >= 1) return 0;
-  return 1 - t * t * (3 - 2 * t);
+  return 1 - smooth_step((time + preroll) / (0.6 * preroll));
 }
 
 double MovingCollider::draw_in_for(std::span<const Vec3> points, std::span<const Triangle> cloth, double clearance) {
