@@ -8,11 +8,18 @@
 
 namespace ft::inline solvers {
 
+namespace {
+
+/// Caches round to 24 bits: what touches before that crosses after it [m].
+constexpr double k_clear = 1e-5;
+
+}  // namespace
+
 LeafVerdict judge_leaf(const LeafBodies& bodies, std::span<const LeafGround> grounds, const LeafShape& shape,
                        std::span<const Vec3> rim, const Vec3& centre, int slice, double slice_time) {
   LeafVerdict out;
   for (const LeafGround& ground : grounds)
-    for (const Vec3& p : rim) out.below_ground = std::max(out.below_ground, ground.height - p.y());
+    for (const Vec3& p : rim) out.below_ground = std::max(out.below_ground, ground.height + k_clear - p.y());
   const Box box = bounds(rim);
   for (int body = 0; body < bodies.count(); ++body) {
     if (!box.overlaps(bodies.box(body))) continue;
@@ -69,6 +76,11 @@ double bring_out(const LeafBodies& bodies, std::span<const LeafGround> grounds, 
     }
   }
   const bool found = verdict.ok();
+  // Not only just: as much farther again, where there is room.
+  if (const Vec3 way = centre - start; found && way.norm() > 0) {
+    go(0.5 * margin * way.normalized());
+    if (!verdict.ok()) go(-0.5 * margin * way.normalized());
+  }
   verdict.velocity = velocity;
   return found ? (centre - start).norm() : -(centre - start).norm();
 }

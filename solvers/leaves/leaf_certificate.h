@@ -14,7 +14,7 @@ namespace ft::inline solvers {
 struct LeafVerdict {
   int crossings = 0;             ///< pairs of an edge and a triangle
   bool inside = false;           ///< of a closed body, whole
-  double below_ground = 0;       ///< of the deepest vertex [m]
+  double below_ground = 0;       ///< of the deepest vertex, below what caches can tell from the ground [m]
   Vec3 out = Vec3::Zero();       ///< unit, away from what it crosses; zero where nothing is known
   double depth = 0;              ///< to the surface, where it is inside [m]
   Vec3 velocity = Vec3::Zero();  ///< of that body there [m/s]

@@ -36,7 +36,7 @@ void place_rim(const LeafShape& shape, const Vec3& x, const Quat& q, std::vector
 
 }  // namespace
 
-int LeavesSolver::near_step(const Frame&, std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& m,
+int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& m,
                             ContactScratch& s, Touch& touch) const {
   const Model& model = leaves_[leaf];
   place_rim(model.shape, m.x, m.q, s.rim);
@@ -108,7 +108,7 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
   const Model& model = leaves_[leaf];
   const double time = (frame.t1 - frame.t0) / LeafBodies::k_slices, radius = model.shape.radius;
   PlateAir air;
-  if (is_windy(frame, m.x)) {
+  if (frame.has_wind) {
     air.velocity = frame.air[at(slice)]->velocity(m.x);
     const Vec3 next = frame.air[at(slice) + 1]->velocity(m.x + time * m.v);
     air.change = (next - air.velocity) / time;
@@ -157,7 +157,7 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
     step.spin = m.spin;
     PlateAir here = air;
     here.velocity += done * time * air.change;
-    steps += near_step(frame, leaf, step, here, m, s, touch);
+    steps += near_step(leaf, step, here, m, s, touch);
     done = to;
   }
   return steps;
@@ -187,7 +187,7 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
     m.v = velocity;
     m.spin.setZero();
     out.brought_out = 1;
-    // What the mesh of all leaves will be, from the moved centre.
+    // As the caches will have it, from the moved centre.
     place_rim(model.shape, m.x, m.q, scratch.rim);
     verdict = judge_leaf(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time);
   }
@@ -203,8 +203,7 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
   if (setup_.may_sleep && rest >= k_sleep_after) {
     const double holds = lift_off_speed(setup_.prototypes[at(setup_.leaves[leaf].prototype)], model.mass_factor,
                                         lowest_friction(setup_), setup_.gravity.norm(), setup_.air_density);
-    const bool calm =
-        !is_windy(frame, m.x) || frame.air[LeafBodies::k_slices]->velocity(m.x).norm() < k_sleep_wind * holds;
+    const bool calm = !frame.has_wind || frame.air[LeafBodies::k_slices]->velocity(m.x).norm() < k_sleep_wind * holds;
     if (calm) {
       m.v.setZero(), m.spin.setZero();
       asleep = 1, rest = 0;

@@ -10,8 +10,6 @@ struct LeavesSolver::Frame {
   double t0 = 0, t1 = 0;  ///< s
   bool has_wind = false;
   std::vector<std::unique_ptr<AirNow>> air;  ///< at the ends of the slices
-  std::vector<Box> windy;
-  std::vector<char> woken;  ///< per leaf: by the wind 1, by a body 2
 };
 
 struct LeavesSolver::Tally {
@@ -30,7 +28,6 @@ struct LeavesSolver::Tally {
 struct LeavesSolver::Touch {
   bool lies = false;   ///< against something
   bool moves = false;  ///< that moves in this frame
-  double friction = 0.5;
 };
 
 inline double lowest_friction(const LeavesSetup& setup) {

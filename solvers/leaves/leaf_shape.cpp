@@ -81,6 +81,24 @@ LeafShape shape_of(const LeafPrototype& prototype) {
   return out;
 }
 
+SystemShape instances_of(const LeavesSetup& setup) {
+  SystemShape out;
+  out.name = setup.name;
+  out.content.shape = OutputShape::k_instances;
+  out.content.angular_velocities = true;
+  out.content.scales = true;
+  for (const LeafPrototype& prototype : setup.prototypes) {
+    const LeafShape shape = shape_of(prototype);
+    out.instances.prototype_names.push_back(prototype.name);
+    out.prototypes.push_back(make_triangle_mesh(prototype.name, shape.positions, shape.triangles));
+  }
+  for (const Leaf& leaf : setup.leaves) {
+    out.instances.ids.push_back(static_cast<std::uint64_t>(leaf.id));
+    out.instances.prototypes.push_back(leaf.prototype);
+  }
+  return out;
+}
+
 PlateModel plate_of(const LeafPrototype& prototype, const LeafShape& shape, double scale, double mass_factor,
                     double air_density) {
   PlateModel out;

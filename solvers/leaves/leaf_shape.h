@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "baker/core/mesh.h"
+#include "baker/core/output_shape.h"
 #include "solvers/leaves/leaves_setup.h"
 
 namespace ft::inline solvers {
@@ -23,6 +23,9 @@ struct LeafShape {
 };
 
 LeafShape shape_of(const LeafPrototype& prototype);
+
+/// What the caches know of the setup's leaves: ids, prototypes, their meshes.
+SystemShape instances_of(const LeavesSetup& setup);
 
 /// mass_factor: by which this leaf's mass differs from the prototype's [1].
 PlateModel plate_of(const LeafPrototype& prototype, const LeafShape& shape, double scale, double mass_factor,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,9 +65,6 @@ struct LeavesSetup {
   Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
   double air_density = 1.225;             ///< kg/m3, > 0
   std::shared_ptr<const Wind> wind;       ///< null: still air
-  /// Where the wind can be other than zero, at a time [s]; empty function: all over. Leaves that sleep elsewhere are
-  /// not asked about.
-  std::function<std::vector<Box>(double time)> windy;
   std::uint64_t seed = 1;
   double mass_variation = 0.2;  ///< masses are (1 +- this) of the prototype's, evenly; 0 to 0.9 [1]
   bool may_sleep = true;        ///< false: for tests of resting leaves

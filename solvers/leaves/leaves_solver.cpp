@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
+#include "baker/core/output_frame.h"
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "baker/core/state_points.h"
@@ -53,8 +55,6 @@ Result<std::unique_ptr<LeavesSolver>> LeavesSolver::make(LeavesSetup setup) {
 
 LeavesSolver::LeavesSolver(LeavesSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies) {
   for (const LeafPrototype& p : setup_.prototypes) shapes_.push_back(shape_of(p));
-  std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;
   const double gravity = setup_.gravity.norm();
   slowest_lift_off_ = std::numeric_limits<double>::infinity();
   for (const Leaf& leaf : setup_.leaves) {
@@ -69,12 +69,9 @@ LeavesSolver::LeavesSolver(LeavesSetup setup) : setup_(std::move(setup)), bodies
     m.margin = k_margin * (1 + random_uniform(key, 1));
     slowest_lift_off_ = std::min(slowest_lift_off_, lift_off_speed(prototype, m.mass_factor, lowest_friction(setup_),
                                                                    gravity, setup_.air_density));
-    const int first = static_cast<int>(positions.size());
-    for (const Vec3& p : m.shape.positions) positions.push_back(leaf.position + leaf.orientation.normalized() * p);
-    for (const Triangle& t : m.shape.triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
     leaves_.push_back(std::move(m));
   }
-  mesh_ = make_triangle_mesh(setup_.name, std::move(positions), triangles);
+  instances_ = instances_of(setup_);
 }
 
 State LeavesSolver::initial_state() const {
@@ -115,12 +112,16 @@ void LeavesSolver::leaf_states(const State& state, std::span<LeafState> out) con
   }
 }
 
-void LeavesSolver::system_positions(const State& state, int, std::span<Vec3> positions) const {
-  const auto &x = *state.find("x"), &q = *state.find("q");
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    const Mat3 turn = Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]).toRotationMatrix();
-    for (const Vec3& p : leaves_[i].shape.positions) positions[next++] = as_points(x)[i] + turn * p;
+void LeavesSolver::system_frame(const State& state, int, FrameData& frame) const {
+  std::vector<LeafState> leaves(leaves_.size());
+  leaf_states(state, leaves);
+  frame = {};
+  for (const LeafState& leaf : leaves) {
+    frame.positions.push_back(leaf.position.cast<float>());
+    frame.velocities.push_back(leaf.velocity.cast<float>());
+    frame.orientations.push_back(leaf.orientation.cast<float>().normalized());
+    frame.angular_velocities.push_back(leaf.angular_velocity.cast<float>());
+    frame.scales.push_back(Vec3f::Constant(static_cast<float>(leaf.scale)));
   }
 }
 
@@ -146,39 +147,32 @@ bool LeavesSolver::is_approached(const Vec3& place, double radius) const {
   return false;
 }
 
-bool LeavesSolver::is_windy(const Frame& frame, const Vec3& place) const {
-  if (!frame.has_wind || !setup_.windy) return frame.has_wind;
-  return std::any_of(frame.windy.begin(), frame.windy.end(), [&](const Box& box) {
-    return (place.array() >= box.lo.array()).all() && (place.array() <= box.hi.array()).all();
-  });
-}
-
 /// Sleeping leaves that the wind or a body gets hold of.
-void LeavesSolver::wake(Frame& frame, State& state, FrameReport& report) const {
+void LeavesSolver::wake(const Frame& frame, State& state, FrameReport& report) const {
   const auto& asleep = *state.find("asleep");
   const auto x = as_points(*state.find("x"));
   bool any_moves = false;
   for (int b = 0; b < bodies_.count(); ++b) any_moves = any_moves || bodies_.moves(b);
   const bool ask_wind = frame.has_wind && setup_.wind->fastest() > slowest_lift_off_;
-  frame.woken.assign(leaves_.size(), 0);
+  std::vector<char> hold(leaves_.size(), 0);  // of the wind 1, of a body 2
   if (any_moves || ask_wind)
     parallel_for(leaves_.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (asleep[i] == 0) continue;
-        if (any_moves && is_approached(x[i], leaves_[i].shape.radius)) frame.woken[i] = 2;
-        if (frame.woken[i] != 0 || !ask_wind || !is_windy(frame, x[i])) continue;
+        if (any_moves && is_approached(x[i], leaves_[i].shape.radius)) hold[i] = 2;
+        if (hold[i] != 0 || !ask_wind) continue;
         const Vec3 u = frame.air[LeafBodies::k_slices]->velocity(x[i]);
         const double speed2 = u.squaredNorm();
         if (speed2 <= slowest_lift_off_ * slowest_lift_off_) continue;
         const double own = lift_off_speed(setup_.prototypes[at(setup_.leaves[i].prototype)], leaves_[i].mass_factor,
                                           lowest_friction(setup_), setup_.gravity.norm(), setup_.air_density);
-        if (speed2 > own * own) frame.woken[i] = 1;
+        if (speed2 > own * own) hold[i] = 1;
       }
     });
   int lifted = 0, woken = 0;
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    if (frame.woken[i] != 0) {
-      (frame.woken[i] == 1 ? lifted : woken)++;
+    if (hold[i] != 0) {
+      (hold[i] == 1 ? lifted : woken)++;
       state.block("asleep")[i] = 0;
       state.block("rest")[i] = 0;
     }
@@ -188,10 +182,10 @@ void LeavesSolver::wake(Frame& frame, State& state, FrameReport& report) const {
 }
 
 FrameReport LeavesSolver::advance_frame(State& state) {
-  const std::lock_guard lock(one_at_a_time_);
   const auto clock = std::chrono::steady_clock::now();
   FrameReport report;
   report.frame = state.frame + 1;
+  report.smallest_gap = std::numeric_limits<double>::infinity();  // not measured
   Frame frame;
   frame.t0 = (state.frame - setup_.first_frame) / setup_.fps;
   frame.t1 = (report.frame - setup_.first_frame) / setup_.fps;
@@ -200,7 +194,6 @@ FrameReport LeavesSolver::advance_frame(State& state) {
   if (frame.has_wind) {
     for (int k = 0; k <= LeafBodies::k_slices; ++k)
       frame.air.push_back(setup_.wind->at_time(frame.t0 + (frame.t1 - frame.t0) * k / LeafBodies::k_slices));
-    if (setup_.windy) frame.windy = setup_.windy(frame.t1);
   }
   wake(frame, state, report);
   std::vector<std::size_t> awake;

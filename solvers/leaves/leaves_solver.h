@@ -10,8 +10,7 @@
 // at a height of its own above what it lies on, so that no two are in one plane where they overlap.
 #pragma once
 
-#include <mutex>
-
+#include "baker/core/output_shape.h"
 #include "solvers/base/solver.h"
 #include "solvers/leaves/leaf_bodies.h"
 #include "solvers/leaves/leaf_shape.h"
@@ -40,10 +39,10 @@ class LeavesSolver final : public Solver {
   const LeafShape& shape(int prototype) const { return shapes_[at(prototype)]; }
   const PlateModel& plate(int leaf) const { return leaves_[at(leaf)].plate; }
 
-  /// One system: all leaves as plates, the vertices of one after those of another.
+  /// One system: instances of the prototypes' meshes about their centres of mass.
   int system_count() const override { return 1; }
-  const Mesh& system_mesh(int) const override { return mesh_; }
-  void system_positions(const State& state, int system, std::span<Vec3> positions) const override;
+  const SystemShape* system_shape(int) const override { return &instances_; }
+  void system_frame(const State& state, int system, FrameData& frame) const override;
   /// None: what leaves meet is others' to write.
   std::span<const Triangle> collider_triangles() const override { return {}; }
   void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
@@ -67,23 +66,20 @@ class LeavesSolver final : public Solver {
   struct Touch;
 
   explicit LeavesSolver(LeavesSetup setup);
-  void wake(Frame& frame, State& state, FrameReport& report) const;
-  bool is_windy(const Frame& frame, const Vec3& place) const;
+  void wake(const Frame& frame, State& state, FrameReport& report) const;
   bool is_approached(const Vec3& place, double radius) const;
   Tally advance_leaf(const Frame& frame, std::size_t leaf, Moving& moving, double& rest, double& asleep) const;
   int advance_slice(const Frame& frame, std::size_t leaf, int slice, Moving& moving, ContactScratch& scratch,
                     Touch& touch) const;
-  int near_step(const Frame& frame, std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& moving,
-                ContactScratch& scratch, Touch& touch) const;
+  int near_step(std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& moving, ContactScratch& scratch,
+                Touch& touch) const;
 
   LeavesSetup setup_;
   std::vector<LeafShape> shapes_;  ///< of the prototypes
   std::vector<Model> leaves_;
-  Mesh mesh_;
+  SystemShape instances_;
   double slowest_lift_off_ = 0;  ///< of all leaves [m/s]
-  // Scratch only: forgotten between frames, one frame at a time.
-  LeafBodies bodies_;
-  std::mutex one_at_a_time_;
+  LeafBodies bodies_;            ///< scratch of a frame
 };
 
 }  // namespace ft::inline solvers

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/core/placed_instances.h"
 #include "baker/core/random.h"
 #include "baker/core/shapes.h"
 #include "solvers/leaves/leaves_solver.h"
@@ -96,6 +97,18 @@ inline std::vector<LeafState> leaves_of(const LeavesSolver& solver, const State&
   std::vector<LeafState> out(at(solver.leaf_count()));
   solver.leaf_states(state, out);
   return out;
+}
+
+/// All leaves as one mesh, and its vertices as the caches have them.
+inline PlacedInstances surface_of(const LeavesSolver& solver) {
+  const SystemShape& shape = *solver.system_shape(0);
+  return instances_as_mesh(shape.prototypes, shape.instances.prototypes);
+}
+inline std::vector<Vec3> cached_vertices(const LeavesSolver& solver, const State& state) {
+  const SystemShape& shape = *solver.system_shape(0);
+  FrameData frame;
+  solver.system_frame(state, 0, frame);
+  return placed(shape.prototypes, shape.instances.prototypes, frame);
 }
 
 }  // namespace ft::test

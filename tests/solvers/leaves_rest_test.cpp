@@ -23,8 +23,7 @@ TEST(Leaves, Nothing_falls_through_a_ground_a_box_and_a_moving_capsule_slow) {
   const auto bodies = setup.bodies;
   const auto solver = solver_of(setup);
   State state = solver->initial_state();
-  std::vector<Vec3> x(solver->system_mesh(0).positions.size());
-  const auto triangles = triangulate(solver->system_mesh(0));
+  const auto triangles = surface_of(*solver).triangles;
   double awake = 500, brought_out = 0, ms = 0;
   int frame = 0;
   for (; frame < 24 * 15 && awake > 0; ++frame) {
@@ -35,7 +34,7 @@ TEST(Leaves, Nothing_falls_through_a_ground_a_box_and_a_moving_capsule_slow) {
     ASSERT_TRUE(report.finite);
     ASSERT_EQ(report.crossings_body, 0) << frame;
     ASSERT_EQ(report.inside_body, 0) << frame;
-    solver->system_positions(state, 0, x);
+    const std::vector<Vec3> x = cached_vertices(*solver, state);
     for (const Vec3& p : x) ASSERT_GT(p.y(), 0) << frame;
     if (frame % 4 != 0) continue;
     for (const LeafObstacle& body : bodies) {
@@ -71,8 +70,8 @@ TEST(Leaves, Leaves_lie_still_on_a_meshed_ground_slow) {
   setup.bodies.push_back(obstacle_of("hills", ground, Vec3::Zero()));
   const auto solver = solver_of(setup);
   State state = solver->initial_state();
-  const auto triangles = triangulate(solver->system_mesh(0));
-  std::vector<Vec3> x(solver->system_mesh(0).positions.size());
+  const auto triangles = surface_of(*solver).triangles;
+  std::vector<Vec3> x;
   double awake = 200, brought_out = 0, ms = 0;
   int frame = 0;
   for (; frame < 24 * 15 && awake > 0; ++frame) {
@@ -82,7 +81,7 @@ TEST(Leaves, Leaves_lie_still_on_a_meshed_ground_slow) {
     ms = std::max(ms, 1e3 * report.profile.total);
     ASSERT_EQ(report.crossings_body, 0) << frame;
     if (frame % 6 != 0) continue;
-    solver->system_positions(state, 0, x);
+    x = cached_vertices(*solver, state);
     ASSERT_TRUE(crossings_between(x, triangles, ground.positions, ground.triangles).empty()) << frame;
   }
   for (const Vec3& p : x) EXPECT_GT(p.y(), -0.051);
