@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "baker/plan/located.h"
+#include "baker/plan/meets.h"
 #include "io/shot/patterns.h"
 #include "io/volume/vdb_read.h"
 #include "solvers/wind/body_paths.h"
@@ -36,13 +37,18 @@ Result<std::shared_ptr<const BodyPaths>> plan_bodies(const Shot& shot, const Win
   if (!parts) return parts.error();
   request.parts = std::move(*parts);
   request.drag_area = keys.drag_area.value_or(0);
-  auto out = std::make_shared<BodyPaths>(paths_of(*primary.trajectory, request));
+  auto paths = paths_of(*primary.trajectory, request);
+  if (!paths) return paths.error();
+  auto out = std::make_shared<BodyPaths>(std::move(*paths));
   double area = 0;
   for (const BodyPath& path : out->paths()) area += path.drag_area;
   if (!keys.drag_area)
     notes.push_back(
         fmt::format("wind \"{}\": drag area {:.2g} m2, guessed from the surface of \"{}\" (drag_area says it)",
                     keys.name, area, keys.of));
+  if (is_two_way(shot, primary.name))
+    notes.push_back(fmt::format("wind \"{}\": the wake is that of \"{}\" as it would move without its secondaries",
+                                keys.name, keys.of));
   if (out->fastest() < 0.1)
     notes.push_back(fmt::format("wind \"{}\": \"{}\" hardly moves in this shot, and has no wake", keys.name, keys.of));
   return std::shared_ptr<const BodyPaths>(std::move(out));
@@ -84,6 +90,7 @@ Result<WindFieldSpec> field_spec(const Shot& shot, const WindKeys& k, std::span<
   const auto time = [&](double frame) { return (frame - shot.first_frame) / shot.fps; };
   if (k.from) out.from = time(*k.from);
   if (k.until) out.until = time(*k.until);
+  out.clock = shot.first_frame / shot.fps;
   out.fade = k.fade / shot.fps;
   out.velocity = k.velocity;
   out.gusts = k.gusts;

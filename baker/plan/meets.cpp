@@ -37,10 +37,13 @@ bool stands_still(const Shot& shot, const PrimaryPlan& primary) {
   return true;
 }
 
+bool is_two_way(const Shot& shot, const std::string& primary) {
+  return std::any_of(shot.secondaries.begin(), shot.secondaries.end(),
+                     [&](const auto& s) { return s->on == primary && s->coupling == "two-way"; });
+}
+
 std::string why_alone(const Shot& shot, const PrimaryPlan& primary) {
-  const auto two_way = [&](const auto& s) { return s->on == primary.name && s->coupling == "two-way"; };
-  if (std::any_of(shot.secondaries.begin(), shot.secondaries.end(), two_way))
-    return "where it goes is only known once its secondaries are solved (two-way)";
+  if (is_two_way(shot, primary.name)) return "where it goes is only known once its secondaries are solved (two-way)";
   if (!primary.scan.teleports.empty()) return "it is cut to another place within the shot";
   return {};
 }

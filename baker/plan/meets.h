@@ -18,6 +18,9 @@ Result<std::vector<char>> meets_of(std::span<const std::string> patterns, const 
 /// Whether a primary stands still in all frames of the shot, pre-roll included.
 bool stands_still(const Shot& shot, const PrimaryPlan& primary);
 
+/// Whether a secondary moves the primary while it is solved.
+bool is_two_way(const Shot& shot, const std::string& primary);
+
 /// shot: all of it, whatever its stages. Why secondaries of other primaries cannot meet a primary; empty: they can.
 std::string why_alone(const Shot& shot, const PrimaryPlan& primary);
 

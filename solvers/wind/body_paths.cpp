@@ -60,7 +60,7 @@ Vec3 BodyPaths::velocity(const BodyPath& path, double time) const {
   return (1 - share) * path.velocities[i] + share * path.velocities[i + 1];
 }
 
-BodyPaths paths_of(const Trajectory& body, const PathRequest& request) {
+Result<BodyPaths> paths_of(const Trajectory& body, const PathRequest& request) {
   const Surface& surface = body.surface();
   const double interval = 1 / (k_samples_a_frame * request.fps);
   const int count = std::max(2, static_cast<int>(std::lround((request.last_time - request.first_time) / interval)) + 1);
@@ -97,10 +97,10 @@ BodyPaths paths_of(const Trajectory& body, const PathRequest& request) {
     }
     paths.push_back(std::move(all[p]));
   }
-  CHECK(!paths.empty());
+  if (paths.empty()) return usage_error("none of these parts has a surface that could leave a wake");
   if (request.drag_area > 0)
     for (BodyPath& path : paths) path.drag_area *= request.drag_area / total;
-  return {std::move(paths), request.first_time, interval};
+  return BodyPaths(std::move(paths), request.first_time, interval);
 }
 
 }  // namespace ft::inline solvers

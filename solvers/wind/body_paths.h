@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/result.h"
 #include "baker/core/trajectory.h"
 #include "baker/core/types.h"
 
@@ -46,6 +47,7 @@ struct PathRequest {
 
 /// Of the parts of a body. A part's drag area is, unless it is given, C_d = 1 times a fourth of its surface: what a
 /// convex body shows on the average of all directions (Cauchy). The centre is that of its surface.
-BodyPaths paths_of(const Trajectory& body, const PathRequest& request);
+/// Usage error: the parts have no surface.
+Result<BodyPaths> paths_of(const Trajectory& body, const PathRequest& request);
 
 }  // namespace ft::inline solvers

@@ -95,7 +95,7 @@ Result<std::unique_ptr<WindField>> Turbulence::make(const WindFieldSpec& spec) {
 }
 
 std::unique_ptr<AirNow> Turbulence::at_time(double time) const {
-  return std::make_unique<Waves>(waves_.at_time(time), spec().intensity);
+  return std::make_unique<Waves>(waves_.at_time(spec().clock + time), spec().intensity);
 }
 
 }  // namespace ft::inline solvers

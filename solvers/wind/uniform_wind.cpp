@@ -49,8 +49,8 @@ std::unique_ptr<AirNow> UniformWind::at_time(double time) const {
   double speed = 0, heading = 0;
   const double height = spec().gusts * std::sqrt(2.0 / k_waves);
   for (const Wave& wave : waves_) {
-    speed += height * std::sin(wave.rate * time + wave.phase[0]);
-    heading += k_heading * height * std::sin(wave.rate * time + wave.phase[1]);
+    speed += height * std::sin(wave.rate * (spec().clock + time) + wave.phase[0]);
+    heading += k_heading * height * std::sin(wave.rate * (spec().clock + time) + wave.phase[1]);
   }
   const Eigen::AngleAxisd turned(heading, Vec3::UnitY());
   return std::make_unique<Everywhere>(std::max(0.0, 1 + speed) * (turned * spec().velocity));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "baker/core/smooth_step.h"
 #include "solvers/wind/plain_flows.h"
 
 namespace ft::inline solvers {
@@ -24,11 +25,6 @@ constexpr double k_slow = 0.1;         ///< at its middle; up to this it is over
 constexpr double k_whole = 2, k_fading = 3;  ///< what ground and air around leave of it after some seconds [s]
 constexpr double k_near = 3, k_far = 4;      ///< between so many radii the flow ahead fades out
 constexpr double k_eddies = 1.5;             ///< length of the larger eddies, by the radius of the largest body
-
-double smooth(double share) {
-  const double s = std::clamp(share, 0.0, 1.0);
-  return s * s * (3 - 2 * s);
-}
 
 /// Share of a Gaussian of width 1 below z.
 double below(double z) {
@@ -67,7 +63,8 @@ struct Ahead {
     if (distance >= k_far * radius) return Vec3::Zero();
     const double speed = velocity.norm();
     const double facing = distance > 0 && speed > 0 ? r.dot(velocity) / (distance * speed) : 1;
-    const double share = smooth((facing + 0.5) / 0.7) * (1 - smooth((distance / radius - k_near) / (k_far - k_near)));
+    const double share =
+        smooth_step((facing + 0.5) / 0.7) * (1 - smooth_step((distance / radius - k_near) / (k_far - k_near)));
     return share * doublet_velocity(r, velocity, radius);
   }
 };
@@ -142,7 +139,7 @@ double Wake::fastest() const {
 std::unique_ptr<AirNow> Wake::at_time(double time) const {
   const BodyPaths& bodies = *spec().bodies;
   auto out = std::make_unique<WakeNow>();
-  out->waves = waves_.at_time(time);
+  out->waves = waves_.at_time(spec().clock + time);
   out->turbulence = spec().turbulence;
   const int last = std::clamp(static_cast<int>(std::floor((time - bodies.first_time()) / bodies.interval())), -1,
                               bodies.samples() - 2);
@@ -165,8 +162,8 @@ std::unique_ptr<AirNow> Wake::at_time(double time) const {
       Puff puff;
       puff.width = width(path.drag_area, std::max(0.0, way_now[b] - ways_[b][at(s)]));
       puff.flow = 0.5 * speed * path.drag_area;
-      puff.flow *= 1 - smooth((time - bodies.time_of(s) - k_whole) / k_fading);
-      puff.flow *= smooth(puff.flow / (2 * pi * puff.width * puff.width) / k_slow - 1);
+      puff.flow *= 1 - smooth_step((time - bodies.time_of(s) - k_whole) / k_fading);
+      puff.flow *= smooth_step(puff.flow / (2 * pi * puff.width * puff.width) / k_slow - 1);
       if (puff.flow == 0) continue;
       const double length = share * speed * bodies.interval();
       puff.half = 0.5 * length;

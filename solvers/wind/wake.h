@@ -4,8 +4,8 @@
 //   sigma^3 = sigma_0^3 + c C_d A X       X: path since then [m]
 // as the wake of a body without lift does (Schlichting 1979, 24.5), so that through any plane behind it goes rho/2 U^2
 // C_d A of momentum. With it go a pair of vortices that turn against each other about the path, as behind runners and
-// cyclists (Crouch et al. 2014, J. Fluid Mech. 748), down in the middle and up at the sides, and turbulence. It knows
-// no ground, and wakes that meet add up.
+// cyclists (Crouch et al. 2014, J. Fluid Mech. 748), down in the middle and up at the sides, and turbulence. It is
+// whole for two seconds and gone after five. It knows no ground, and wakes that meet add up.
 #pragma once
 
 #include "solvers/wind/body_paths.h"

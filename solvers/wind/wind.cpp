@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "baker/core/smooth_step.h"
 #include "solvers/wind/uniform_wind.h"
 
 namespace ft::inline solvers {
@@ -30,16 +31,12 @@ class Sum final : public AirNow {
   std::vector<std::unique_ptr<Shelter::Now>> shelters_;
 };
 
-double smooth(double share) {
-  const double s = std::clamp(share, 0.0, 1.0);
-  return s * s * (3 - 2 * s);
-}
-
 }  // namespace
 
 double WindField::strength(double time) const {
   if (spec_.fade <= 0) return time >= spec_.from && time <= spec_.until ? spec_.gain : 0;
-  return spec_.gain * std::min(smooth((time - spec_.from) / spec_.fade), 1 - smooth((time - spec_.until) / spec_.fade));
+  return spec_.gain *
+         std::min(smooth_step((time - spec_.from) / spec_.fade), 1 - smooth_step((time - spec_.until) / spec_.fade));
 }
 
 double Wind::fastest() const {

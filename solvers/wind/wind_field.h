@@ -33,7 +33,8 @@ struct WindFieldSpec {
   std::string kind;                                 ///< "uniform", "source", "vortex" ...
   double gain = 1;                                  ///< of its velocity [1]
   double from = -k_unlimited, until = k_unlimited;  ///< blows in between [s from the shot's first frame]
-  double fade = 0;  ///< grows for so long after `from`, fades for so long after `until` [s]
+  double clock = 0;  ///< of gusts and eddies, at the shot's first frame [s]: a part of a shot has those of the whole
+  double fade = 0;   ///< grows for so long after `from`, fades for so long after `until` [s]
 
   Vec3 velocity = Vec3::Zero();              ///< m/s: of a uniform wind; of a doublet's sphere; with which eddies drift
   double gusts = 0;                          ///< root mean square of a uniform wind's changes, by its speed [1]

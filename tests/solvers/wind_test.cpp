@@ -89,7 +89,6 @@ TEST_P(WindContract, It_is_finite_everywhere_and_never_faster_than_it_says) {
 }
 
 TEST_P(WindContract, It_is_continuous_in_time) {
-  // Halving the interval halves the change, as that of what has a derivative, or better.
   for (std::uint64_t i = 0; i < 40; ++i) {
     const Vec3 place = some_place(i, 2);
     for (double time = -0.5; time < 1.5; time += 0.0103) {
