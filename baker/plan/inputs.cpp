@@ -104,6 +104,11 @@ Result<BakeInputs> read_inputs(const std::filesystem::path& shot_file, const std
                                      frames_text(*frames), frames->first));
     const double later = (frames->first - s.first_frame) / s.fps;
     for (PrimarySpec& primary : s.primaries) {
+      if (later != 0 && primary.repeat > 1)
+        return usage_error(fmt::format("--frames {} starts within the shot, and the clip of \"{}\" is repeated",
+                                       frames_text(*frames), primary.name),
+                           shot_file.string(),
+                           fmt::format("a part of it has to start at the shot's first frame, {}", s.first_frame));
       if (later != 0) primary.clip_bind = primary.clip_start;
       primary.clip_start += later * primary.speed;
     }

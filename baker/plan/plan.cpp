@@ -108,6 +108,10 @@ Status repeat_clip(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& i
   if (spec.repeat <= 1) return {};
   const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
   if (is_hybrid(shot, spec.name)) return usage_error("what yields to stand-ins cannot be repeated", where);
+  for (const auto& secondary : shot.secondaries)
+    if (secondary->on == spec.name && secondary->section->needs_character())
+      return usage_error("its clip is repeated, and " + secondary->owner() + " changes the clip itself", where,
+                         "repeat the clip in the program that it comes from");
   const auto& clips = imported.info.clips;
   const auto clip = std::find_if(clips.begin(), clips.end(),
                                  [&](const ClipInfo& c) { return spec.clip.empty() || c.name == spec.clip; });
@@ -244,10 +248,6 @@ Shot shot_of_stage(const BakePlan& plan) {
 /// Groups of all kinds, by their first primary; behind them primaries that yield and have no secondary.
 Status plan_systems(BakePlan& plan) {
   const Shot shot = shot_of_stage(plan);
-  std::vector<std::string> said_before;
-  auto wind = plan_wind(shot, plan.primaries, plan.stage == 0 ? plan.notes : said_before);
-  if (!wind) return wind.error();
-  plan.wind = std::move(*wind);
   for (const SystemKind* kind : system_kinds()) {
     auto groups = kind->plan(shot, plan);
     if (!groups) return groups.error();
@@ -282,6 +282,7 @@ Result<BakePlan> plan_next_stage(const BakePlan& before, std::vector<PrimaryPlan
   plan.stage = before.stage + 1;
   plan.stage_count = before.stage_count;
   plan.primaries = before.primaries;
+  plan.wind = before.wind;
   plan.import_seconds = before.import_seconds;
   for (PrimaryPlan& carrier : carriers) plan.primaries.push_back(std::move(carrier));
   if (const Status planned = plan_systems(plan); !planned) return planned.error();
@@ -305,6 +306,9 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
     if (const Status planned = plan_prop(shot, spec, primary, plan.notes); !planned) return planned.error();
     plan.primaries.push_back(std::move(primary));
   }
+  auto wind = plan_wind(shot, plan.primaries, plan.notes);
+  if (!wind) return wind.error();
+  plan.wind = std::move(*wind);
   if (is_preview(shot)) plan.notes.push_back(quality_note());
   plan.import_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 
