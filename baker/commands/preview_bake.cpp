@@ -124,7 +124,10 @@ Json describe(const Clip& clip) {
   for (const Triangle& t : clip.track.triangles)
     for (const int v : t) corners.push_back(static_cast<std::uint32_t>(v));
   Json out{{"name", clip.system.name}, {"role", clip.system.role}, {"vertices", clip.track.rest.vertex_count()}};
-  if (const SystemKind* kind = find_system_kind(clip.system.role)) out["sheet"] = kind->is_sheet();
+  if (const SystemKind* kind = find_system_kind(clip.system.role)) {
+    out["sheet"] = kind->is_sheet();
+    out["colour"] = kind->colour();
+  }
   out["low"] = {clip.box.lo[0], clip.box.lo[1], clip.box.lo[2]};
   out["step"] = {step[0], step[1], step[2]};
   out["triangles"] = base64_of(corners);
@@ -277,6 +280,7 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
     if (clip.system.shape == OutputShape::k_instances) {
       auto instances = preview_instances(clip.system, clip.track, frames);
       if (!instances) return instances.error();
+      if (const SystemKind* kind = find_system_kind(clip.system.role)) (*instances)["colour"] = kind->colour();
       bake["systems"].push_back(std::move(*instances));
       continue;
     }

@@ -98,9 +98,10 @@
   function meshes(systems) {
     const group = new THREE.Group();
     let garment = 0;
+    const colour_of = (s) => s.colour || palette[garment++ % palette.length];
     for (const s of systems) {
       if (s.instances) {
-        s.plain = 0xb87333;  // as fallen leaves have it
+        s.plain = colour_of(s);
         s.copies = makeInstances(s, s.plain, bytes);
         s.mesh = s.copies.group;
         s.mesh.visible = !s.hidden;
@@ -112,7 +113,7 @@
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * s.vertices), 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
       geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
-      s.plain = secondary(s) ? palette[garment++ % palette.length] : 0xc4beb4;
+      s.plain = secondary(s) ? colour_of(s) : 0xc4beb4;
       const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
         side: s.sheet ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
         wireframe: secondary(s) && $('wireframe').checked });

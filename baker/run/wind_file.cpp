@@ -30,9 +30,8 @@ Box scene_of(const BakePlan& plan, int every) {
     }
     if (own.size().maxCoeff() < k_widest) out.include(own);
   }
-  for (const auto& group : plan.groups)
-    for (const SystemOutput& output : group->outputs)
-      if (output.mesh) out.include(bounds(output.mesh->positions));
+  for (const auto& group : plan.groups) out.include(group->start());
+  if (out.empty()) out.include(Vec3::Zero());
   out.inflate(k_margin);
   return out;
 }

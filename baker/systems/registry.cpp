@@ -48,6 +48,13 @@ AddedSystemKind::~AddedSystemKind() {
   registry().metrics = Registry::metrics_of(registry().kinds);
 }
 
+Box SystemGroup::start() const {
+  Box out;
+  for (const SystemOutput& output : outputs)
+    if (output.mesh) out.include(bounds(output.mesh->positions));
+  return out;
+}
+
 FrameCounts SystemOutput::counts() const {
   return {.elements = static_cast<std::uint64_t>(shape ? shape->element_count() : mesh->vertex_count())};
 }

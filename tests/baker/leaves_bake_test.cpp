@@ -3,7 +3,9 @@
 
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/judge/judge_caches.h"
 #include "baker/record/manifest.h"
@@ -59,6 +61,22 @@ TEST_F(LeavesBakeTest, Threads_and_interruptions_change_no_byte) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one/oak.abc"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one/oak.pc2")) << "PC2 cannot hold instances";
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / k_wind_file));
+}
+
+TEST_F(LeavesBakeTest, The_air_is_drawn_around_leaves_where_nothing_else_is) {
+  std::ofstream(folder_ / "shot.toml") << "[shot]\nframes = \"1-4\"\npreroll = 0\n[primary.floor]\nshape = \"ground\"\n"
+                                          "[leaves.oak]\ncount = 5\nsize = [1, 0, 1]\nposition = [8, 0, 0]\n"
+                                          "[wind]\nvelocity = [3, 0, 0]\n[cache]\nformats = [\"abc\"]\n";
+  ASSERT_EQ(run("out").exit_code, 0);
+  const auto text = read_text(folder_ / "out" / k_wind_file, 1 << 20);
+  ASSERT_TRUE(text) << text.error().text();
+  const auto air = nlohmann::json::parse(*text);
+  ASSERT_GT(air["places"].size(), 10u);
+  for (const auto& place : air["places"]) {
+    EXPECT_GT(place[0], 7000) << "mm";
+    EXPECT_LT(place[0], 9500);
+  }
+  EXPECT_EQ(air["velocities"][0][0], 300) << "cm/s";
 }
 
 TEST_F(LeavesBakeTest, Check_finds_no_crossing_in_the_caches_and_one_where_bodies_were_moved) {

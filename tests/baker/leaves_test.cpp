@@ -15,14 +15,14 @@ namespace {
 class LeavesShot : public testing::Test {
  protected:
   /// Of two primaries, a ground and a ball that rolls past 0.2 m above it, with a field that the lines say.
-  Result<BakePlan> plan(const std::string& lines, int last_frame = 24) const {
+  Result<BakePlan> plan(const std::string& lines, int last_frame = 24, std::optional<FrameRange> part = {}) const {
     std::ofstream(folder_ / "shot.toml") << "[shot]\nframes = \"1-" << last_frame
                                          << "\"\nfps = 24\npreroll = 0\n[primary.floor]\nshape = \"ground\"\n"
                                             "[primary.ball]\nshape = \"sphere\"\nradius = 0.15\nvelocity = [6, 0, 0]\n"
                                             "position = [-2, 0.2, 0]\nrelease = 9999\n"
                                          << lines;
     ShotFaults faults;
-    auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
+    auto inputs = read_inputs(folder_ / "shot.toml", {}, part, faults);
     if (!inputs) return inputs.error();
     const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> { return input_error("no files here"); };
     return make_plan(std::move(*inputs), none, {});
@@ -129,6 +129,13 @@ TEST_F(LeavesShot, Places_come_from_a_mesh_or_from_a_file) {
   EXPECT_NEAR(leaves[1].position.x(), -1, 1e-9);
 }
 
+TEST_F(LeavesShot, The_fold_of_a_leaf_is_that_of_its_mesh) {
+  write("leaf.obj", "v -0.04 0 0\nv 0.04 0 0\nv 0 0.01 0.02\nv 0 0.01 -0.02\nf 1 3 2\nf 1 2 4\n");
+  auto made = plan("[leaves.oak]\non = \"floor\"\nsize = [1, 0, 1]\nmesh = \"leaf.obj\"\n");
+  ASSERT_TRUE(made) << made.error().text();
+  EXPECT_NEAR(dynamic_cast<LeavesGroup&>(*made->groups[0]).setup.prototypes[0].fold, std::atan(0.5), 1e-12);
+}
+
 TEST_F(LeavesShot, What_makes_no_sense_is_refused_with_its_place) {
   write("wall.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   write("bad.csv", "1 2 3\nfour 5 6\n");
@@ -164,6 +171,17 @@ TEST_F(LeavesShot, Winds_that_make_no_sense_are_refused_with_their_place) {
     const std::string said = refusal(std::string(k_region) + "[wind.odd]\n" + lines);
     EXPECT_NE(said.find(words), std::string::npos) << lines << said;
   }
+}
+
+TEST_F(LeavesShot, A_part_of_a_shot_has_the_gusts_of_the_whole) {
+  const std::string lines = std::string(k_region) +
+                            "[wind.gusty]\nkind = \"uniform\"\nvelocity = [5, 0, 0]\n"
+                            "gusts = 0.4\n[wind.eddies]\nkind = \"turbulence\"\nintensity = 1\n";
+  auto whole = plan(lines), part = plan(lines, 24, FrameRange{13, 24});
+  ASSERT_TRUE(whole) << whole.error().text();
+  ASSERT_TRUE(part) << part.error().text();
+  const Vec3 place(0.2, 1, -0.3);
+  EXPECT_LT((part->wind->at_time(0.25)->velocity(place) - whole->wind->at_time(0.75)->velocity(place)).norm(), 1e-12);
 }
 
 TEST_F(LeavesShot, Of_winds_the_plan_says_how_fast_they_are_at_most_and_when_they_blow) {

@@ -65,6 +65,8 @@ class SystemGroup {
   std::size_t primary;                ///< into BakePlan::primaries: the first that has a secondary of the group
   std::vector<SystemOutput> outputs;  ///< one for each system of the solver
 
+  /// Around its systems at the start [m]; empty: unknown.
+  virtual Box start() const;
   /// Role of its systems in the manifest: the name of their kind.
   virtual std::string_view role() const = 0;
   /// Once: it takes what it needs out of the group.
@@ -126,6 +128,8 @@ class SystemKind {
   virtual bool shows_body() const { return false; }
   /// Whether its meshes are sheets, which are seen from both sides.
   virtual bool is_sheet() const { return false; }
+  /// In which the preview draws it, 0xrrggbb; 0: the next that no other has.
+  virtual std::uint32_t colour() const { return 0; }
 };
 
 /// All kinds, in the order in which their systems stand in plans and manifests.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "baker/core/output_frame.h"
 #include "baker/plan/located.h"
 #include "baker/plan/meets.h"
 #include "baker/systems/interface/plan_common.h"
@@ -16,63 +15,17 @@
 namespace ft::inline baker {
 namespace {
 
-/// Leaves as instances.
-class LeavesBake final : public Solver {
- public:
-  LeavesBake(std::unique_ptr<LeavesSolver> leaves, std::shared_ptr<const SystemShape> shape)
-      : leaves_(std::move(leaves)), shape_(std::move(shape)), count_(at(leaves_->leaf_count())) {}
-
-  int system_count() const override { return 1; }
-  const SystemShape* system_shape(int) const override { return shape_.get(); }
-  void system_frame(const State& state, int, FrameData& out) const override {
-    std::vector<LeafState> now(count_);
-    leaves_->leaf_states(state, now);
-    out = {};
-    for (const LeafState& leaf : now) {
-      out.positions.push_back(leaf.position.cast<float>());
-      out.velocities.push_back(leaf.velocity.cast<float>());
-      out.orientations.push_back(leaf.orientation.cast<float>().normalized());
-      out.angular_velocities.push_back(leaf.angular_velocity.cast<float>());
-      out.scales.push_back(Vec3f::Constant(static_cast<float>(leaf.scale)));
-    }
-  }
-  std::span<const Triangle> collider_triangles() const override { return {}; }
-  void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
-  State initial_state() const override { return leaves_->initial_state(); }
-  FrameReport advance_frame(State& state) override { return leaves_->advance_frame(state); }
-
- private:
-  std::unique_ptr<LeavesSolver> leaves_;
-  std::shared_ptr<const SystemShape> shape_;
-  std::size_t count_;
-};
-
-/// The shape of its caches.
-std::shared_ptr<const SystemShape> shape_of_caches(const std::string& name, const LeavesSetup& setup) {
-  auto out = std::make_shared<SystemShape>();
-  out->name = name;
-  out->content.shape = OutputShape::k_instances;
-  out->content.angular_velocities = true;
-  out->content.scales = true;
-  for (const LeafPrototype& prototype : setup.prototypes) {
-    const LeafShape shape = shape_of(prototype);
-    out->instances.prototype_names.push_back(prototype.name);
-    out->prototypes.push_back(make_triangle_mesh(prototype.name, shape.positions, shape.triangles));
-  }
-  for (const Leaf& leaf : setup.leaves) {
-    out->instances.ids.push_back(static_cast<std::uint64_t>(leaf.id));
-    out->instances.prototypes.push_back(leaf.prototype);
-  }
-  return out;
-}
-
 /// What they lie on and what comes by.
-Status add_bodies(const Shot& shot, const LeavesSpec& spec, const BakePlan& plan, LeavesGroup& group) {
+Status add_bodies(const Shot& shot, const LeavesSpec& spec, BakePlan& plan, LeavesGroup& group) {
   const auto meets = meets_of(spec.meets, spec.on, plan.primaries);
   if (!meets) return meets.error();
   for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
     const PrimaryPlan& primary = plan.primaries[p];
     if ((*meets)[p] == 0 && primary.name != spec.on) continue;
+    if (const std::string why = why_alone(plan.shot(), primary); !why.empty()) {
+      plan.notes.push_back(fmt::format("{} do not meet \"{}\": {}", spec.owner(), primary.name, why));
+      continue;
+    }
     group.meets.push_back(p);
     const auto own = std::find_if(shot.primaries.begin(), shot.primaries.end(),
                                   [&](const PrimarySpec& s) { return s.name == primary.name; });
@@ -100,17 +53,12 @@ Result<std::unique_ptr<LeavesGroup>> plan_leaves(const Shot& shot, const LeavesS
   if (!leaves) return located(leaves.error(), shot, spec.owner());
   setup.prototypes.push_back(std::move(*prototype));
   setup.leaves = std::move(*leaves);
+  for (const Leaf& leaf : setup.leaves) group->around.include(leaf.position);
   if (const Status added = add_bodies(shot, spec, plan, *group); !added)
     return located(added.error(), shot, spec.owner());
-  for (const PrimaryPlan& other : plan.primaries)
-    if (!other.scan.teleports.empty())
-      plan.notes.push_back(
-          fmt::format("{}: \"{}\" jumps to another place; leaves on its way are pushed there and not "
-                      "taken along",
-                      spec.owner(), other.name));
   SystemOutput output;
   output.primary = primary;
-  output.shape = shape_of_caches(spec.name, setup);
+  output.shape = std::make_shared<const SystemShape>(instances_of(setup));
   group->outputs.push_back(std::move(output));
   return group;
 }
@@ -118,7 +66,7 @@ Result<std::unique_ptr<LeavesGroup>> plan_leaves(const Shot& shot, const LeavesS
 Result<std::unique_ptr<Solver>> LeavesGroup::make_solver() {
   auto solver = LeavesSolver::make(std::move(setup));
   if (!solver) return solver.error();
-  return std::unique_ptr<Solver>(std::make_unique<LeavesBake>(std::move(*solver), outputs.at(0).shape));
+  return std::unique_ptr<Solver>(std::move(*solver));
 }
 
 std::vector<std::string> LeavesGroup::lines(const BakePlan& plan) const {

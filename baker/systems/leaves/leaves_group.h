@@ -13,7 +13,9 @@ class LeavesGroup final : public SystemGroup {
 
   LeavesSetup setup;
   std::vector<std::size_t> meets;  ///< primaries, into BakePlan::primaries
+  Box around;                      ///< all leaves at the start [m]
 
+  Box start() const override { return around; }
   std::string_view role() const override { return "leaves"; }
   Result<std::unique_ptr<Solver>> make_solver() override;
   std::vector<std::string> lines(const BakePlan& plan) const override;

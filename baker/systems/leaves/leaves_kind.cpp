@@ -32,6 +32,7 @@ class LeavesKind final : public SystemKind {
     return out;
   }
   bool is_sheet() const override { return true; }
+  std::uint32_t colour() const override { return 0xb87333; }  // of dry ones
   std::span<const Metric> metrics() const override {
     static const Metric metrics[] = {
         {"leaves_awake", "", Metric::Merge::k_sum},      {"leaves_lifted", "", Metric::Merge::k_sum},

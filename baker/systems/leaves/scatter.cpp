@@ -58,6 +58,15 @@ Leaf lying_leaf(const LeavesSpec& spec, const LeafShape& shape, std::size_t i, c
   return leaf;
 }
 
+/// By which the two sides of a leaf rise from its rib, at z = 0: the slope that fits best of y over |z|. Not below 0.
+double fold_of(const Mesh& mesh) {
+  double z = 0, y = 0, zz = 0, yz = 0;
+  for (const Vec3& p : mesh.positions)
+    z += std::abs(p.z()), y += p.y(), zz += p.z() * p.z(), yz += std::abs(p.z()) * p.y();
+  const double n = static_cast<double>(mesh.positions.size()), spread = n * zz - z * z;
+  return spread > 0 ? std::max(0.0, std::atan((n * yz - z * y) / spread)) : 0;
+}
+
 std::vector<Leaf> over_rectangle(const LeavesSpec& spec, const LeafShape& shape) {
   std::vector<Leaf> out;
   for (std::size_t i = 0; i < at(spec.count); ++i) {
@@ -160,6 +169,7 @@ Result<LeafPrototype> leaf_prototype(const LeavesSpec& spec) {
                          spec.mesh.string());
     out.positions = mesh->positions;
     out.triangles = triangulate(*mesh);
+    out.fold = fold_of(*mesh);
   }
   out.mass_per_area = spec.mass_per_area;
   out.lying_lift = spec.lift;
