@@ -7,6 +7,8 @@
 #include "baker/core/output_frame.h"
 #include "baker/plan/plan.h"
 #include "baker/systems/leaves/leaves_group.h"
+#include "io/shot/shot_keys.h"
+#include "solvers/wind/registry.h"
 #include "tests/support/assets.h"
 
 namespace ft {
@@ -171,6 +173,13 @@ TEST_F(LeavesShot, Winds_that_make_no_sense_are_refused_with_their_place) {
     const std::string said = refusal(std::string(k_region) + "[wind.odd]\n" + lines);
     EXPECT_NE(said.find(words), std::string::npos) << lines << said;
   }
+}
+
+TEST(Winds, The_shot_file_and_the_registry_know_the_same_kinds) {
+  std::vector<std::string> fields;
+  for (const WindFieldKind& kind : wind_field_kinds()) fields.emplace_back(kind.name);
+  ASSERT_EQ(wind_field_keys()[0].name, "kind");
+  EXPECT_EQ(split_words(wind_field_keys()[0].choices), fields);
 }
 
 TEST_F(LeavesShot, A_part_of_a_shot_has_the_gusts_of_the_whole) {

@@ -139,5 +139,16 @@ TEST(StartReport, A_preroll_that_is_much_faster_than_the_shot_is_a_note) {
   EXPECT_EQ(notes(0.2).find("bind pose to the first frame"), std::string::npos);
 }
 
+TEST(StartReport, A_part_of_a_shot_with_a_repeated_clip_starts_where_the_shot_does) {
+  const FakeScene scene;
+  BakeOptions options = scene.options();
+  options.overrides.push_back("primary.box.repeat=2");
+  options.frames = FrameRange{4, 6};
+  const BakeResult result = scene.run(options);
+  EXPECT_EQ(result.exit_code, 2);
+  expect_words(text(result), "the clip of \"box\" is repeated");
+  expect_words(text(result), "has to start at the shot's first frame, 1");
+}
+
 }  // namespace
 }  // namespace ft::test
