@@ -52,16 +52,24 @@ void place_triangles(const LeafBodies& bodies, const ContactStep& step, const Bo
   }
 }
 
+/// Vertices of the leaf, and weights.
+struct Whose {
+  std::array<int, 3> vertices;
+  Vec3 weights;
+};
+
 void add(const LeafBodies& bodies, const ContactStep& step, const Vec3& centre, const Vec3& place, const Vec3& normal,
-         const Vec3& body_step, double gap, int body, ContactScratch& s) {
+         const Vec3& body_step, double gap, int body, const Whose& whose, ContactScratch& s) {
   if (gap > step.reach || gap < -k_deepest) return;
-  s.contacts.push_back(
-      {place - centre, normal, body_step / step.time, gap, bodies.obstacle(body).friction, bodies.moves(body)});
+  s.contacts.push_back({place - centre, normal, body_step / step.time, gap, bodies.obstacle(body).friction,
+                        bodies.moves(body), body, whose.vertices, whose.weights});
 }
 
 /// Vertices of the leaf: the nearest triangle of each body, and of equally near ones that which faces it most.
 void meet_faces(const LeafBodies& bodies, const ContactStep& step, const Vec3& centre, ContactScratch& s) {
-  for (const Vec3& p : s.rim)
+  for (std::size_t i = 0; i < s.rim.size(); ++i) {
+    const Vec3& p = s.rim[i];
+    const int v = static_cast<int>(i);
     for (std::size_t first = 0; first < s.local.size();) {
       const int body = s.local[first].body;
       double nearest = (step.reach + k_deepest) * (step.reach + k_deepest), facing = -1;
@@ -84,8 +92,9 @@ void meet_faces(const LeafBodies& bodies, const ContactStep& step, const Vec3& c
       const Vec3 normal = distance > 1e-6 ? Vec3(side / distance * (p - point)) : best->normal;
       const PairGeometry g = vertex_face_geometry(p, best->x[0], best->x[1], best->x[2]);
       const Vec3 moved = -(g.weight[1] * best->step[0] + g.weight[2] * best->step[1] + g.weight[3] * best->step[2]);
-      add(bodies, step, centre, p, normal, moved, side * distance, body, s);
+      add(bodies, step, centre, p, normal, moved, side * distance, body, {{v, v, v}, Vec3::UnitX()}, s);
     }
+  }
 }
 
 /// Vertices of the body against the leaf's triangles.
@@ -114,8 +123,9 @@ void meet_corners(const LeafBodies& bodies, const LeafShape& shape, const Contac
       const double faces = normal.dot(outward);
       if (std::abs(faces) < k_facing) continue;
       if (faces < 0) normal = -normal;
+      const auto weight = vertex_face_geometry(q, x0, x1, x2).weight;
       add(bodies, step, centre, c.point, normal, (step.to - step.from) * (b[at(v)] - a[at(v)]), normal.dot(c.point - q),
-          body, s);
+          body, {t, -Vec3(weight[1], weight[2], weight[3])}, s);
     }
   }
 }
@@ -158,18 +168,23 @@ void meet_edges(const LeafBodies& bodies, const LeafShape& shape, const ContactS
       const Vec3 foot = -(g.weight[2] * q0 + g.weight[3] * q1);
       const Vec3 moved = -(step.to - step.from) * (g.weight[2] * (b[at(e.edge[0])] - a[at(e.edge[0])]) +
                                                    g.weight[3] * (b[at(e.edge[1])] - a[at(e.edge[1])]));
-      add(bodies, step, centre, place, normal, moved, normal.dot(place - foot), body, s);
+      add(bodies, step, centre, place, normal, moved, normal.dot(place - foot), body,
+          {{mine[0], mine[1], mine[1]}, Vec3(g.weight[0], g.weight[1], 0)}, s);
     }
   }
 }
 
 /// The vertices that can come as near as touching in the step.
-void meet_ground(const LeafGround& ground, const ContactStep& step, const Vec3& centre, ContactScratch& s) {
+void meet_ground(const LeafGround& ground, int met, const ContactStep& step, const Vec3& centre, ContactScratch& s) {
   constexpr double k_gain = 0.12;  // of speed in a step [m/s]
-  for (const Vec3& p : s.rim) {
-    const double gap = p.y() - ground.height, approach = -(step.velocity + step.spin.cross(p - centre)).y();
+  for (std::size_t i = 0; i < s.rim.size(); ++i) {
+    const Vec3& p = s.rim[i];
+    const int v = static_cast<int>(i);
+    const double gap = p.y() - ground.height,
+                 approach = -(step.velocity + step.spin.cross(p - centre)).y() + step.bending;
     if (gap < step.touch + step.time * std::max(0.0, approach + k_gain))
-      s.contacts.push_back({p - centre, Vec3::UnitY(), Vec3::Zero(), gap, ground.friction, false});
+      s.contacts.push_back(
+          {p - centre, Vec3::UnitY(), Vec3::Zero(), gap, ground.friction, false, met, {v, v, v}, Vec3::UnitX()});
   }
 }
 
@@ -198,9 +213,10 @@ void find_near(const LeafBodies& bodies, int slice, const Vec3& centre, double r
 void find_contacts(const LeafBodies& bodies, std::span<const LeafGround> grounds, const LeafShape& shape,
                    const ContactStep& step, const Vec3& centre, ContactScratch& s) {
   s.contacts.clear();
-  for (const LeafGround& ground : grounds) {
+  for (std::size_t g = 0; g < grounds.size(); ++g) {
+    const LeafGround& ground = grounds[g];
     if (centre.y() - shape.radius * 4 > ground.height + step.reach) continue;
-    meet_ground(ground, step, centre, s);
+    meet_ground(ground, bodies.count() + static_cast<int>(g), step, centre, s);
   }
   if (s.near.empty()) return;
   Box around = bounds(s.rim);

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "solvers/leaves/leaf_bending.h"
 #include "solvers/leaves/leaf_bodies.h"
 #include "solvers/leaves/leaf_shape.h"
 
@@ -26,7 +27,10 @@ struct LeafContact {
   Vec3 velocity;   ///< of the body there [m/s]
   double gap = 0;  ///< m, with the body at the step's end
   double friction = 0;
-  bool moves = false;  ///< the body does, in this frame
+  bool moves = false;                    ///< the body does, in this frame
+  int met = 0;                           ///< index of the body, or of the ground after all bodies
+  std::array<int, 3> vertices{0, 0, 0};  ///< of the leaf, whose place by these weights is the contact's
+  Vec3 weights = Vec3::UnitX();
 };
 
 /// A triangle that a leaf may meet in a slice.
@@ -48,6 +52,9 @@ struct ContactScratch {
   std::vector<Local> local;
   std::vector<std::pair<int, int>> corners, edges;  ///< body and vertex or edge, each once
   std::vector<Vec3> impulse, share, turn;
+  std::vector<Vec3> own_places;  ///< of a leaf that bends: bend(), in its own axes
+  std::vector<Vec3> directions;  ///< of a leaf that bends: bend_directions(), world
+  std::vector<Vec3> bends;       ///< of each contact, in pairs: how it moves with the leaf's modes [m/rad]
 };
 
 /// All triangles that a leaf can meet which stays within `reach` of centre during a slice.
@@ -61,6 +68,7 @@ struct ContactStep {
   double reach = 0;         ///< gaps beyond it are no contacts [m]
   double touch = 0;         ///< gaps below it are contacts with a ground, whatever the leaf does [m]
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the leaf [m/s], [rad/s]
+  double bending = 0;                                 ///< at most, of its vertices as it bends [m/s]
 };
 
 /// Contacts of the leaf whose vertices are scratch.rim, about `centre`, with scratch.near and the grounds.
@@ -68,12 +76,17 @@ void find_contacts(const LeafBodies& bodies, std::span<const LeafGround> grounds
                    const ContactStep& step, const Vec3& centre, ContactScratch& scratch);
 
 struct LeafVelocity {
-  Vec3 linear, angular;  ///< world
+  Vec3 linear, angular;           ///< world
+  Modes bending = Modes::Zero();  ///< of a leaf that bends
 };
-/// world_inverse_inertia: of the leaf. Returns the velocity for the step's way; `kept` the one to go on with. Whether
-/// any contact pushed is in `pushed`.
-LeafVelocity solve_contacts(std::span<const LeafContact> contacts, double inverse_mass,
-                            const Mat3& world_inverse_inertia, double time, double margin, const LeafVelocity& wanted,
-                            ContactScratch& scratch, LeafVelocity& kept, bool& pushed);
+/// How impulses move a leaf.
+struct LeafMobility {
+  double inverse_mass = 0;
+  Mat3 inverse_inertia = Mat3::Zero();             ///< world
+  const Eigen::Matrix2d* inverse_modes = nullptr;  ///< of its modes, with scratch.directions; null: it is rigid
+};
+/// Returns the velocity for the step's way; `kept` the one to go on with. Whether any contact pushed is in `pushed`.
+LeafVelocity solve_contacts(std::span<const LeafContact> contacts, const LeafMobility& leaf, double time, double margin,
+                            const LeafVelocity& wanted, ContactScratch& scratch, LeafVelocity& kept, bool& pushed);
 
 }  // namespace ft::inline solvers

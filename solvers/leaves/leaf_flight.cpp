@@ -28,24 +28,38 @@ Quat turned(const Quat& q, const Vec3& angle) {
   return (Quat(Eigen::AngleAxisd(size, angle / size)) * q).normalized();
 }
 
-void place_rim(const LeafShape& shape, const Vec3& x, const Quat& q, std::vector<Vec3>& out) {
-  const Mat3 turn = q.toRotationMatrix();
-  out.resize(shape.positions.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = x + turn * shape.positions[i];
+}  // namespace
+
+void LeavesSolver::place_leaf(const Model& model, const Moving& m, std::vector<Vec3>& out) {
+  const Mat3 turn = m.q.toRotationMatrix();
+  if (model.bending)
+    bend(*model.bending, model.shape, m.bent, out);
+  else
+    out = model.shape.positions;
+  for (Vec3& p : out) p = m.x + turn * p;
 }
 
-}  // namespace
+BendingStep LeavesSolver::step_modes(const Model& model, const PlateAir& air, double time, const Moving& m,
+                                     ContactScratch& s) {
+  const Mat3 turn = m.q.toRotationMatrix();
+  bend(*model.bending, model.shape, m.bent, s.own_places);
+  bend_directions(*model.bending, model.shape, m.bent, s.directions);
+  const BendingLoad load = bending_load(*model.bending, model.shape, model.plate, s.own_places, s.directions,
+                                        turn.transpose() * (air.velocity - m.v), turn.transpose() * m.spin);
+  for (Vec3& d : s.directions) d = turn * d;
+  return step_bending(*model.bending, load, time, 1, m.bent, m.bending);
+}
 
 int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& m,
                             ContactScratch& s, Touch& touch) const {
   const Model& model = leaves_[leaf];
-  place_rim(model.shape, m.x, m.q, s.rim);
+  place_leaf(model, m, s.rim);
   find_contacts(bodies_, setup_.grounds, model.shape, step, m.x, s);
 
   // How it lies.
   Vec3 ground = Vec3::Zero(), ground_velocity = Vec3::Zero();
   int touching = 0;
-  touch = {};
+  touch = {touch.impulses};
   for (const LeafContact& c : s.contacts)
     if (c.gap < step.margin + k_touch) {
       ground += c.normal, ground_velocity += c.velocity;
@@ -67,8 +81,18 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
   if (lying < 1) {
     PlateMotion motion{m.x, m.q, m.q.conjugate() * (m.v - air.velocity), m.q.conjugate() * m.spin};
     steps = advance_plate(model.plate, setup_.gravity, air, h, k_flight_steps, motion);
-    flown = {motion.place, motion.turn * motion.velocity + air.velocity + h * air.change, motion.turn * motion.spin,
-             motion.turn};
+    flown = {motion.place,
+             motion.turn * motion.velocity + air.velocity + h * air.change,
+             motion.turn * motion.spin,
+             motion.turn,
+             m.bent,
+             m.bending};
+  }
+  BendingStep bending;
+  if (model.bending) {
+    bending = step_modes(model, air, h, m, s);
+    flown.bending = bending.speed;
+    bend_by(h * flown.bending, flown.bent, flown.bending);
   }
   const Mat3 turn = m.q.toRotationMatrix();
   const Mat3 inverse_inertia = turn * model.plate.inertia.cwiseInverse().asDiagonal() * turn.transpose();
@@ -84,13 +108,20 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
     flown.v = lying * v + (1 - lying) * flown.v;
     flown.spin = lying * spin + (1 - lying) * flown.spin;
   }
-  LeafVelocity kept{flown.v, flown.spin};
+  LeafVelocity kept{flown.v, flown.spin, flown.bending};
   bool pushed = lying > 0;
   LeafVelocity way = kept;
   if (!s.contacts.empty()) {
     bool any = false;
-    way = solve_contacts(s.contacts, 1 / model.plate.mass, inverse_inertia, h, step.margin, kept, s, kept, any);
+    const LeafMobility mobility{1 / model.plate.mass, inverse_inertia, model.bending ? &bending.mobility : nullptr};
+    way = solve_contacts(s.contacts, mobility, h, step.margin, kept, s, kept, any);
     pushed = pushed || any;
+    if (any) {
+      const std::size_t met = at(bodies_.count()) + setup_.grounds.size();
+      touch.impulses->resize(met * LeafBodies::k_slices);
+      for (std::size_t c = 0; c < s.contacts.size(); ++c)
+        (*touch.impulses)[at(step.slice) * met + at(s.contacts[c].met)].add(m.x + s.contacts[c].arm, -s.impulse[c]);
+    }
   }
   if (!pushed) {
     m = flown;
@@ -100,6 +131,10 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
   m.q = turned(m.q, h * way.angular);
   m.v = kept.linear;
   m.spin = kept.angular;
+  if (model.bending) {
+    m.bending = kept.bending;
+    bend_by(h * way.bending, m.bent, m.bending);
+  }
   return std::max(steps, 1);
 }
 
@@ -121,18 +156,27 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
   bool near = !s.near.empty();
   for (const LeafGround& ground : setup_.grounds) near = near || m.x.y() - reach < ground.height;
   int steps = 0;
-  touch = {};
+  touch = {touch.impulses};
   if (!near) {
     PlateMotion motion{m.x, m.q, m.q.conjugate() * (m.v - air.velocity), m.q.conjugate() * m.spin};
+    const Moving before = m;
     steps = advance_plate(model.plate, setup_.gravity, air, time, k_flight_steps, motion);
-    m = {motion.place, motion.turn * motion.velocity + air.velocity + time * air.change, motion.turn * motion.spin,
-         motion.turn};
+    m = {motion.place,
+         motion.turn * motion.velocity + air.velocity + time * air.change,
+         motion.turn * motion.spin,
+         motion.turn,
+         m.bent,
+         m.bending};
+    if (model.bending)
+      advance_bending(*model.bending, model.shape, model.plate, before.q.conjugate() * (air.velocity - before.v),
+                      before.q.conjugate() * before.spin, time, m.bent, m.bending);
     return steps;
   }
   double way = 0;
   for (const NearTriangle& n : s.near) way = std::max(way, bodies_.way(n.body, slice));
   for (double done = 0; done < 1 - 1e-9;) {
-    const double turning = m.spin.norm() * radius, gusting = 0.1 * (air.velocity - m.v).norm();
+    const double bending = m.bending.cwiseAbs().sum() * radius;
+    const double turning = m.spin.norm() * radius + bending, gusting = 0.1 * (air.velocity - m.v).norm();
     double fastest = m.v.norm() + turning + gusting, share = 1;
     if (s.near.empty()) {
       // Half-spaces: what goes along them meets nothing new, and until it gets there nothing has to be looked at.
@@ -155,6 +199,7 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
     step.touch = model.margin + k_touch;
     step.velocity = m.v;
     step.spin = m.spin;
+    step.bending = bending;
     PlateAir here = air;
     here.velocity += done * time * air.change;
     steps += near_step(leaf, step, here, m, s, touch);
@@ -170,25 +215,27 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
   const Moving before = m;
   Tally out;
   Touch touch;
+  touch.impulses = &out.impulses;
   int steps = 0;
   for (int slice = 0; slice < LeafBodies::k_slices; ++slice)
     steps += advance_slice(frame, leaf, slice, m, scratch, touch);
-  if (!m.x.allFinite() || !m.v.allFinite() || !m.spin.allFinite() || !m.q.coeffs().allFinite()) {
-    m = {before.x, Vec3::Zero(), Vec3::Zero(), before.q};
+  if (!m.x.allFinite() || !m.v.allFinite() || !m.spin.allFinite() || !m.q.coeffs().allFinite() || !m.bent.allFinite() ||
+      !m.bending.allFinite()) {
+    m = {before.x, Vec3::Zero(), Vec3::Zero(), before.q, Modes::Zero(), Modes::Zero()};
     out.finite = false;
   }
   const double frame_time = frame.t1 - frame.t0, slice_time = frame_time / LeafBodies::k_slices;
   constexpr int last = LeafBodies::k_slices - 1;
-  place_rim(model.shape, m.x, m.q, scratch.rim);
+  place_leaf(model, m, scratch.rim);
   LeafVerdict verdict = judge_leaf(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time);
   if (!verdict.ok()) {
     const Vec3 velocity = verdict.velocity;
     bring_out(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time, model.margin, verdict);
     m.v = velocity;
-    m.spin.setZero();
+    m.spin.setZero(), m.bending.setZero();
     out.brought_out = 1;
     // As the caches will have it, from the moved centre.
-    place_rim(model.shape, m.x, m.q, scratch.rim);
+    place_leaf(model, m, scratch.rim);
     verdict = judge_leaf(bodies_, setup_.grounds, model.shape, scratch.rim, m.x, last, slice_time);
   }
   out.crossings = verdict.crossings;
@@ -196,8 +243,10 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
   out.deepest = std::max(verdict.below_ground, verdict.inside ? verdict.depth : 0.0);
   out.steps = out.longest = steps;
 
-  const double speed = m.v.norm() + m.spin.norm() * model.shape.radius;
-  const double went = (m.x - before.x).norm() + m.q.angularDistance(before.q) * model.shape.radius;
+  const double radius = model.shape.radius;
+  const double speed = m.v.norm() + (m.spin.norm() + m.bending.cwiseAbs().sum()) * radius;
+  const double went =
+      (m.x - before.x).norm() + (m.q.angularDistance(before.q) + (m.bent - before.bent).cwiseAbs().sum()) * radius;
   const bool still = touch.lies && !touch.moves && speed < k_sleep_speed && went < k_sleep_speed * frame_time;
   rest = still ? rest + frame_time : 0;
   if (setup_.may_sleep && rest >= k_sleep_after) {
@@ -205,7 +254,7 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
                                         lowest_friction(setup_), setup_.gravity.norm(), setup_.air_density);
     const bool calm = !frame.has_wind || frame.air[LeafBodies::k_slices]->velocity(m.x).norm() < k_sleep_wind * holds;
     if (calm) {
-      m.v.setZero(), m.spin.setZero();
+      m.v.setZero(), m.spin.setZero(), m.bending.setZero();
       asleep = 1, rest = 0;
     }
   }
@@ -214,6 +263,7 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
   const Vec3 body_spin = m.q.conjugate() * m.spin;
   out.energy =
       0.5 * model.plate.mass * m.v.squaredNorm() + 0.5 * body_spin.dot(model.plate.inertia.cwiseProduct(body_spin));
+  if (model.bending) out.energy += 0.5 * m.bending.dot(model.bending->mass * m.bending);
   return out;
 }
 

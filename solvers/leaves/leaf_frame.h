@@ -16,18 +16,24 @@ struct LeavesSolver::Tally {
   int crossings = 0, inside = 0, awake = 0, brought_out = 0, longest = 0;
   double steps = 0, energy = 0, deepest = 0, fastest = 0;
   bool finite = true;
+  /// What leaves do to each body and ground in each slice, about the world's origin [N s]; empty: nothing.
+  std::vector<Wrench> impulses{};
 
   Tally operator+(const Tally& b) const {
-    return {crossings + b.crossings,      inside + b.inside, awake + b.awake,   brought_out + b.brought_out,
-            std::max(longest, b.longest), steps + b.steps,   energy + b.energy, std::max(deepest, b.deepest),
-            std::max(fastest, b.fastest), finite && b.finite};
+    std::vector<Wrench> both = impulses.empty() ? b.impulses : impulses;
+    if (!impulses.empty() && !b.impulses.empty())
+      for (std::size_t i = 0; i < both.size(); ++i) both[i] += b.impulses[i];
+    return {crossings + b.crossings,      inside + b.inside,  awake + b.awake,   brought_out + b.brought_out,
+            std::max(longest, b.longest), steps + b.steps,    energy + b.energy, std::max(deepest, b.deepest),
+            std::max(fastest, b.fastest), finite && b.finite, std::move(both)};
   }
 };
 
 /// What a leaf touched in its last step.
 struct LeavesSolver::Touch {
-  bool lies = false;   ///< against something
-  bool moves = false;  ///< that moves in this frame
+  std::vector<Wrench>* impulses = nullptr;  ///< as in Tally: filled, and sized when there are any
+  bool lies = false;                        ///< against something
+  bool moves = false;                       ///< that moves in this frame
 };
 
 inline double lowest_friction(const LeavesSetup& setup) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "baker/core/check.h"
+#include "baker/core/placed_instances.h"
 
 namespace ft::inline solvers {
 
@@ -97,6 +98,18 @@ SystemShape instances_of(const LeavesSetup& setup) {
     out.instances.prototypes.push_back(leaf.prototype);
   }
   return out;
+}
+
+Mesh mesh_of(const LeavesSetup& setup) {
+  const SystemShape shape = instances_of(setup);
+  FrameData start;
+  for (const Leaf& leaf : setup.leaves) {
+    start.positions.push_back(leaf.position.cast<float>());
+    start.orientations.push_back(leaf.orientation.cast<float>().normalized());
+    start.scales.push_back(Vec3f::Constant(static_cast<float>(leaf.scale)));
+  }
+  return make_triangle_mesh(setup.name, placed(shape.prototypes, shape.instances.prototypes, start),
+                            instances_as_mesh(shape.prototypes, shape.instances.prototypes).triangles);
 }
 
 PlateModel plate_of(const LeafPrototype& prototype, const LeafShape& shape, double scale, double mass_factor,

@@ -27,6 +27,9 @@ LeafShape shape_of(const LeafPrototype& prototype);
 /// What the caches know of the setup's leaves: ids, prototypes, their meshes.
 SystemShape instances_of(const LeavesSetup& setup);
 
+/// All leaves as one mesh, in turn, at the start.
+Mesh mesh_of(const LeavesSetup& setup);
+
 /// mass_factor: by which this leaf's mass differs from the prototype's [1].
 PlateModel plate_of(const LeafPrototype& prototype, const LeafShape& shape, double scale, double mass_factor,
                     double air_density);

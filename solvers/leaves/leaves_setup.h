@@ -55,6 +55,7 @@ struct LeafObstacle {
 struct LeafGround {
   double height = 0;      ///< m
   double friction = 0.5;  ///< Coulomb [1]
+  std::string name{};
 };
 
 struct LeavesSetup {
@@ -68,6 +69,8 @@ struct LeavesSetup {
   std::uint64_t seed = 1;
   double mass_variation = 0.2;  ///< masses are (1 +- this) of the prototype's, evenly; 0 to 0.9 [1]
   bool may_sleep = true;        ///< false: for tests of resting leaves
+  /// Bending stiffness of leaves that bend, which are a mesh in the caches [N m]; 0: they are rigid, and instances.
+  double bending = 0;
   std::vector<LeafPrototype> prototypes;
   std::vector<Leaf> leaves;  ///< their number never changes
   std::vector<LeafObstacle> bodies;

@@ -12,6 +12,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "baker/core/state_points.h"
+#include "baker/core/volume.h"
 #include "solvers/leaves/leaf_frame.h"
 #include "solvers/leaves/leaf_sleep.h"
 
@@ -23,6 +24,8 @@ constexpr std::size_t k_block = 16;
 constexpr double k_margin = 0.6e-3;
 /// Of a sleeping leaf: a moving body that comes so near wakes it [m].
 constexpr double k_approach = 0.01;
+/// A leaf that bends may reach so much farther from its centre of mass, which is then not in its middle [1].
+constexpr double k_bent_radius = 1.3;
 
 }  // namespace
 
@@ -31,6 +34,7 @@ Result<std::unique_ptr<LeavesSolver>> LeavesSolver::make(LeavesSetup setup) {
     return usage_error(fmt::format("leaves \"{}\": {}", setup.name, what));
   };
   if (!(setup.fps > 0) || !(setup.air_density > 0)) return refuse("fps and air density must be positive");
+  if (!(setup.bending >= 0 && setup.bending < 1e6)) return refuse("bending stiffness is not below 0");
   if (!(setup.mass_variation >= 0 && setup.mass_variation <= 0.9)) return refuse("mass variation is 0 to 0.9");
   for (const LeafPrototype& p : setup.prototypes) {
     double area = 0;
@@ -66,12 +70,17 @@ LeavesSolver::LeavesSolver(LeavesSetup setup) : setup_(std::move(setup)), bodies
     m.shape = shapes_[at(leaf.prototype)];
     for (Vec3& p : m.shape.positions) p *= leaf.scale;
     m.shape.radius *= leaf.scale;
+    if (setup_.bending > 0) {
+      m.bending = bending_of(m.shape, m.plate, setup_.bending);
+      m.shape.radius *= k_bent_radius;
+    }
     m.margin = k_margin * (1 + random_uniform(key, 1));
     slowest_lift_off_ = std::min(slowest_lift_off_, lift_off_speed(prototype, m.mass_factor, lowest_friction(setup_),
                                                                    gravity, setup_.air_density));
     leaves_.push_back(std::move(m));
   }
   instances_ = instances_of(setup_);
+  if (setup_.bending > 0) mesh_ = mesh_of(setup_);
 }
 
 State LeavesSolver::initial_state() const {
@@ -92,6 +101,10 @@ State LeavesSolver::initial_state() const {
   state.set("spin", std::vector<double>(3 * n));
   state.set("asleep", std::move(asleep));
   state.set("rest", std::vector<double>(n));
+  if (setup_.bending > 0) {
+    state.set("bent", std::vector<double>(2 * n));
+    state.set("bending", std::vector<double>(2 * n));
+  }
   return state;
 }
 
@@ -109,6 +122,28 @@ void LeavesSolver::leaf_states(const State& state, std::span<LeafState> out) con
               as_points(v)[i],
               as_points(spin)[i],
               asleep[i] != 0};
+  }
+}
+
+LeavesSolver::Moving LeavesSolver::moving(const State& state, std::size_t i) const {
+  const auto& q = *state.find("q");
+  Moving m{as_points(*state.find("x"))[i], as_points(*state.find("v"))[i], as_points(*state.find("spin"))[i],
+           Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2])};
+  if (setup_.bending > 0) {
+    const auto &bent = *state.find("bent"), &bending = *state.find("bending");
+    m.bent = Modes(bent[2 * i], bent[2 * i + 1]);
+    m.bending = Modes(bending[2 * i], bending[2 * i + 1]);
+  }
+  return m;
+}
+
+void LeavesSolver::system_positions(const State& state, int, std::span<Vec3> positions) const {
+  std::vector<Vec3> places;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    place_leaf(leaves_[i], moving(state, i), places);
+    CHECK(next + places.size() <= positions.size());
+    for (const Vec3& p : places) positions[next++] = p;
   }
 }
 
@@ -181,6 +216,26 @@ void LeavesSolver::wake(const Frame& frame, State& state, FrameReport& report) c
   report.own["leaves_woken"] = woken;
 }
 
+void LeavesSolver::add_forces(const Frame& frame, std::span<const Wrench> impulses, FrameReport& report) const {
+  const std::size_t bodies = setup_.bodies.size(), met = bodies + setup_.grounds.size();
+  const double frame_time = frame.t1 - frame.t0, slice_time = frame_time / LeafBodies::k_slices;
+  for (std::size_t b = 0; b < met; ++b) {
+    InteractionForce& row = report.forces.emplace_back();
+    row.system = setup_.name;
+    row.primary = b < bodies ? setup_.bodies[b].name : setup_.grounds[b - bodies].name;
+    for (std::size_t k = b; k < impulses.size(); k += met) {
+      if (impulses[k].force.isZero(0)) continue;
+      row.mean += (1 / frame_time) * impulses[k];
+      row.peak = std::max(row.peak, impulses[k].force.norm() / slice_time);
+      row.contact_share += 1.0 / LeafBodies::k_slices;
+    }
+    if (b < bodies && row.contact_share > 0) {
+      const int body = static_cast<int>(b);
+      row.mean = row.mean.moved(volume_centre(bodies_.places(body, LeafBodies::k_slices - 1), bodies_.triangles(body)));
+    }
+  }
+}
+
 FrameReport LeavesSolver::advance_frame(State& state) {
   const auto clock = std::chrono::steady_clock::now();
   FrameReport report;
@@ -204,17 +259,23 @@ FrameReport LeavesSolver::advance_frame(State& state) {
   if (!awake.empty()) {
     auto &x = state.block("x"), &q = state.block("q"), &v = state.block("v"), &spin = state.block("spin"),
          &asleep = state.block("asleep"), &rest = state.block("rest");
+    const bool bends = setup_.bending > 0;
+    double *bent = bends ? state.block("bent").data() : nullptr,
+           *bending = bends ? state.block("bending").data() : nullptr;
     sum = parallel_sum(awake.size(), k_block, Tally{}, [&](std::size_t begin, std::size_t end) {
       Tally part;
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = awake[k];
-        Moving m{as_points(x)[i], as_points(v)[i], as_points(spin)[i],
-                 Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2])};
+        Moving m = moving(state, i);
         part = part + advance_leaf(frame, i, m, rest[i], asleep[i]);
         as_points(x)[i] = m.x;
         as_points(v)[i] = m.v;
         as_points(spin)[i] = m.spin;
         for (int c = 0; c < 4; ++c) q[4 * i + at(c)] = m.q.coeffs()[c];
+        for (std::size_t c = 0; bends && c < 2; ++c) {
+          bent[2 * i + c] = m.bent[static_cast<int>(c)];
+          bending[2 * i + c] = m.bending[static_cast<int>(c)];
+        }
       }
       return part;
     });
@@ -225,6 +286,7 @@ FrameReport LeavesSolver::advance_frame(State& state) {
   report.deepest_drawn = sum.deepest;
   report.kinetic_energy = sum.energy;
   report.finite = sum.finite;
+  add_forces(frame, sum.impulses, report);
   report.own["leaves_awake"] = sum.awake;
   report.own["leaves_brought_out"] = sum.brought_out;
   report.own["leaves_fastest"] = sum.fastest;

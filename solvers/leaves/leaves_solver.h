@@ -1,4 +1,5 @@
-// Thousands of leaves blown about: rigid thin plates in moving air (plate_aerodynamics.h), kept out of moving bodies
+// Thousands of leaves blown about: thin plates in moving air (plate_aerodynamics.h), rigid, or with two ways in which
+// they bend (leaf_bending.h) for those that are seen from near; kept out of moving bodies
 // and the ground (leaf_contact.h, leaf_certificate.h), asleep where nothing moves them (leaf_sleep.h). One-way: nobody
 // feels them.
 //
@@ -10,8 +11,11 @@
 // at a height of its own above what it lies on, so that no two are in one plane where they overlap.
 #pragma once
 
+#include <optional>
+
 #include "baker/core/output_shape.h"
 #include "solvers/base/solver.h"
+#include "solvers/leaves/leaf_bending.h"
 #include "solvers/leaves/leaf_bodies.h"
 #include "solvers/leaves/leaf_shape.h"
 #include "solvers/leaves/leaves_setup.h"
@@ -22,10 +26,12 @@ struct ContactScratch;
 struct ContactStep;
 
 /// Blocks of its states, of all leaves in the setup's order: "x" centres of mass, "q" rotations (x, y, z, w), "v",
-/// "spin" in world axes, "asleep" 1 or 0, "rest": for how long it has been at rest [s].
+/// "spin" in world axes, "asleep" 1 or 0, "rest": for how long it has been at rest [s]; of leaves that bend "bent", the
+/// modes of leaf_bending.h [rad], and "bending", their speeds [rad/s].
 ///
 /// A report's `own`: leaves_awake at the frame's end, leaves_lifted by the wind and leaves_woken by bodies in it,
-/// leaves_brought_out by the certificate, leaves_fastest [m/s], leaf_steps of flight.
+/// leaves_brought_out by the certificate, leaves_fastest [m/s], leaf_steps of flight. Its forces are those of awake
+/// leaves on each body and ground, peaks those of a slice; torques on a ground are about the world's origin.
 class LeavesSolver final : public Solver {
  public:
   /// Refuses, by a usage error, what makes no sense: a prototype without area, a leaf of none, masses that are not
@@ -39,9 +45,11 @@ class LeavesSolver final : public Solver {
   const LeafShape& shape(int prototype) const { return shapes_[at(prototype)]; }
   const PlateModel& plate(int leaf) const { return leaves_[at(leaf)].plate; }
 
-  /// One system: instances of the prototypes' meshes about their centres of mass.
+  /// One system: instances of the prototypes' meshes about their centres of mass; of leaves that bend, one mesh of all.
   int system_count() const override { return 1; }
-  const SystemShape* system_shape(int) const override { return &instances_; }
+  const SystemShape* system_shape(int) const override { return setup_.bending > 0 ? nullptr : &instances_; }
+  const Mesh& system_mesh(int) const override { return mesh_; }
+  void system_positions(const State& state, int system, std::span<Vec3> positions) const override;
   void system_frame(const State& state, int system, FrameData& frame) const override;
   /// None: what leaves meet is others' to write.
   std::span<const Triangle> collider_triangles() const override { return {}; }
@@ -56,16 +64,26 @@ class LeavesSolver final : public Solver {
     LeafShape shape;         ///< to scale
     double margin = 0;       ///< m
     double mass_factor = 1;  ///< 1
+    std::optional<LeafBending> bending;
   };
   struct Moving {
     Vec3 x = Vec3::Zero(), v = Vec3::Zero(), spin = Vec3::Zero();
     Quat q = Quat::Identity();
+    Modes bent = Modes::Zero(), bending = Modes::Zero();  ///< and its speed; of leaves that bend
   };
   struct Frame;
   struct Tally;
   struct Touch;
 
   explicit LeavesSolver(LeavesSetup setup);
+  /// Of leaf i in a state, and back into it.
+  Moving moving(const State& state, std::size_t i) const;
+  /// Its vertices in the world [m].
+  static void place_leaf(const Model& model, const Moving& m, std::vector<Vec3>& out);
+  /// Of its modes, near something; directions of bending into the scratch.
+  static BendingStep step_modes(const Model& model, const PlateAir& air, double time, const Moving& m,
+                                ContactScratch& s);
+  void add_forces(const Frame& frame, std::span<const Wrench> impulses, FrameReport& report) const;
   void wake(const Frame& frame, State& state, FrameReport& report) const;
   bool is_approached(const Vec3& place, double radius) const;
   Tally advance_leaf(const Frame& frame, std::size_t leaf, Moving& moving, double& rest, double& asleep) const;
@@ -78,6 +96,7 @@ class LeavesSolver final : public Solver {
   std::vector<LeafShape> shapes_;  ///< of the prototypes
   std::vector<Model> leaves_;
   SystemShape instances_;
+  Mesh mesh_;                    ///< of leaves that bend, as they are at the start
   double slowest_lift_off_ = 0;  ///< of all leaves [m/s]
   LeafBodies bodies_;            ///< scratch of a frame
 };

@@ -28,7 +28,8 @@ class LeavesBakeTest : public testing::Test {
            "radius = 0.15\nvelocity = [4, 0, 0]\nposition = [-1.2, 0.152, "
         << aside
         << "]\nrelease = 9999\n[leaves.oak]\n"
-           "on = \"floor\"\ncount = 200\nsize = [2, 0, 0.6]\n[wind.wake]\nkind = \"wake\"\nof = \"ball\"\n"
+           "on = \"floor\"\ncount = 200\nsize = [2, 0, 0.6]\ncamera = [-1, 0, 0]\nnear = 0.7\n[wind.wake]\nkind = "
+           "\"wake\"\nof = \"ball\"\n"
            "[cache]\nformats = [\"abc\", \"pc2\"]\n";
   }
   BakeResult run(const std::string& name, int threads = 1, int interrupted_after = 0, bool resume = false) const {
@@ -60,6 +61,8 @@ TEST_F(LeavesBakeTest, Threads_and_interruptions_change_no_byte) {
   EXPECT_EQ(products("again"), products("one"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one/oak.abc"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one/oak.pc2")) << "PC2 cannot hold instances";
+  for (const char* file : {"one/oak_near.abc", "one/oak_near.pc2"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / file)) << "those near the camera are a mesh";
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / k_wind_file));
 }
 

@@ -138,6 +138,29 @@ TEST_F(LeavesShot, The_fold_of_a_leaf_is_that_of_its_mesh) {
   EXPECT_NEAR(dynamic_cast<LeavesGroup&>(*made->groups[0]).setup.prototypes[0].fold, std::atan(0.5), 1e-12);
 }
 
+TEST_F(LeavesShot, Those_that_start_near_the_camera_bend_and_all_others_are_instances) {
+  auto made = plan(std::string(k_region) + "camera = [1, 0, 0]\nnear = 0.5\n");
+  ASSERT_TRUE(made) << made.error().text();
+  ASSERT_EQ(made->groups.size(), 2u);
+  const LeavesSetup &far = dynamic_cast<LeavesGroup&>(*made->groups[0]).setup,
+                    &near = dynamic_cast<LeavesGroup&>(*made->groups[1]).setup;
+  EXPECT_EQ(far.leaves.size() + near.leaves.size(), 300u);
+  EXPECT_GT(near.leaves.size(), 10u);
+  EXPECT_EQ(near.name, "oak_near");
+  EXPECT_EQ(far.bending, 0);
+  EXPECT_GT(near.bending, 0);
+  for (const Leaf& leaf : far.leaves) EXPECT_GT((leaf.position - Vec3(1, 0, 0)).norm(), 0.5);
+  for (const Leaf& leaf : near.leaves) EXPECT_LE((leaf.position - Vec3(1, 0, 0)).norm(), 0.5);
+  ASSERT_TRUE(made->groups[1]->outputs.at(0).mesh);
+  EXPECT_EQ(made->groups[1]->outputs[0].mesh->vertex_count(),
+            static_cast<int>(near.leaves.size() * near.prototypes[0].positions.size()));
+
+  const auto none = plan(std::string(k_region) + "camera = [100, 0, 0]\nnear = 0.5\n");
+  ASSERT_TRUE(none) << none.error().text();
+  EXPECT_EQ(none->groups.size(), 1u);
+  EXPECT_TRUE(std::ranges::any_of(none->notes, [](const std::string& n) { return n.find("none bends") != n.npos; }));
+}
+
 TEST_F(LeavesShot, What_makes_no_sense_is_refused_with_its_place) {
   write("wall.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   write("bad.csv", "1 2 3\nfour 5 6\n");
@@ -148,6 +171,8 @@ TEST_F(LeavesShot, What_makes_no_sense_is_refused_with_its_place) {
            {"over = \"wall.obj\"\n", "no face of it looks up"},
            {"placed = \"bad.csv\"\n", "bad.csv:2"},
            {"placed = \"bad.csv\"\ncount = 4\n", "count does not go with placed"},
+           {"size = [1, 0, 1]\nnear = 2\n", "near is measured from camera, which is missing"},
+           {"size = [1, 0, 1]\nbending = 1e-5\n", "bending is for near leaves, and near is missing"},
            {"size = [1, 0, 1]\nmesh = \"wall.obj\"\nlength = 0.1\n", "length does not go with mesh"},
        }) {
     const std::string said = refusal(std::string("[leaves.oak]\non = \"floor\"\n") + lines);

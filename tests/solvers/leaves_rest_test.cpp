@@ -141,6 +141,28 @@ LeavesSetup lying_leaf() {
   return setup;
 }
 
+TEST(Leaves, What_lies_presses_on_its_ground_with_its_weight) {
+  for (const double bending : {0.0, 1e-4}) {
+    LeavesSetup setup = many_leaves(20, 0.3, 1, 0);
+    setup.bending = bending;
+    setup.may_sleep = false;
+    setup.grounds.push_back({0, 0.5, "road"});
+    setup.bodies.push_back(obstacle_of("far", capsule_surface(0.1, 0.5, 1), Vec3(9, 5, 0)));
+    const auto solver = solver_of(setup);
+    State state = solver->initial_state();
+    FrameReport report;
+    for (int f = 0; f < 24 * 4; ++f) report = solver->advance_frame(state);
+    double weight = 0;
+    for (int leaf = 0; leaf < solver->leaf_count(); ++leaf) weight += solver->plate(leaf).mass * k_gravity;
+    ASSERT_EQ(report.forces.size(), 2u);
+    EXPECT_EQ(report.forces[0].primary, "far");
+    EXPECT_EQ(report.forces[0].contact_share, 0);
+    EXPECT_EQ(report.forces[1].primary, "road");
+    EXPECT_EQ(report.forces[1].contact_share, 1);
+    EXPECT_NEAR(report.forces[1].mean.force.y(), -weight, 0.01 * weight) << "bending " << bending;
+  }
+}
+
 TEST(Leaves, A_leaf_on_the_ground_does_not_creep) {
   LeavesSetup setup = lying_leaf();
   setup.may_sleep = false;

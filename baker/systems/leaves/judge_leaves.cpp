@@ -13,16 +13,25 @@ namespace {
 
 class JudgedLeaves final : public JudgedGroup {
  public:
-  JudgedLeaves(CacheTrack track, std::vector<int> prototypes, MetBodies met)
-      : track_(std::move(track)),
-        prototypes_(std::move(prototypes)),
-        met_(std::move(met)),
-        all_(instances_as_mesh(track_.prototypes, prototypes_)) {}
+  JudgedLeaves(CacheTrack track, MetBodies met) : track_(std::move(track)), met_(std::move(met)) {
+    if (track_.shape() == OutputShape::k_instances) {
+      prototypes_ = track_.reader->info().instances.prototypes;
+      all_ = instances_as_mesh(track_.prototypes, prototypes_);
+    } else {  // those that bend
+      all_.triangles = track_.triangles;
+      int count = 0;
+      all_.instance_of_vertex = connected_pieces(track_.rest.vertex_count(), track_.triangles, count);
+    }
+  }
 
   Result<FrameReport> judge(int index, int frame, std::span<const AbsentRuns>) const override {
     FrameData now;
     if (const Status read = track_.read(index, now); !read) return read.error();
-    const std::vector<Vec3> x = placed(track_.prototypes, prototypes_, now);
+    std::vector<Vec3> x;
+    if (prototypes_.empty())
+      for (const Vec3f& p : now.positions) x.push_back(p.cast<double>());
+    else
+      x = placed(track_.prototypes, prototypes_, now);
     FrameReport report;
     report.frame = frame;
     report.smallest_gap = std::numeric_limits<double>::infinity();
@@ -33,9 +42,9 @@ class JudgedLeaves final : public JudgedGroup {
       report.crossings_body += static_cast<int>(found.size());
       report.crossings_drawn = report.crossings_body;
       if (found.empty()) continue;
-      const int leaf = all_.instance_of_vertex[at(found[0].edge_of_first ? found[0].edge[0] : found[0].triangle[0])];
-      report.incidents.push_back({Incident::Kind::k_crossing, frame, track_.name, leaf,
-                                  now.positions[at(leaf)].cast<double>(), 0,
+      const int vertex = found[0].edge_of_first ? found[0].edge[0] : found[0].triangle[0];
+      const int leaf = all_.instance_of_vertex[at(vertex)];
+      report.incidents.push_back({Incident::Kind::k_crossing, frame, track_.name, leaf, x[at(vertex)], 0,
                                   fmt::format("{} crossings of leaves with \"{}\"", found.size(), body.name)});
     }
     return report;
@@ -49,7 +58,7 @@ class JudgedLeaves final : public JudgedGroup {
 
  private:
   CacheTrack track_;
-  std::vector<int> prototypes_;  ///< of each leaf
+  std::vector<int> prototypes_;  ///< of each leaf; empty: a mesh
   MetBodies met_;
   PlacedInstances all_;
 };
@@ -59,11 +68,9 @@ class JudgedLeaves final : public JudgedGroup {
 Result<std::unique_ptr<JudgedGroup>> judged_leaves(const CachedBake& bake, const ManifestSystem& system) {
   auto track = bake.open(system);
   if (!track) return track.error();
-  std::vector<int> prototypes = track->reader->info().instances.prototypes;
   auto met = met_bodies(bake, system);
   if (!met) return met.error();
-  return std::unique_ptr<JudgedGroup>(
-      std::make_unique<JudgedLeaves>(std::move(*track), std::move(prototypes), std::move(*met)));
+  return std::unique_ptr<JudgedGroup>(std::make_unique<JudgedLeaves>(std::move(*track), std::move(*met)));
 }
 
 }  // namespace ft::inline baker

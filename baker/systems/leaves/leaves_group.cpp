@@ -30,7 +30,7 @@ Status add_bodies(const Shot& shot, const LeavesSpec& spec, BakePlan& plan, Leav
     const auto own = std::find_if(shot.primaries.begin(), shot.primaries.end(),
                                   [&](const PrimarySpec& s) { return s.name == primary.name; });
     if (own != shot.primaries.end() && own->shape == k_ground)
-      group.setup.grounds.push_back({own->position.y(), spec.friction});
+      group.setup.grounds.push_back({own->position.y(), spec.friction, primary.name});
     else
       group.setup.bodies.push_back({primary.name, primary.trajectory, spec.friction, stands_still(shot, primary)});
   }
@@ -39,28 +39,45 @@ Status add_bodies(const Shot& shot, const LeavesSpec& spec, BakePlan& plan, Leav
 
 }  // namespace
 
-Result<std::unique_ptr<LeavesGroup>> plan_leaves(const Shot& shot, const LeavesSpec& spec, std::size_t primary,
-                                                 BakePlan& plan) {
-  auto group = std::make_unique<LeavesGroup>(primary);
-  LeavesSetup& setup = group->setup;
-  setup.name = spec.name;
-  take_from_shot(shot, plan.wind, setup);
-  setup.seed = static_cast<std::uint64_t>(spec.seed);
-  setup.mass_variation = spec.variation;
+Result<std::vector<std::unique_ptr<LeavesGroup>>> plan_leaves(const Shot& shot, const LeavesSpec& spec,
+                                                              std::size_t primary, BakePlan& plan) {
   auto prototype = leaf_prototype(spec);
   if (!prototype) return located(prototype.error(), shot, spec.owner());
   auto leaves = scatter(spec, *prototype);
   if (!leaves) return located(leaves.error(), shot, spec.owner());
-  setup.prototypes.push_back(std::move(*prototype));
-  setup.leaves = std::move(*leaves);
-  for (const Leaf& leaf : setup.leaves) group->around.include(leaf.position);
-  if (const Status added = add_bodies(shot, spec, plan, *group); !added)
-    return located(added.error(), shot, spec.owner());
-  SystemOutput output;
-  output.primary = primary;
-  output.shape = std::make_shared<const SystemShape>(instances_of(setup));
-  group->outputs.push_back(std::move(output));
-  return group;
+  const auto first_near = std::stable_partition(leaves->begin(), leaves->end(), [&](const Leaf& leaf) {
+    return !(spec.near > 0) || (leaf.position - spec.camera).norm() > spec.near;
+  });
+  if (spec.near > 0 && first_near == leaves->end())
+    plan.notes.push_back(
+        fmt::format("{}: none of them starts within {} m of its camera: none bends", spec.owner(), spec.near));
+  std::vector<std::unique_ptr<LeavesGroup>> out;
+  for (const bool near : {false, true}) {
+    const std::span<const Leaf> own =
+        near ? std::span<const Leaf>(first_near, leaves->end()) : std::span<const Leaf>(leaves->begin(), first_near);
+    if (own.empty()) continue;
+    auto group = std::make_unique<LeavesGroup>(primary);
+    LeavesSetup& setup = group->setup;
+    setup.name = near ? spec.name + "_near" : spec.name;
+    take_from_shot(shot, plan.wind, setup);
+    setup.seed = static_cast<std::uint64_t>(spec.seed);
+    setup.mass_variation = spec.variation;
+    if (near) setup.bending = spec.bending;
+    setup.prototypes.push_back(*prototype);
+    setup.leaves.assign(own.begin(), own.end());
+    for (const Leaf& leaf : setup.leaves) group->around.include(leaf.position);
+    if (const Status added = add_bodies(shot, spec, plan, *group); !added)
+      return located(added.error(), shot, spec.owner());
+    SystemOutput output;
+    output.primary = primary;
+    if (near)
+      output.mesh = std::make_shared<const Mesh>(mesh_of(setup));
+    else
+      output.shape = std::make_shared<const SystemShape>(instances_of(setup));
+    group->outputs.push_back(std::move(output));
+    out.push_back(std::move(group));
+  }
+  return out;
 }
 
 Result<std::unique_ptr<Solver>> LeavesGroup::make_solver() {
@@ -76,12 +93,12 @@ std::vector<std::string> LeavesGroup::lines(const BakePlan& plan) const {
   for (const std::size_t p : meets) met.push_back(in_quotes(plan.primaries[p].name));
   double friction = 0.5;
   for (const LeafGround& ground : setup.grounds) friction = ground.friction;
-  return {
-      fmt::format("leaves \"{}\" on \"{}\": {}, of which {} lie, with {} vertices each and {:.2g} g; those that lie "
-                  "are lifted by winds from {:.2g} m/s on; they meet {}",
-                  setup.name, plan.primaries[primary].name, setup.leaves.size(), lying, leaf.positions.size(),
-                  1e3 * leaf.mass_per_area * shape_of(leaf).area,
-                  lift_off_speed(leaf, 1, friction, setup.gravity.norm(), setup.air_density), joined(met))};
+  return {fmt::format(
+      "leaves \"{}\" on \"{}\": {}{}, of which {} lie, with {} vertices each and {:.2g} g; those that lie "
+      "are lifted by winds from {:.2g} m/s on; they meet {}",
+      setup.name, plan.primaries[primary].name, setup.leaves.size(), setup.bending > 0 ? " that bend, as a mesh" : "",
+      lying, leaf.positions.size(), 1e3 * leaf.mass_per_area * shape_of(leaf).area,
+      lift_off_speed(leaf, 1, friction, setup.gravity.norm(), setup.air_density), joined(met))};
 }
 
 /// All of them are met as they are drawn.

@@ -1,4 +1,5 @@
-// One [leaves.NAME] in a plan: its leaves as instances of one shape.
+// One [leaves.NAME] in a plan: its leaves as instances of one shape; those that start near the camera as a group of
+// their own, which bends and is a mesh. Leaves do not meet one another, so nothing is lost between the two.
 #pragma once
 
 #include "baker/plan/plan.h"
@@ -22,8 +23,8 @@ class LeavesGroup final : public SystemGroup {
   std::vector<ColliderSlice> slices(const BakePlan& plan, std::span<const std::string> taken) const override;
 };
 
-/// Errors say where; notes go into the plan.
-Result<std::unique_ptr<LeavesGroup>> plan_leaves(const Shot& shot, const LeavesSpec& spec, std::size_t primary,
-                                                 BakePlan& plan);
+/// Those that are far and those that are near, where there are any. Errors say where; notes go into the plan.
+Result<std::vector<std::unique_ptr<LeavesGroup>>> plan_leaves(const Shot& shot, const LeavesSpec& spec,
+                                                              std::size_t primary, BakePlan& plan);
 
 }  // namespace ft::inline baker

@@ -15,9 +15,9 @@ class LeavesKind final : public SystemKind {
     for (const LeavesSpec* spec : specs_of<LeavesSpec>(shot.secondaries))
       for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
         if (plan.primaries[p].name != spec->on) continue;
-        auto group = plan_leaves(shot, *spec, p, plan);
-        if (!group) return group.error();
-        out.push_back(std::move(*group));
+        auto groups = plan_leaves(shot, *spec, p, plan);
+        if (!groups) return groups.error();
+        for (auto& group : *groups) out.push_back(std::move(group));
       }
     return out;
   }

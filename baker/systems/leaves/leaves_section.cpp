@@ -37,6 +37,13 @@ std::span<const ShotKey<LeavesSpec>> leaves_keys() {
        "is what a gentle breeze leaves at the ground"},
       {"adhesion", &LeavesSpec::adhesion, 0, 100, "N/m2", "", false, "stickiness wetness",
        "Holds a lying leaf down: 0.1 dry, 2 to 5 wet"},
+      {"near", &LeavesSpec::near, 0, 1e4, "m", "", false, "near_distance lod mesh_distance",
+       "Leaves that start so near to `camera` bend along their rib and across, and are one mesh in the caches, "
+       "`NAME_near`; all others are rigid, and instances"},
+      {"camera", &LeavesSpec::camera, -1e4, 1e4, "m", "", false, "camera_position eye",
+       "From where `near` is measured: the camera where it comes nearest"},
+      {"bending", &LeavesSpec::bending, 1e-8, 10, "N m", "", false, "bending_stiffness stiffness",
+       "Bending stiffness of near leaves: 1e-4 a crisp dry leaf, 2e-5 a limp one"},
       {"meets", &LeavesSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
        "Primaries that they meet beside the one that they are on: names with `*` and `?`; `[]`: no other"},
       {"on", &LeavesSpec::on, 0, 0, "", "@name of a primary", false, "primary ground",
@@ -62,6 +69,11 @@ class LeavesSection final : public SectionOf<LeavesSpec> {
       faults.add(size->value.place, spec.owner() + ": size has no area: x and z are above 0");
     if (const Member* count = table->find("count"); count && placed)
       faults.add(count->place, spec.owner() + ": count does not go with placed, which has a line for each");
+    const Member *near = table->find("near"), *camera = table->find("camera");
+    if (near && own.near > 0 && !camera)
+      faults.add(near->place, spec.owner() + ": near is measured from camera, which is missing");
+    if (const Member* only = camera ? camera : table->find("bending"); only && !(own.near > 0))
+      faults.add(only->place, spec.owner() + ": " + only->key + " is for near leaves, and near is missing");
     for (const char* key : {"length", "width", "fold"})
       if (const Member* member = table->find(key); member && table->find("mesh"))
         faults.add(member->place, spec.owner() + ": " + key + " does not go with mesh");

@@ -26,6 +26,9 @@ struct LeavesSpec final : SecondarySpec {
   double friction = 0.5;         ///< Coulomb [1]
   double lift = 0.4;             ///< by dynamic pressure, of a lying leaf [1]
   double adhesion = 0.1;         ///< of a lying leaf [N/m2]
+  double near = 0;               ///< those that start so near to the camera bend, and are meshes; 0: none [m]
+  Vec3 camera = Vec3::Zero();    ///< m
+  double bending = 1e-4;         ///< stiffness of those [N m]
   std::vector<std::string> meets{"*"};
 };
 
