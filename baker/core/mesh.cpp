@@ -116,4 +116,14 @@ std::vector<int> connected_pieces(int vertex_count, std::span<const Triangle> tr
   return out;
 }
 
+Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 e = b - a, n = e.cross(c - a);
+  if (e.norm() < 1e-12 || n.norm() < 1e-18) return Mat3::Identity();
+  Mat3 frame;
+  frame.col(0) = e.normalized();
+  frame.col(2) = n.normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
 }  // namespace ft

@@ -73,6 +73,9 @@ Adjacency vertex_triangles(int vertex_count, std::span<const Triangle> triangles
 /// Area-weighted vertex normals, unit length (zero where a vertex has no area).
 std::vector<Vec3> vertex_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
+/// Columns: its first edge, what is square to both, its normal; the identity where it has no area.
+Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c);
+
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Pieces of a surface that are not joined by triangles: one index per vertex, numbered by first vertex; vertices

@@ -57,7 +57,7 @@ T RodStep<T>::surroundings(const RodSurroundings<T>& around, const RodPose<T>& p
     if (!around.touches) continue;
     for (std::size_t c = k_contacts * i; c < k_contacts * (i + 1); ++c) {
       const HairContact<T>& k = around.contacts[c];
-      if (!any(k.reach)) break;
+      if (!(largest_lane(k.reach) > 0)) break;
       T force, slope, energy;
       contact_force(T(dot(k.normal, pose.x[i]) - k.offset), k.reach, k.stiffness, force, slope, energy);
       const V3<T> moved = pose.x[i] - k.carried;
@@ -79,7 +79,7 @@ void RodStep<T>::freeze_friction(RodSurroundings<T>& around, const RodPose<T>& p
   for (std::size_t i = 2; i < pose.x.size(); ++i)
     for (std::size_t c = k_contacts * i; c < k_contacts * (i + 1); ++c) {
       HairContact<T>& k = around.contacts[c];
-      if (!any(k.reach)) break;
+      if (!(largest_lane(k.reach) > 0)) break;
       T force, slope, energy;
       contact_force(T(dot(k.normal, pose.x[i]) - k.offset), k.reach, k.stiffness, force, slope, energy);
       const V3<T> moved = pose.x[i] - k.carried;

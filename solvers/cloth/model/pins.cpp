@@ -45,16 +45,6 @@ void pin(ClothModel& model) {
   }
 }
 
-Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 e = b - a, n = e.cross(c - a);
-  if (e.norm() < 1e-12 || n.norm() < 1e-18) return Mat3::Identity();
-  Mat3 frame;
-  frame.col(0) = e.normalized();
-  frame.col(2) = n.normalized();
-  frame.col(1) = frame.col(2).cross(frame.col(0));
-  return frame;
-}
-
 PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles) {
   PinPoint pin;
   pin.vertex = vertex;

@@ -10,9 +10,6 @@ namespace ft::inline solvers {
 /// Fills pins from those of the garments that do not hold to a garment, as all lie in the bind pose.
 void pin(ClothModel& model);
 
-/// Orthonormal frame of a triangle: first edge, in-plane, normal. Identity for a degenerate one.
-Mat3 triangle_frame(const Vec3& a, const Vec3& b, const Vec3& c);
-
 /// The point of the body's surface nearest to `place`, with the offset in that triangle's frame; a fixed place without
 /// a body.
 PinPoint bind_pin(int vertex, const Vec3& place, std::span<const Vec3> body, std::span<const Triangle> triangles);

@@ -1,0 +1,61 @@
+// The bodies that strands meet, at the start and the end of a step, with a box tree for the start.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/geometry/triangle_tree.h"
+#include "solvers/hair/hair_setup.h"
+
+namespace ft::inline solvers {
+
+class HairBodies {
+ public:
+  /// bodies have to stay.
+  explicit HairBodies(std::span<const HairBody> bodies);
+
+  /// Where all are at a time [s], as the start of the step that comes.
+  void start_at(double time);
+  /// The end of the step.
+  void end_at(double time);
+  /// The end becomes the start of the next step.
+  void advance();
+
+  int count() const { return static_cast<int>(bodies_.size()); }
+  bool sheet(int body) const { return given_[at(body)].sheet; }
+  double friction(int body) const { return given_[at(body)].friction; }
+  std::span<const Triangle> triangles(int body) const { return given_[at(body)].trajectory->surface().triangles; }
+  std::span<const Vec3> before(int body) const { return bodies_[at(body)].before; }
+  std::span<const Vec3> after(int body) const { return bodies_[at(body)].after; }
+  /// Over the triangles at the start.
+  const TriangleTree& tree(int body) const { return bodies_[at(body)].tree; }
+  /// The farthest that a vertex of any body goes in the step [m].
+  double way() const { return way_; }
+
+ private:
+  struct Body {
+    std::vector<Vec3> before, after;
+    TriangleTree tree;
+  };
+  std::span<const HairBody> given_;
+  std::vector<Body> bodies_;
+  double way_ = 0;
+};
+
+/// A point near a body as the start of a step has it.
+struct NearSurface {
+  int body = -1, triangle = -1;
+  Vec3 weights = Vec3::Zero();  ///< of the triangle's corners: where it is nearest
+  Vec3 normal = Vec3::UnitY();  ///< unit, away from the body there, at the start
+  double gap = 0;               ///< below 0: inside [m]
+};
+
+/// The nearest places of bodies around a point, of up to `most` directions that differ by more than 40 degrees, the
+/// nearest first; none farther than reach. candidates: pairs of body and triangle in which all of them are.
+int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> candidates, const Vec3& point,
+                 double reach, int most, NearSurface* out);
+
+/// All triangles whose boxes at the start meet a box, by body and number.
+void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::pair<int, int>>& out);
+
+}  // namespace ft::inline solvers

@@ -1,0 +1,60 @@
+// What a shot says of its hair. See hair_solver.h for what the solver does.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baker/core/trajectory.h"
+#include "baker/core/types.h"
+#include "solvers/wind/wind.h"
+
+namespace ft::inline solvers {
+
+/// Of what strands are. A strand may stand for a bundle of N hairs: mass and stiffness both grow by N, and it moves as
+/// each of them does; so it is a hair's numbers that are asked.
+struct HairMaterial {
+  double radius = 40e-6;    ///< m; 30 to 50 um
+  double young = 3.9e9;     ///< E [Pa]; dry hair 3.9e9, wet 1e9
+  double shear = 0.89e9;    ///< G [Pa]
+  double density = 1320;    ///< kg/m3
+  double stiffness = 1;     ///< of bending and twisting, by a hair's: cohesion of a lock [1]; 1 to 100
+  double damping = 5e-3;    ///< of strains: time constant [s]; 0 to 0.05
+  double drag = 4;          ///< towards the motion of the root: friction among hairs [1/s]; 0 swings for ever
+  double air_drag = 0.5;    ///< towards the air, by speed [1/m]: of hair that others shelter; 25 a hair alone
+  double friction = 0.3;    ///< Coulomb, on what it lies on [1]
+  double thickness = 3e-3;  ///< of a strand as others meet it: it stays so far away, if it was combed so [m]
+};
+
+struct HairStrand {
+  std::uint64_t id = 0;         ///< as caches know it; any, each once
+  std::vector<Vec3> positions;  ///< root first, in the scalp's bind pose [m]; all strands have as many
+  double width = 80e-6;         ///< diameter, as drawn [m]
+};
+
+/// What strands meet. Sheets have no inside: a strand stays on the side where it is.
+struct HairBody {
+  std::string name;
+  std::shared_ptr<const Trajectory> trajectory;
+  double friction = 1;  ///< times the strand's
+  bool sheet = false;
+};
+
+struct HairSetup {
+  std::string name = "hair";
+  int first_frame = 1;
+  double fps = 24;
+  int preroll_frames = 24;
+  Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
+  double air_density = 1.225;             ///< kg/m3
+  std::shared_ptr<const Wind> wind;       ///< null: still air
+  HairMaterial material;
+  std::vector<HairStrand> strands;
+  std::shared_ptr<const Trajectory> scalp;  ///< on which the roots are: the nearest point of its bind pose
+  std::vector<HairBody> bodies;             ///< met; the scalp is one of them if it is
+  int least_steps = 4;                      ///< of a frame
+  int most_steps = 32;
+};
+
+}  // namespace ft::inline solvers

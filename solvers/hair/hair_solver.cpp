@@ -1,0 +1,287 @@
+// See hair_solver.h: setting up, states, and the walk of a frame. What four strands do in a step is in
+// hair_advance.cpp.
+#include "solvers/hair/hair_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "baker/core/output_frame.h"
+#include "baker/core/parallel.h"
+#include "baker/core/state_points.h"
+#include "solvers/hair/hair_group.h"
+#include "solvers/hair/rest_shape.h"
+
+namespace ft::inline solvers {
+namespace {
+
+/// The farthest that a body goes in a step [m].
+constexpr double k_way = 0.008;
+/// A root that is farther from its scalp is a mistake [m].
+constexpr double k_root_off = 0.05;
+/// Within so far of a root its neighbours are stiffened as much, fading outwards [m].
+constexpr double k_alike = 0.02;
+
+}  // namespace
+
+HairSolver::~HairSolver() = default;
+
+Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
+  const auto refuse = [&](const std::string& what) {
+    return usage_error(fmt::format("hair \"{}\": {}", setup.name, what));
+  };
+  const HairMaterial& m = setup.material;
+  if (!(setup.fps > 0) || setup.least_steps < 1 || setup.most_steps < setup.least_steps)
+    return refuse("fps or steps make no sense");
+  if (!(m.radius > 0 && m.young > 0 && m.shear > 0 && m.density > 0 && m.stiffness > 0 && m.thickness > 0))
+    return refuse("a material's numbers must be positive");
+  if (!(m.damping >= 0 && m.drag >= 0 && m.air_drag >= 0 && m.friction >= 0))
+    return refuse("a material's losses must not be negative");
+  if (!setup.scalp) return refuse("has no scalp");
+  if (setup.strands.empty()) return refuse("has no strand");
+  for (std::size_t s = 0; s < setup.strands.size(); ++s) {
+    const std::vector<Vec3>& x = setup.strands[s].positions;
+    if (x.size() < 3 || x.size() != setup.strands[0].positions.size())
+      return refuse(fmt::format("strand {} has {} vertices, and the first {}; all have as many, 3 or more", s, x.size(),
+                                setup.strands[0].positions.size()));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!x[i].allFinite() || (i > 0 && !((x[i] - x[i - 1]).norm() > 1e-6)))
+        return refuse(fmt::format("strand {} has an edge without length", s));
+  }
+  std::unique_ptr<HairSolver> solver(new HairSolver(std::move(setup)));
+  if (solver->farthest_root() > k_root_off)
+    return usage_error(fmt::format("hair \"{}\": a root is {:.0f} mm from the surface that it should grow on",
+                                   solver->setup_.name, 1e3 * solver->farthest_root()));
+  return solver;
+}
+
+HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies) {
+  n_ = static_cast<int>(setup_.strands[0].positions.size()) + 1;
+  roots_ = std::make_unique<HairRoots>(*setup_.scalp, setup_.strands);
+  shape_.name = setup_.name;
+  shape_.content.shape = OutputShape::k_curves;
+  for (const HairStrand& strand : setup_.strands) {
+    auto& groom = groom_.emplace_back();
+    groom.push_back(2 * strand.positions[0] - strand.positions[1]);
+    groom.insert(groom.end(), strand.positions.begin(), strand.positions.end());
+    double length = 0;
+    Vec3 director = (groom[1] - groom[0]).unitOrthogonal(), before = (groom[1] - groom[0]).normalized();
+    for (std::size_t j = 0; j + 1 < groom.size(); ++j) {
+      const Vec3 t = (groom[j + 1] - groom[j]).normalized();
+      director = plain(carried_director(plain(director), plain(before), plain(t)));
+      before = t;
+      directors_.push_back(director);
+      if (j > 0) length += (groom[j + 1] - groom[j]).norm();
+    }
+    lengths_.push_back(length);
+    shape_.curves.vertices_per_curve.push_back(n_ - 1);
+    shape_.curves.rest.insert(shape_.curves.rest.end(), strand.positions.begin(), strand.positions.end());
+    shape_.curves.widths.push_back(static_cast<float>(strand.width));
+    shape_.curves.ids.push_back(strand.id);
+  }
+  // How near each vertex was combed: bodies_ stands in its bind pose.
+  gaps_.assign(setup_.strands.size() * at(n_), 1.0);
+  const double thickness = setup_.material.thickness;
+  parallel_for(setup_.strands.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::pair<int, int>> candidates;
+    for (std::size_t s = begin; s < end; ++s) {
+      Box box = bounds(groom_[s]);
+      box.inflate(4 * thickness);
+      find_candidates(bodies_, box, candidates);
+      for (std::size_t i = 1; i < at(n_); ++i) {
+        NearSurface near;
+        if (find_nearest(bodies_, candidates, groom_[s][i], 4 * thickness, 1, &near) > 0)
+          gaps_[s * at(n_) + i] = near.gap;
+      }
+    }
+  });
+  make_groups();
+}
+
+std::size_t HairSolver::strand_of(std::size_t group, int lane) const {
+  return std::min(k_lanes * group + at(lane), setup_.strands.size() - 1);
+}
+
+/// Neighbours on the scalp swing alike: each is as stiff as the stiffest near it asks for, less with distance.
+void HairSolver::stiffen_alike(std::vector<double>& factors) const {
+  std::vector<double> logs(factors.size());
+  const auto bind = roots_->bind();
+  parallel_for(factors.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      double largest = std::log(factors[s]), sum = 0, weight = 0;
+      for (std::size_t k = 0; k < factors.size(); ++k) {
+        const double r = (bind[k].place - bind[s].place).norm() / k_alike;
+        if (r >= 1) continue;
+        const double w = (1 - r) * (1 - r);
+        sum += w * std::log(factors[k]), weight += w;
+      }
+      logs[s] = std::max(largest, sum / weight);
+    }
+  });
+  for (std::size_t s = 0; s < factors.size(); ++s) factors[s] = std::exp(logs[s]);
+}
+
+void HairSolver::make_groups() {
+  const HairMaterial& m = setup_.material;
+  const double area = std::numbers::pi * m.radius * m.radius;
+  const std::size_t n = at(n_), count = setup_.strands.size();
+  std::vector<Rod<double>> rods(count);
+  const auto pose_of = [&](std::size_t s) {
+    RodPose<double> pose;
+    for (const Vec3& p : groom_[s]) pose.x.push_back(plain(p));
+    for (std::size_t j = 0; j + 1 < n; ++j) pose.director.push_back(plain(directors_[s * (n - 1) + j]));
+    return pose;
+  };
+  const auto forces_of = [&](std::size_t s) {
+    std::vector<Vec3> out;
+    for (const double mass : rods[s].mass) out.push_back(mass * setup_.gravity);
+    return out;
+  };
+  stiffened_.assign(count, 1.0);
+  parallel_for(count, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      Rod<double>& rod = rods[s];
+      rod.n = n_;
+      rod.stretch = m.young * area;
+      rod.bend = m.stiffness * m.young * area * m.radius * m.radius / 4;
+      rod.twist = m.stiffness * m.shear * area * m.radius * m.radius / 2;
+      for (std::size_t j = 0; j + 1 < n; ++j) rod.length.push_back((groom_[s][j + 1] - groom_[s][j]).norm());
+      rod.voronoi.assign(n, rod.length[1]);
+      rod.mass.assign(n, 0.0);
+      for (std::size_t i = 1; i < n; ++i) {
+        const double before = i > 1 ? rod.length[i - 1] : 0.0, after = i + 1 < n ? rod.length[i] : 0.0;
+        rod.mass[i] = m.density * area * 0.5 * (before + after);
+        if (i + 1 < n) rod.voronoi[i] = 0.5 * (before + after);
+      }
+      rod.k1.assign(n, 0), rod.k2 = rod.tw = rod.k1;
+      Rod<double> trial = rod;
+      stiffened_[s] = stand_still(trial, pose_of(s), forces_of(s), slowest_wanted(lengths_[s], setup_.gravity.norm()));
+    }
+  });
+  stiffen_alike(stiffened_);
+  parallel_for(count, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) stand_still_at(stiffened_[s], rods[s], pose_of(s), forces_of(s));
+  });
+  groups_.resize((count + k_lanes - 1) / k_lanes);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    Rod<Lanes>& all = groups_[g].rod;
+    all.n = n_;
+    all.length.resize(n - 1), all.voronoi.resize(n), all.mass.resize(n), all.k1.resize(n), all.k2.resize(n),
+        all.tw.resize(n);
+    for (int lane = 0; lane < k_lanes; ++lane) {
+      const Rod<double>& one = rods[strand_of(g, lane)];
+      for (std::size_t i = 0; i < n; ++i) {
+        if (i + 1 < n) all.length[i][lane] = one.length[i];
+        all.voronoi[i][lane] = one.voronoi[i], all.mass[i][lane] = one.mass[i];
+        all.k1[i][lane] = one.k1[i], all.k2[i][lane] = one.k2[i], all.tw[i][lane] = one.tw[i];
+      }
+      all.stretch[lane] = one.stretch, all.bend[lane] = one.bend, all.twist[lane] = one.twist;
+    }
+  }
+}
+
+State HairSolver::initial_state() const {
+  State state;
+  state.frame = setup_.first_frame - setup_.preroll_frames;
+  state.time = -setup_.preroll_frames / setup_.fps;
+  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
+  setup_.scalp->sample(state.time, scalp);
+  std::vector<RootFrame> now;
+  roots_->frames(scalp, now);
+  std::vector<double> x, m;
+  for (std::size_t s = 0; s < setup_.strands.size(); ++s) {
+    for (const Vec3& p : groom_[s]) {
+      const Vec3 q = now[s].carry(roots_->bind()[s], p);
+      x.insert(x.end(), {q.x(), q.y(), q.z()});
+    }
+    for (std::size_t j = 0; j + 1 < at(n_); ++j) {
+      const Vec3 d = now[s].turn * (roots_->bind()[s].turn.transpose() * directors_[s * at(n_ - 1) + j]);
+      m.insert(m.end(), {d.x(), d.y(), d.z()});
+    }
+  }
+  const std::size_t count = x.size();
+  state.set("x_before", x);
+  state.set("x", std::move(x));
+  state.set("v", std::vector<double>(count));
+  state.set("v_before", std::vector<double>(count));
+  state.set("m", std::move(m));
+  state.set("tension", std::vector<double>(count / 3));
+  state.set("step", std::vector<double>(1));
+  return state;
+}
+
+void HairSolver::system_frame(const State& state, int, FrameData& frame) const {
+  frame = {};
+  const auto x = as_points(*state.find("x")), v = as_points(*state.find("v"));
+  for (std::size_t s = 0; s < setup_.strands.size(); ++s)
+    for (std::size_t i = 1; i < at(n_); ++i) {
+      frame.positions.push_back(x[s * at(n_) + i].cast<float>());
+      frame.velocities.push_back(v[s * at(n_) + i].cast<float>());
+    }
+}
+
+FrameReport HairSolver::advance_frame(State& state) {
+  const auto clock = std::chrono::steady_clock::now();
+  FrameReport report;
+  report.frame = state.frame + 1;
+  report.smallest_gap = std::numeric_limits<double>::infinity();  // not measured
+  const double t0 = (state.frame - setup_.first_frame) / setup_.fps,
+               t1 = (report.frame - setup_.first_frame) / setup_.fps;
+  bodies_.start_at(t0);
+  bodies_.end_at(t1);
+  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
+  const auto roots_at = [&](double time, std::vector<RootFrame>& out) {
+    setup_.scalp->sample(time, scalp);
+    roots_->frames(scalp, out);
+  };
+  std::vector<RootFrame> before, now, after;
+  roots_at(t0, now), roots_at(t1, after);
+  double way = bodies_.way();
+  for (std::size_t s = 0; s < now.size(); ++s) way = std::max(way, (after[s].place - now[s].place).norm());
+  const int steps = std::clamp(static_cast<int>(std::ceil(way / k_way)), setup_.least_steps, setup_.most_steps);
+  const double h = (t1 - t0) / steps;
+  const bool goes_on = std::abs(state.find("step")->at(0) - h) < 1e-9 * h;
+  roots_at(t0 - h, before);
+  std::vector<int> iterations(groups_.size(), 0), unsettled(groups_.size(), 0);
+  for (int k = 0; k < steps; ++k) {
+    const double end = k + 1 == steps ? t1 : t0 + h * (k + 1);
+    bodies_.end_at(end);
+    roots_at(end, after);
+    Step step;
+    step.h = h;
+    step.first = k == 0 && !goes_on;
+    step.roots_before = before, step.roots_now = now, step.roots_after = after;
+    std::unique_ptr<AirNow> air;
+    if (setup_.wind && !setup_.wind->is_still()) air = setup_.wind->at_time(end);
+    step.air = air.get();
+    step.x = state.block("x").data(), step.x_before = state.block("x_before").data();
+    step.v = state.block("v").data(), step.v_before = state.block("v_before").data();
+    step.m = state.block("m").data(), step.tension = state.block("tension").data();
+    step.iterations = iterations.data(), step.unsettled = unsettled.data();
+    parallel_for(groups_.size(), 1, [&](std::size_t begin, std::size_t finish) {
+      thread_local Work work;
+      for (std::size_t g = begin; g < finish; ++g) advance_group(step, g, work);
+    });
+    bodies_.advance();
+    std::swap(before, now);
+    std::swap(now, after);
+  }
+  state.block("step")[0] = h;
+  state.frame = report.frame;
+  state.time = t1;
+  report.substeps = steps;
+  double sum = 0, rest = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) sum += iterations[g], rest += unsettled[g];
+  report.newton_iterations = static_cast<int>(sum);
+  report.own["hair_steps"] = steps;
+  report.own["hair_iterations"] = sum / (steps * static_cast<double>(groups_.size()));
+  report.own["hair_unsettled"] = rest;
+  certify(state, report);
+  report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return report;
+}
+
+}  // namespace ft::inline solvers

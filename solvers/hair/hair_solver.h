@@ -1,0 +1,78 @@
+// Hair and whatever grows: strands as discrete elastic rods (rod.h), each for itself among the scene's bodies, rooted
+// in a scalp. One-way: nobody feels them.
+//
+// A frame is a number of equal steps, so many that no body goes farther than some millimetres in one. In a step, what
+// is near each vertex at its start becomes up to three planes of the body as it is at its end (hair_contact.h); four
+// strands at a time are then solved by Newton's method (rod_step.h). BDF2, which keeps swings; a step that differs from
+// the one before it begins anew with implicit Euler. The groom is the equilibrium: rest_shape.h.
+//
+// Drag is towards the motion of the root, as the difference formula of the step has it at the step's end, so that hair
+// that falls together with its head is not braked; and towards the air by the square of the speed.
+#pragma once
+
+#include <optional>
+
+#include "baker/core/output_shape.h"
+#include "solvers/base/solver.h"
+#include "solvers/hair/hair_bodies.h"
+#include "solvers/hair/hair_roots.h"
+#include "solvers/hair/hair_setup.h"
+#include "solvers/hair/rod_step.h"
+
+namespace ft::inline solvers {
+
+/// Blocks of its states, of all strands in the setup's order, with the ghost vertex first: "x" and "v" now, "x_before"
+/// and "v_before" a step before [m, m/s], "m" directors, "tension" [N], "step" the last step's length [s].
+///
+/// A report's `own`: hair_steps of the frame, hair_iterations in the mean of steps and groups, hair_unsettled groups of
+/// steps, hair_longest and hair_p99, of |length / rest length - 1| of strands. inside_body counts vertices that are
+/// inside of a body by more than they were combed, crossings_body segments that are.
+class HairSolver final : public Solver {
+ public:
+  /// Refuses, by a usage error, what makes no sense: strands of different numbers of vertices or of no length, roots
+  /// far from the scalp, a material that is not positive.
+  static Result<std::unique_ptr<HairSolver>> make(HairSetup setup);
+
+  int strand_count() const { return static_cast<int>(setup_.strands.size()); }
+  int vertices() const { return n_ - 1; }
+  /// By how much each strand is stiffer than its material, so that it stands as it is combed [1].
+  std::span<const double> stiffened() const { return stiffened_; }
+  double farthest_root() const { return roots_->farthest(); }
+
+  int system_count() const override { return 1; }
+  const SystemShape* system_shape(int) const override { return &shape_; }
+  void system_frame(const State& state, int system, FrameData& frame) const override;
+  std::span<const Triangle> collider_triangles() const override { return {}; }
+  void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
+  State initial_state() const override;
+  FrameReport advance_frame(State& state) override;
+
+ private:
+  struct Group;
+  struct Step;
+  struct Work;
+
+  explicit HairSolver(HairSetup setup);
+  void make_groups();
+  void stiffen_alike(std::vector<double>& factors) const;
+  std::size_t strand_of(std::size_t group, int lane) const;
+  void advance_group(const Step& step, std::size_t group, Work& work) const;
+  void add_contacts(std::size_t group, int lane, std::span<const Vec3> x, std::span<const Vec3> next, Work& work) const;
+  void certify(const State& state, FrameReport& report) const;
+
+  HairSetup setup_;
+  int n_ = 0;  ///< vertices of a strand, with its ghost
+  std::unique_ptr<HairRoots> roots_;
+  HairBodies bodies_;  ///< scratch of a frame
+  std::vector<Group> groups_;
+  std::vector<std::vector<Vec3>> groom_;  ///< of each strand, with its ghost, in the bind pose [m]
+  std::vector<Vec3> directors_;           ///< of all strands' edges, in the bind pose
+  std::vector<double> gaps_;              ///< of each vertex as combed, to what it meets [m]
+  std::vector<double> lengths_, stiffened_;
+  SystemShape shape_;
+
+ public:
+  ~HairSolver() override;
+};
+
+}  // namespace ft::inline solvers

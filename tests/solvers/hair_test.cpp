@@ -1,0 +1,158 @@
+// Hair on a head: it stands as it is combed, keeps its length, stays outside, and comes back.
+#include "baker/core/parallel.h"
+#include "tests/solvers/hair_scenes.h"
+
+namespace ft {
+namespace {
+
+using namespace test;
+
+double farthest(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
+  float squared = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squared = std::max(squared, (a[i] - b[i]).squaredNorm());
+  return std::sqrt(static_cast<double>(squared));
+}
+
+/// Shakes to and fro along z by 5 cm, twice a second at speed 1, for so long [s].
+Placing shake(double speed, double until) {
+  return [=](double t) {
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    if (t > 0 && t < until) out.translation().z() = 0.05 * std::sin(4 * std::numbers::pi * speed * t);
+    return out;
+  };
+}
+/// Turns about an axis by this angle either way, once a second at speed 1.
+Placing turn(const Vec3& axis, double angle, double speed, double until) {
+  return [=](double t) {
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    if (t > 0 && t < until)
+      out.linear() = Eigen::AngleAxisd(angle * std::sin(2 * std::numbers::pi * speed * t), axis).toRotationMatrix();
+    return out;
+  };
+}
+
+TEST(Hair, A_groom_stands_still) {
+  const auto solver = solver_of(head_of_hair(60, 0.2, 24));
+  State state = solver->initial_state();
+  const std::vector<Vec3f> start = strands_of(*solver, state);
+  FrameReport report;
+  double drift = 0;
+  for (int f = 0; f < 48; ++f) {
+    report = solver->advance_frame(state);
+    drift = std::max(drift, farthest(start, strands_of(*solver, state)));
+  }
+  printf("drift %.5f mm\n", 1e3 * drift);
+  EXPECT_LT(drift, 0.0005);
+  EXPECT_EQ(report.inside_body, 0);
+  EXPECT_EQ(report.own.at("hair_unsettled"), 0);
+}
+
+TEST(Hair, Shaken_hair_keeps_its_length_stays_outside_and_comes_back) {
+  for (const double speed : {1.0, 2.0, 4.0}) {
+    const auto solver = solver_of(head_of_hair(60, 0.2, 24, shake(speed, 1)));
+    State state = solver->initial_state();
+    const std::vector<Vec3f> start = strands_of(*solver, state);
+    double longest = 0, went = 0, unsettled = 0, iterations = 0;
+    int inside = 0, segments = 0;
+    for (int f = 0; f < 24 * 5; ++f) {
+      const FrameReport report = solver->advance_frame(state);
+      ASSERT_TRUE(report.finite);
+      longest = std::max(longest, report.strain_max);
+      inside += report.inside_body, segments += report.crossings_body;
+      unsettled += report.own.at("hair_unsettled");
+      iterations = std::max(iterations, report.own.at("hair_iterations"));
+      went = std::max(went, farthest(start, strands_of(*solver, state)));
+    }
+    const double left = farthest(start, strands_of(*solver, state));
+    printf("speed %.0f: went %.0f mm, left %.3f mm, longest %.5f, inside %d + %d, unsettled %.0f, iterations %.1f\n",
+           speed, 1e3 * went, 1e3 * left, longest, inside, segments, unsettled, iterations);
+    EXPECT_GT(went, 0.05);
+    EXPECT_LT(longest, 0.001);
+    EXPECT_EQ(inside, 0);
+    EXPECT_EQ(segments, 0);
+  }
+}
+
+TEST(Hair, Nods_and_turns_leave_no_strand_inside) {
+  for (const Vec3& axis : {Vec3(0, 1, 0), Vec3(1, 0, 0)})
+    for (const double speed : {1.0, 2.0, 4.0}) {
+      const auto solver = solver_of(head_of_hair(60, 0.2, 24, turn(axis, 0.7, speed, 1)));
+      State state = solver->initial_state();
+      int inside = 0, segments = 0;
+      double longest = 0, unsettled = 0;
+      for (int f = 0; f < 36; ++f) {
+        const FrameReport report = solver->advance_frame(state);
+        ASSERT_TRUE(report.finite);
+        inside += report.inside_body, segments += report.crossings_body;
+        longest = std::max(longest, report.strain_max);
+        unsettled += report.own.at("hair_unsettled");
+      }
+      printf("axis %.0f %.0f, speed %.0f: inside %d + %d, longest %.5f, unsettled %.0f\n", axis.x(), axis.y(), speed,
+             inside, segments, longest, unsettled);
+      EXPECT_EQ(inside, 0);
+      EXPECT_EQ(segments, 0);
+      EXPECT_LT(longest, 0.001);
+    }
+}
+
+TEST(Hair, What_falls_together_with_its_head_is_not_braked) {
+  const Placing fall = [](double t) {
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    out.translation().y() = -0.5 * k_gravity * std::max(0.0, t) * std::max(0.0, t);
+    return out;
+  };
+  HairSetup setup = head_of_hair(20, 0.2, 24, fall);
+  setup.bodies.clear();
+  setup.material.air_drag = 0;
+  HairSetup light = setup;
+  light.scalp = rigid_body(sphere_surface(k_head, 4), Vec3::Zero());
+  const auto falling = solver_of(std::move(setup));
+  State state = falling->initial_state();
+  const std::vector<Vec3f> start = strands_of(*falling, state);
+  for (int f = 0; f < 12; ++f) falling->advance_frame(state);
+  std::vector<Vec3f> end = strands_of(*falling, state);
+  for (Vec3f& p : end) p.y() += static_cast<float>(0.5 * k_gravity * 0.25);
+  // Weightless: the rest shape, which carried the weight, straightens. Everything beside that is the same.
+  light.gravity = Vec3(0, -k_gravity, 0);
+  printf("moved by %.1f mm\n", 1e3 * farthest(start, end));
+  EXPECT_GT(farthest(start, end), 0.005);
+}
+
+TEST(Hair, One_thread_and_two_and_a_restored_state_have_the_same_bytes) {
+  std::vector<Hash128> one, two;
+  Bytes saved;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    const auto solver = solver_of(head_of_hair(30, 0.2, 16, shake(2, 1)));
+    State state = solver->initial_state();
+    for (int f = 0; f < 12; ++f) {
+      solver->advance_frame(state);
+      (threads == 1 ? one : two).push_back(hash(state));
+      if (threads == 1 && f == 5) saved = save(state);
+    }
+  }
+  EXPECT_TRUE(one == two);
+  const auto solver = solver_of(head_of_hair(30, 0.2, 16, shake(2, 1)));
+  auto state = load_state(saved);
+  ASSERT_TRUE(state);
+  for (std::size_t f = 6; f < 12; ++f) {
+    solver->advance_frame(*state);
+    ASSERT_TRUE(hash(*state) == one[f]) << f;
+  }
+}
+
+TEST(Hair, Cost_of_500_strands_of_32_slow) {
+  const auto solver = solver_of(head_of_hair(500, 0.25, 32, shake(1, 2)));
+  State state = solver->initial_state();
+  double seconds = 0, iterations = 0;
+  for (int f = 0; f < 24; ++f) {
+    const FrameReport report = solver->advance_frame(state);
+    seconds += report.profile.total / 24;
+    iterations += report.own.at("hair_iterations") / 24;
+  }
+  printf("%.1f ms a frame, %.1f iterations\n", 1e3 * seconds, iterations);
+  EXPECT_LT(seconds, 1.0);
+}
+
+}  // namespace
+}  // namespace ft
