@@ -3,6 +3,7 @@
 #include "baker/systems/cloth/cloth_kind.h"
 #include "baker/systems/cords/cords_kind.h"
 #include "baker/systems/follow/follow_kind.h"
+#include "baker/systems/hair/hair_kind.h"
 #include "baker/systems/interface/system.h"
 #include "baker/systems/leaves/leaves_kind.h"
 
@@ -16,6 +17,7 @@ struct Registry {
       cords_kind(),
       follow_kind(),
       leaves_kind(),
+      hair_kind(),
   };
   std::vector<Metric> metrics = metrics_of(kinds);
 

@@ -14,7 +14,7 @@ constexpr double k_slow = 2e-3;
 /// Beyond its thickness and what it goes in the step, a vertex looks so much farther for what is near [m]; and no
 /// farther than the second.
 constexpr double k_look = 2e-3, k_farthest = 0.06;
-constexpr std::size_t k_together = 4;  ///< vertices that look for triangles together
+constexpr std::size_t k_together = 1;  ///< vertices that look for triangles together
 
 Vec3 vec(const double* p) {
   return {p[0], p[1], p[2]};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/output_shape.h"
 #include "baker/core/trajectory.h"
 #include "baker/core/types.h"
 #include "solvers/wind/wind.h"
@@ -56,5 +57,10 @@ struct HairSetup {
   int least_steps = 4;                      ///< of a frame
   int most_steps = 32;
 };
+
+/// What caches know of the setup's strands: vertices, widths, ids, and what grooming tools ask for: version, ids,
+/// widths
+/// (`groom_...`, as Unreal's import reads them).
+SystemShape curves_of(const HairSetup& setup);
 
 }  // namespace ft::inline solvers

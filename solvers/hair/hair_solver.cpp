@@ -61,8 +61,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
 HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies) {
   n_ = static_cast<int>(setup_.strands[0].positions.size()) + 1;
   roots_ = std::make_unique<HairRoots>(*setup_.scalp, setup_.strands);
-  shape_.name = setup_.name;
-  shape_.content.shape = OutputShape::k_curves;
+  shape_ = curves_of(setup_);
   for (const HairStrand& strand : setup_.strands) {
     auto& groom = groom_.emplace_back();
     groom.push_back(2 * strand.positions[0] - strand.positions[1]);
@@ -77,10 +76,6 @@ HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setu
       if (j > 0) length += (groom[j + 1] - groom[j]).norm();
     }
     lengths_.push_back(length);
-    shape_.curves.vertices_per_curve.push_back(n_ - 1);
-    shape_.curves.rest.insert(shape_.curves.rest.end(), strand.positions.begin(), strand.positions.end());
-    shape_.curves.widths.push_back(static_cast<float>(strand.width));
-    shape_.curves.ids.push_back(strand.id);
   }
   // How near each vertex was combed: bodies_ stands in its bind pose.
   gaps_.assign(setup_.strands.size() * at(n_), 1.0);

@@ -1,0 +1,30 @@
+// [hair.NAME] of the shot file: what grows on a body.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "baker/core/types.h"
+#include "io/shot/secondary.h"
+
+namespace ft::inline baker {
+
+struct HairSpec final : SecondarySpec {
+  std::filesystem::path guides;  ///< .tfx, .obj or .abc
+  double scale = 1;              ///< m per unit of it
+  Vec3 position = Vec3::Zero();  ///< added to its places [m]
+  int count = 0;                 ///< of guides that are solved, evenly chosen; 0: all
+  int vertices = 24;             ///< of each
+  double width = 1e-4;           ///< diameter of a strand as drawn [m]
+  double radius = 40e-6;         ///< of a hair [m]
+  double stiffness = 1;          ///< by a hair's [1]
+  double damping = 5e-3;         ///< of strains [s]
+  double drag = 4;               ///< 1/s
+  double air_drag = 0.5;         ///< 1/m
+  double friction = 0.3;         ///< Coulomb [1]
+  double thickness = 3e-3;       ///< m
+  std::vector<std::string> meets{"*"};
+};
+
+}  // namespace ft::inline baker
