@@ -71,10 +71,11 @@ struct Tolerances {
   double metres, degrees;
 };
 
-/// Meshes of constant topology and instances can be compared so far.
+/// Meshes of constant topology, instances and curves can be compared so far.
 Result<std::unique_ptr<CacheReader>> open_comparable(const std::filesystem::path& path) {
   auto reader = open_cache_of_any_shape(path);
-  if (reader && (*reader)->info().content.shape == OutputShape::k_instances) return reader;
+  const auto holds = [&](OutputShape shape) { return reader && (*reader)->info().content.shape == shape; };
+  if (holds(OutputShape::k_instances) || holds(OutputShape::k_curves)) return reader;
   return open_cache(path);
 }
 
@@ -135,6 +136,7 @@ int CompareReport::diverging_count() const {
 }
 
 std::string CompareReport::element(int index) const {
+  if (curves) return curves->element(index);
   if (!instances) return "vertex " + std::to_string(index);
   return "instance " + (index < 0 ? std::string("-") : std::to_string(instances->ids[at(index)]));
 }
@@ -159,6 +161,10 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, d
   if (std::string reason = mismatch(info_a, info_b); !reason.empty()) return give_up(std::move(reason));
   if (info_a.content.shape == OutputShape::k_instances) {
     if (const Status s = compare_instances(a, b, r); !s) return give_up(s.error().text());
+    return r;
+  }
+  if (info_a.content.shape == OutputShape::k_curves) {
+    if (const Status s = compare_curves(a, b, r); !s) return give_up(s.error().text());
     return r;
   }
 

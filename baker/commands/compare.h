@@ -1,7 +1,7 @@
 // compare: are two caches, or the caches of two bake folders, the same within a tolerance? For regression suites and
-// for artists who changed "nothing". Meshes, and instances (compare_instances.h). Any two formats: what only one of
-// them holds (topology, frame rate, velocities) is not compared. compare_caches is pure: readers in, report out;
-// compare_report.h turns reports into text, JSON, HTML and JUnit.
+// for artists who changed "nothing". Meshes, instances (compare_instances.h) and curves (compare_curves.h). Any two
+// formats: what only one of them holds (topology, frame rate, velocities) is not compared. compare_caches is pure:
+// readers in, report out; compare_report.h turns reports into text, JSON, HTML and JUnit.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/commands/compare_curves.h"
 #include "baker/commands/compare_instances.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
@@ -24,8 +25,8 @@ struct CompareOptions {
 };
 
 enum class CompareVerdict {
-  k_equal,         ///< exit code 0
-  k_different,     ///< 1: same topology and range, a vertex beyond the tolerance; instances that only one has
+  k_equal,      ///< exit code 0
+  k_different,  ///< 1: same topology and range, a vertex beyond the tolerance; instances or strands that only one has
   k_incomparable,  ///< 3: another topology or frame range, or unreadable
 };
 
@@ -62,12 +63,13 @@ struct CompareReport {
   std::vector<Vec3f> picture_positions;
   std::vector<float> picture_distances;           ///< m
   std::optional<InstanceDifference> instances{};  ///< of caches of instances
+  std::optional<CurveDifference> curves{};        ///< of caches of curves
 
   bool diverges(const FrameDifference& f) const {
     return f.max > tolerance || f.max_speed > speed_tolerance || f.turn > turn_tolerance || f.spin > spin_tolerance ||
            f.scale > tolerance;
   }
-  /// "vertex 12", or "instance 4031" by its id.
+  /// "vertex 12", or "instance 4031" by its id, or "strand 1004, vertex 7".
   std::string element(int index) const;
   int diverging_count() const;
 };

@@ -7,46 +7,24 @@
 #include <numbers>
 
 #include "baker/commands/compare.h"
+#include "baker/commands/compare_pairs.h"
 #include "baker/commands/compare_report.h"
 
 namespace ft::inline baker {
 namespace {
-
-constexpr std::size_t k_most_ids = 10;  // listed as text; JSON has all
-
-/// Places of one instance in both caches.
-struct Pair {
-  std::size_t in_a, in_b;
-};
-
-std::vector<std::size_t> by_id(const std::vector<std::uint64_t>& ids) {
-  std::vector<std::size_t> out(ids.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = i;
-  std::stable_sort(out.begin(), out.end(), [&](std::size_t i, std::size_t j) { return ids[i] < ids[j]; });
-  return out;
-}
 
 std::string prototype_of(const InstanceSet& set, std::size_t i) {
   const int p = set.prototypes[i];
   return at(p) < set.prototype_names.size() ? set.prototype_names[at(p)] : std::to_string(p);
 }
 
-std::vector<Pair> pair_up(const InstanceSet& a, const InstanceSet& b, InstanceDifference& out) {
-  std::vector<Pair> pairs;
-  const auto order_a = by_id(a.ids), order_b = by_id(b.ids);
-  std::size_t i = 0, j = 0;
-  while (i < order_a.size() || j < order_b.size()) {
-    if (j == order_b.size() || (i < order_a.size() && a.ids[order_a[i]] < b.ids[order_b[j]])) {
-      out.missing.push_back(a.ids[order_a[i++]]);
-    } else if (i == order_a.size() || b.ids[order_b[j]] < a.ids[order_a[i]]) {
-      out.extra.push_back(b.ids[order_b[j++]]);
-    } else {
-      const Pair& pair = pairs.emplace_back(Pair{order_a[i++], order_b[j++]});
-      if (prototype_of(a, pair.in_a) != prototype_of(b, pair.in_b)) out.replaced.push_back(a.ids[pair.in_a]);
-    }
-  }
-  out.common = static_cast<int>(pairs.size());
-  return pairs;
+std::vector<ComparedPair> pair_up(const InstanceSet& a, const InstanceSet& b, InstanceDifference& out) {
+  ComparedPairs pairs = pair_by_id(a.ids, b.ids);
+  out.missing = std::move(pairs.missing), out.extra = std::move(pairs.extra);
+  for (const ComparedPair& pair : pairs.both)
+    if (prototype_of(a, pair.in_a) != prototype_of(b, pair.in_b)) out.replaced.push_back(a.ids[pair.in_a]);
+  out.common = static_cast<int>(pairs.both.size());
+  return std::move(pairs.both);
 }
 
 /// Between two orientations, of which q and -q are one [degrees].
@@ -56,36 +34,13 @@ double angle(const Eigen::Quaternionf& a, const Eigen::Quaternionf& b) {
   return 2 * std::atan2(turn.vec().norm(), std::abs(turn.w())) * 180 / std::numbers::pi;
 }
 
-double apart(const Vec3f& a, const Vec3f& b) {
-  return (a.cast<double>() - b.cast<double>()).norm();
-}
-
-/// Smallest value that 95 % of them are not above.
-double p95(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const std::size_t rank = (values.size() * 95 + 99) / 100 - 1;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
-  return values[rank];
-}
-
-void raise(double value, std::size_t element, double& most, int& place) {
-  if (value > most) most = value, place = static_cast<int>(element);
-}
-
-std::string id_list(const std::vector<std::uint64_t>& ids) {
-  std::string out;
-  for (std::size_t i = 0; i < std::min(ids.size(), k_most_ids); ++i)
-    out += (i == 0 ? "" : ", ") + std::to_string(ids[i]);
-  return ids.size() > k_most_ids ? out + ", ..." : out;
-}
-
 }  // namespace
 
 Status compare_instances(CacheReader& a, CacheReader& b, CompareReport& r) {
   const CacheInfo &info_a = a.info(), &info_b = b.info();
   InstanceDifference& out = r.instances.emplace();
   out.ids = info_a.instances.ids;
-  const std::vector<Pair> pairs = pair_up(info_a.instances, info_b.instances, out);
+  const std::vector<ComparedPair> pairs = pair_up(info_a.instances, info_b.instances, out);
   const bool scales = info_a.content.scales && info_b.content.scales;
   const bool spins = info_a.content.angular_velocities && info_b.content.angular_velocities;
   std::vector<double> distances, turns;
@@ -100,15 +55,15 @@ Status compare_instances(CacheReader& a, CacheReader& b, CompareReport& r) {
     std::vector<Vec3f> places;
     std::vector<float> offs;
     for (const auto& [in_a, in_b] : pairs) {
-      const double d = apart(x.positions[in_a], y.positions[in_b]),
+      const double d = distance(x.positions[in_a], y.positions[in_b]),
                    t = angle(x.orientations[in_a], y.orientations[in_b]);
       raise(d, in_a, f.max, f.vertex);
       raise(t, in_a, f.turn, f.turn_vertex);
-      if (r.velocities) raise(apart(x.velocities[in_a], y.velocities[in_b]), in_a, f.max_speed, f.speed_vertex);
-      if (scales) f.scale = std::max(f.scale, apart(x.scales[in_a], y.scales[in_b]));
+      if (r.velocities) raise(distance(x.velocities[in_a], y.velocities[in_b]), in_a, f.max_speed, f.speed_vertex);
+      if (scales) f.scale = std::max(f.scale, distance(x.scales[in_a], y.scales[in_b]));
       if (spins)
         f.spin =
-            std::max(f.spin, apart(x.angular_velocities[in_a], y.angular_velocities[in_b]) * 180 / std::numbers::pi);
+            std::max(f.spin, distance(x.angular_velocities[in_a], y.angular_velocities[in_b]) * 180 / std::numbers::pi);
       frame_sum += d * d;
       turn_square_sum += t * t;
       distances.push_back(d);
@@ -132,8 +87,8 @@ Status compare_instances(CacheReader& a, CacheReader& b, CompareReport& r) {
   const double count = static_cast<double>(distances.size());
   r.rms = count > 0 ? std::sqrt(square_sum / count) : 0;
   out.turn_rms = count > 0 ? std::sqrt(turn_square_sum / count) : 0;
-  out.p95 = p95(std::move(distances));
-  out.turn_p95 = p95(std::move(turns));
+  out.p95 = percentile(std::move(distances), 95);
+  out.turn_p95 = percentile(std::move(turns), 95);
   r.verdict = r.first_diverging < 0 && out.same_set() ? CompareVerdict::k_equal : CompareVerdict::k_different;
   return {};
 }

@@ -17,19 +17,22 @@ const FrameDifference& at(const CompareReport& r, int index) {
 
 nlohmann::ordered_json to_json(const CompareReport& r, const FrameDifference& f) {
   nlohmann::ordered_json j = {{"frame", f.frame}, {"max", f.max}, {"rms", f.rms}};
-  const auto place = [&](const char* of_mesh, const char* of_instances, int element) {
+  const auto place = [&](const char* of_mesh, const char* of_instances, const char* of_strands, int element) {
     if (element < 0) return;
     if (r.instances)
       j[of_instances] = r.instances->ids[static_cast<std::size_t>(element)];
     else
       j[of_mesh] = element;
+    if (!r.curves) return;
+    const std::size_t strand = r.curves->strand_of(element);
+    j[of_strands] = {{"id", r.curves->ids[strand]}, {"vertex", element - r.curves->starts[strand]}};
   };
-  place("vertex", "instance", f.vertex);
+  place("vertex", "instance", "strand", f.vertex);
   if (f.speed_vertex >= 0) j["max_speed"] = f.max_speed;
-  place("speed_vertex", "speed_instance", f.speed_vertex);
+  place("speed_vertex", "speed_instance", "speed_strand", f.speed_vertex);
   if (!r.instances) return j;
   j["max_degrees"] = f.turn;
-  place("", "degrees_instance", f.turn_vertex);
+  place("", "degrees_instance", "", f.turn_vertex);
   return j;
 }
 
@@ -43,6 +46,36 @@ nlohmann::ordered_json to_json(const InstanceDifference& d) {
           {"degrees_p95", d.turn_p95},
           {"degrees_max", d.turn_max},
           {"scale_max", d.scale_max}};
+}
+
+nlohmann::ordered_json to_json(const LengthRatios& l) {
+  return {{"mean", l.mean},
+          {"p99_change", l.p99},
+          {"worst", l.worst},
+          {"worst_frame", l.worst_frame},
+          {"worst_strand", l.worst_strand}};
+}
+
+nlohmann::ordered_json to_json(const CurveDifference& d) {
+  return {{"matched_by", d.by_id ? "id" : "index"},
+          {"common", d.common},
+          {"missing", d.missing},
+          {"extra", d.extra},
+          {"resized", d.resized},
+          {"p95", d.p95},
+          {"root_max", d.root_max},
+          {"root_frame", d.root_frame},
+          {"root_strand", d.root_strand},
+          {"lengths_a", to_json(d.lengths_a)},
+          {"lengths_b", to_json(d.lengths_b)}};
+}
+
+std::string place_in_table(const CompareReport& r, int element) {
+  if (element < 0) return "-";
+  if (r.instances) return std::to_string(r.instances->ids[static_cast<std::size_t>(element)]);
+  if (!r.curves) return std::to_string(element);
+  const std::size_t strand = r.curves->strand_of(element);
+  return fmt::format("{}/{}", r.curves->ids[strand], element - r.curves->starts[strand]);
 }
 
 /// Of what differs first in a frame that is beyond a tolerance.
@@ -109,7 +142,9 @@ std::string summary(const CompareReport& r) {
     return fmt::format("largest difference {} in frame {}, {}; RMS {}; tolerance {}", length_text(w.max), w.frame,
                        r.element(w.vertex), length_text(r.rms), length_text(r.tolerance));
   }
-  if (r.first_diverging < 0) return "the instances are not the same ones; those that both have do not differ";
+  if (r.first_diverging < 0)
+    return std::string(r.curves ? "the strands" : "the instances") +
+           " are not the same ones; those that both have do not differ";
   std::string text = first_difference(r, at(r, r.first_diverging));
   if (r.worst >= 0)
     text += fmt::format("; largest {} in frame {}, {}; RMS {}", length_text(at(r, r.worst).max), at(r, r.worst).frame,
@@ -122,23 +157,19 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
   for (const CompareReport& r : reports) {
     out += fmt::format("{}: {}: {}\n  a: {}\n  b: {}\n", r.system, verdict_name(r.verdict), summary(r), r.a, r.b);
     if (r.instances) out += instances_text(r);
+    if (r.curves) out += curves_text(r);
     if (r.verdict != CompareVerdict::k_different || r.first_diverging < 0) continue;
-    if (r.instances) {
-      out += fmt::format("  {:>8} {:>12} {:>12} {:>12} {:>12}\n", "frame", "max [mm]", "rms [mm]", "instance",
-                         "max [deg]");
-    } else
-      out +=
-          fmt::format("  {:>8} {:>12} {:>12} {:>8} {:>12}\n", "frame", "max [mm]", "rms [mm]", "vertex", "max [m/s]");
+    const char* where = r.instances ? "instance" : r.curves ? "strand/vertex" : "vertex";
+    out += fmt::format("  {:>8} {:>12} {:>12} {:>14} {:>12}\n", "frame", "max [mm]", "rms [mm]", where,
+                       r.instances ? "max [deg]" : "max [m/s]");
     int lines = 0;
     for (const FrameDifference& f : r.frames)
       if (r.diverges(f) && ++lines <= k_most_lines)
-        out += r.instances
-                   ? fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>12} {:>12.4g}\n", f.frame, 1000 * f.max, 1000 * f.rms,
-                                 f.vertex < 0 ? std::string("-")
-                                              : std::to_string(r.instances->ids[static_cast<std::size_t>(f.vertex)]),
-                                 f.turn)
-                   : fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>8} {:>12}\n", f.frame, 1000 * f.max, 1000 * f.rms,
-                                 f.vertex, r.velocities ? fmt::format("{:.4g}", f.max_speed) : "-");
+        out += fmt::format("  {:>8} {:>12.4g} {:>12.4g} {:>14} {:>12}\n", f.frame, 1000 * f.max, 1000 * f.rms,
+                           place_in_table(r, f.vertex),
+                           r.instances    ? fmt::format("{:.4g}", f.turn)
+                           : r.velocities ? fmt::format("{:.4g}", f.max_speed)
+                                          : "-");
     if (lines > k_most_lines) out += fmt::format("  and {} more frames\n", lines - k_most_lines);
   }
   return out;
@@ -158,6 +189,7 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
       j["tolerance"] = r.tolerance;
       j["vertex_count"] = r.vertex_count;
       if (r.instances) j["instances"] = to_json(*r.instances);
+      if (r.curves) j["curves"] = to_json(*r.curves);
       j["velocities_compared"] = r.velocities;
       j["rms"] = r.rms;
       j["diverging_frames"] = r.diverging_count();

@@ -31,6 +31,31 @@ std::string size_of(const Box& box) {
                                    size.z(), box.lo.x(), box.lo.y(), box.lo.z());
 }
 
+/// What a system of a bake has, of the shape that it is of.
+std::string contents(const ManifestSystem& s) {
+  switch (s.shape) {
+    case OutputShape::k_mesh: return fmt::format("{} vertices, {} faces", s.vertex_count, s.face_count);
+    case OutputShape::k_curves: return fmt::format("{} strands, {} vertices", s.curve_count, s.count);
+    default: return fmt::format("{} {}, {} prototypes", s.count, shape_key(s.shape), s.prototypes.size());
+  }
+}
+
+/// "16 to 32 vertices each, widths 0.1 to 0.4 mm, with ids"
+std::string curve_text(const CurveSet& set) {
+  if (set.vertices_per_curve.empty()) return "no strands";
+  const auto [fewest, most] = std::minmax_element(set.vertices_per_curve.begin(), set.vertices_per_curve.end());
+  std::string out = fmt::format("{} strands of ", set.curve_count());
+  out += *fewest == *most ? fmt::format("{} vertices", *most) : fmt::format("{} to {} vertices", *fewest, *most);
+  if (set.widths.empty()) {
+    out += ", without widths";
+  } else {
+    const auto [least, widest] = std::minmax_element(set.widths.begin(), set.widths.end());
+    out += *least == *widest ? fmt::format(", {:.3g} mm wide", 1000 * *widest)
+                             : fmt::format(", {:.3g} to {:.3g} mm wide", 1000 * *least, 1000 * *widest);
+  }
+  return out + (set.ids.empty() ? ", without ids" : ", with ids");
+}
+
 Result<Lines> folder_info(const std::filesystem::path& path) {
   auto manifest = read_manifest(path);
   if (!manifest) return manifest.error();
@@ -45,11 +70,7 @@ Result<Lines> folder_info(const std::filesystem::path& path) {
     std::string files;
     for (const ManifestCache& c : s.caches)
       files += " " + c.file + (c.bytes > 0 ? " (" + size_text(c.bytes) + ")" : "");
-    out.push_back(
-        s.shape == OutputShape::k_mesh
-            ? fmt::format("  {} \"{}\": {} vertices, {} faces:{}", s.role, s.name, s.vertex_count, s.face_count, files)
-            : fmt::format("  {} \"{}\": {} {}, {} prototypes:{}", s.role, s.name, s.count, shape_key(s.shape),
-                          s.prototypes.size(), files));
+    out.push_back(fmt::format("  {} \"{}\": {}:{}", s.role, s.name, contents(s), files));
   }
   int crossings = 0, incidents = 0;
   double deepest = 0, strain = 0;
@@ -122,7 +143,8 @@ Result<Lines> mesh_info(const std::filesystem::path& path) {
 Lines cache_info(CacheReader& reader) {
   const CacheInfo& info = reader.info();
   const bool mesh = info.content.shape == OutputShape::k_mesh;
-  const std::string_view elements = mesh ? std::string_view("vertices") : shape_key(info.content.shape);
+  const bool curves = info.content.shape == OutputShape::k_curves;
+  const std::string_view elements = mesh || curves ? std::string_view("vertices") : shape_key(info.content.shape);
   Lines out{fmt::format("cache of \"{}\": {} frames from {}{}, {} {}{}", info.system, info.frame_count,
                         info.first_frame, info.has_fps ? fmt::format(" at {:g} fps", info.fps) : std::string(),
                         mesh ? info.mesh.vertex_count() : info.vertex_count, elements,
@@ -130,8 +152,8 @@ Lines cache_info(CacheReader& reader) {
   std::string what = info.has_topology ? fmt::format("{} faces", info.mesh.face_count()) : "points only";
   if (info.content.shape == OutputShape::k_instances)
     what = fmt::format("{} prototypes", info.instances.prototype_names.size());
-  else if (info.content.shape == OutputShape::k_curves)
-    what = fmt::format("{} curves", info.curves.curve_count());
+  else if (curves)
+    what = curve_text(info.curves);
   else if (info.content.shape != OutputShape::k_mesh)
     what = std::string(shape_name(info.content.shape));
   out.push_back(fmt::format("  {}, {}", what, info.has_velocity ? "with velocities" : "without velocities"));

@@ -43,46 +43,55 @@ std::vector<std::string> names_of(std::span<const std::filesystem::path> folders
 
 }  // namespace
 
-Result<std::string> preview_page(std::span<const std::filesystem::path> bake_folders) {
-  CHECK(!bake_folders.empty());
-  const std::vector<std::string> names = names_of(bake_folders);
+Result<PreviewPage> preview_page(const PreviewOptions& options) {
+  CHECK(!options.folders.empty());
+  const std::vector<std::string> names = names_of(options.folders);
+  const double curve_bytes = 1e6 * options.curve_megabytes / static_cast<double>(options.folders.size());
+  PreviewPage out;
   Json page_data{{"bakes", Json::array()}};
-  for (std::size_t i = 0; i < bake_folders.size(); ++i) {
-    auto bake = preview_bake(bake_folders[i]);
+  for (std::size_t i = 0; i < options.folders.size(); ++i) {
+    auto bake = preview_bake(options.folders[i], curve_bytes);
     if (!bake) return bake.error();
     (*bake)["name"] = names[i];
+    for (const Json& system : (*bake)["systems"])
+      if (system.contains("curves") && system["curves"].contains("note"))
+        out.notes.push_back((names.size() > 1 ? names[i] + ": " : std::string()) +
+                            system["curves"]["note"].get<std::string>());
     page_data["bakes"].push_back(std::move(*bake));
   }
   std::string data = page_data.dump(-1, ' ', false, Json::error_handler_t::replace);
   for (std::size_t place = 0; (place = data.find("</", place)) != std::string::npos; place += 3)
     data.replace(place, 2, "<\\/");
 
-  std::string page(embedded_page());
+  std::string& page = out.text;
+  page = embedded_page();
   replace(page, "%TITLE%", escape_html(page_data["bakes"][0]["shot"].get<std::string>()));
   replace(page, "%STYLE%", embedded_style());
   replace(page, "%PLOTS%", embedded_plots());
   replace(page, "%PATHS%", embedded_paths());
   replace(page, "%INSTANCES%", embedded_instances());
+  replace(page, "%CURVES%", embedded_curves());
   replace(page, "%WIND%", embedded_wind());
   replace(page, "%PLAYER%", embedded_player());
   replace(page, "%CONTROLS%", embedded_controls());
   replace(page, "%THREE%", embedded_three());
   replace(page, "%BAKE%", data);
-  return page;
+  return out;
 }
 
 int run_preview(const PreviewOptions& options) {
-  const auto page = preview_page(options.folders);
+  const auto page = preview_page(options);
   if (!page) {
     complain(page.error().text());
     return exit_code(page.error().kind);
   }
   const auto output = options.output.empty() ? options.folders.front() / "preview.html" : options.output;
-  if (const Status written = write_text_durably(output, *page); !written) {
+  if (const Status written = write_text_durably(output, page->text); !written) {
     complain(written.error().text());
     return exit_code(written.error().kind);
   }
-  fmt::print("preview: {} ({:.1f} MB)\n", output.string(), 1e-6 * static_cast<double>(page->size()));
+  for (const std::string& note : page->notes) fmt::print("note: {}\n", note);
+  fmt::print("preview: {} ({:.1f} MB)\n", output.string(), 1e-6 * static_cast<double>(page->text.size()));
   return 0;
 }
 

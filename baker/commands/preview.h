@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -16,13 +15,19 @@ struct PreviewOptions {
   std::vector<std::filesystem::path> folders;  ///< of bakes, the first one plays; one that is unfinished is shown as
                                                ///< far as it has come
   std::filesystem::path output;                ///< empty: preview.html in the first folder
+  double curve_megabytes = 64;  ///< > 0: of the page; curves that are more have a share of their strands in it
 };
 
 /// Gaps are shown up to here [m].
 inline constexpr double k_preview_gap_range = 0.02;
 
-/// The page's text. Errors: no manifest, caches that do not belong to it (k_input).
-Result<std::string> preview_page(std::span<const std::filesystem::path> bake_folders);
+struct PreviewPage {
+  std::string text;
+  std::vector<std::string> notes;  ///< what of the bakes it does not show; the page says the same
+};
+
+/// output is not looked at. Errors: no manifest, caches that do not belong to it (k_input).
+Result<PreviewPage> preview_page(const PreviewOptions& options);
 
 /// Writes the page and says where; returns an exit code.
 int run_preview(const PreviewOptions& options);

@@ -9,6 +9,7 @@
 
 #include "baker/commands/base64.h"
 #include "baker/commands/preview.h"
+#include "baker/commands/preview_curves.h"
 #include "baker/commands/preview_instances.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/file.h"
@@ -116,6 +117,15 @@ Status measure(std::vector<Clip>& clips, int frames) {
     }
   }
   return {};
+}
+
+/// Of all strands of all systems the same share, so that no system loses more than another; 1: there is room for all.
+double share_of_strands(const std::vector<Clip>& clips, int frames, double bytes) {
+  double wanted = 0;
+  for (const Clip& clip : clips)
+    if (clip.system.shape == OutputShape::k_curves)
+      wanted += static_cast<double>(preview_bytes_of_curves(clip.track, frames));
+  return wanted > bytes ? bytes / wanted : 1;
 }
 
 Json describe(const Clip& clip) {
@@ -231,7 +241,7 @@ Result<Json> path_rows(const std::filesystem::path& folder, const Manifest& mani
 
 }  // namespace
 
-Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
+Result<Json> preview_bake(const std::filesystem::path& bake_folder, double curve_bytes) {
   const BakeFolder folder{bake_folder};
   auto manifest = read_manifest(bake_folder);
   if (!manifest) return manifest.error();
@@ -242,7 +252,8 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
   for (const ManifestSystem& system : manifest->systems) {
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
-    if (system.shape != OutputShape::k_mesh && system.shape != OutputShape::k_instances)
+    if (system.shape != OutputShape::k_mesh && system.shape != OutputShape::k_instances &&
+        system.shape != OutputShape::k_curves)
       return input_error(std::string("the page cannot show ") + std::string(shape_name(system.shape)) + " yet",
                          (bake_folder / system.caches[0].file).string());
     frames = std::min(frames, track->reader->info().frame_count);
@@ -274,14 +285,16 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder) {
     for (const Incident& i : frame.incidents)
       if (i.frame >= manifest->first_written && i.frame < manifest->first_written + frames)
         bake["incidents"].push_back(to_json(i));
+  const double share = share_of_strands(clips, frames, curve_bytes);
   bake["systems"] = Json::array();
   for (Clip& clip : clips) {
     if (clip.system.role == "collider" && has_body) continue;  // looks like the body and costs as much
-    if (clip.system.shape == OutputShape::k_instances) {
-      auto instances = preview_instances(clip.system, clip.track, frames);
-      if (!instances) return instances.error();
-      if (const SystemKind* kind = find_system_kind(clip.system.role)) (*instances)["colour"] = kind->colour();
-      bake["systems"].push_back(std::move(*instances));
+    if (clip.system.shape != OutputShape::k_mesh) {
+      auto shown = clip.system.shape == OutputShape::k_curves ? preview_curves(clip.system, clip.track, frames, share)
+                                                              : preview_instances(clip.system, clip.track, frames);
+      if (!shown) return shown.error();
+      if (const SystemKind* kind = find_system_kind(clip.system.role)) (*shown)["colour"] = kind->colour();
+      bake["systems"].push_back(std::move(*shown));
       continue;
     }
     if (const Status done = quantise(clip, frames); !done) return done.error();

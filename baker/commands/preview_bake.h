@@ -8,7 +8,8 @@
 
 namespace ft::inline baker {
 
-/// Errors: no manifest, no finished frame, caches that do not belong to it (k_input).
-Result<Json> preview_bake(const std::filesystem::path& bake_folder);
+/// curve_bytes: what its curves may take of the page, > 0. Errors: no manifest, no finished frame, caches that do not
+/// belong to it (k_input).
+Result<Json> preview_bake(const std::filesystem::path& bake_folder, double curve_bytes = 64e6);
 
 }  // namespace ft::inline baker

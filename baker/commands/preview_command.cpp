@@ -17,6 +17,12 @@ void add_preview_command(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   command->add_option("-o,--out", o->output, "The page; without it preview.html in the first folder")
       ->type_name("FILE");
+  command
+      ->add_option("--curve-megabytes", o->curve_megabytes,
+                   "What curves such as hair may take of the page; of more a share of the strands is drawn")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("MB");
   command->callback([o, &exit_code] { exit_code = run_preview(*o); });
 }
 

@@ -13,6 +13,7 @@ embed style, FT_STYLE_FILE
 embed plots, FT_PLOTS_FILE
 embed paths, FT_PATHS_FILE
 embed instances, FT_INSTANCES_FILE
+embed curves, FT_CURVES_FILE
 embed wind, FT_WIND_FILE
 embed player, FT_PLAYER_FILE
 embed three, FT_THREE_FILE

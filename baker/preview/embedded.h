@@ -11,6 +11,7 @@ std::string_view embedded_style();
 std::string_view embedded_plots();
 std::string_view embedded_paths();
 std::string_view embedded_instances();
+std::string_view embedded_curves();
 std::string_view embedded_wind();
 std::string_view embedded_player();
 std::string_view embedded_three();

@@ -18,6 +18,7 @@
       if (s.triangles) s.triangles = new Uint32Array(bytes(s.triangles).buffer);
       if (s.strain) s.strain = new Int8Array(bytes(s.strain).buffer);
       if (s.gap) s.gap = bytes(s.gap);
+      if (s.curves) s.curves.bounds = new Float64Array(bytes(s.curves.bounds).buffer);
     }
   }
   let bake = null, count = 0, first = 0;  // the bake that plays, its frames
@@ -25,7 +26,9 @@
 
   // ---- data ----
   function coordinate(s, index, vertex, axis) {
-    return s.low[axis] + s.positions[(index * s.vertices + vertex) * 3 + axis] * s.step[axis];
+    const packed = s.positions[(index * s.vertices + vertex) * 3 + axis];
+    if (s.curves) return s.curves.bounds[6 * index + axis] + packed * s.curves.bounds[6 * index + 3 + axis];
+    return s.low[axis] + packed * s.step[axis];
   }
   function vertex(system, i) {
     const s = bake.systems.find((t) => t.name === system);
@@ -34,7 +37,7 @@
   }
 
   // ---- scene ----
-  const palette = [0x3f74c4, 0xc8694f, 0x4f9a6d, 0xb08a3e, 0x8560b5, 0x3d9aa8];
+  const palette = [0x3f74c4, 0xc8694f, 0x4f9a6d, 0xb08a3e, 0x8560b5, 0x3d9aa8], hair_brown = 0x6b4528;
   let scene, camera, renderer, controls, sun, centre = null, marker = null;
   const box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
   for (const s of bakes.flatMap((b) => b.systems).filter((s) => !s.stands))  // a ground is wider than what happens on it
@@ -98,14 +101,14 @@
   function meshes(systems) {
     const group = new THREE.Group();
     let garment = 0;
-    const colour_of = (s) => s.colour || palette[garment++ % palette.length];
+    const colour_of = (s) => s.colour || (s.curves ? hair_brown : palette[garment++ % palette.length]);
     for (const s of systems) {
-      if (s.instances) {
+      if (s.instances || s.curves) {
         s.plain = colour_of(s);
-        s.copies = makeInstances(s, s.plain, bytes);
-        s.mesh = s.copies.group;
+        s.drawing = (s.curves ? makeCurves : makeInstances)(s, s.plain, bytes);
+        s.mesh = s.drawing.group;
         s.mesh.visible = !s.hidden;
-        s.copies.material.wireframe = $('wireframe').checked;
+        s.drawing.material.wireframe = $('wireframe').checked;
         group.add(s.mesh);
         continue;
       }
@@ -145,7 +148,7 @@
   function bounds() {
     const b = new THREE.Box3();
     for (const s of bake.systems)
-      if (s.mesh && s.mesh.visible && !s.stands) b.union(s.copies ? s.copies.box : new THREE.Box3().setFromBufferAttribute(s.mesh.geometry.attributes.position));
+      if (s.mesh && s.mesh.visible && !s.stands) b.union(s.drawing ? s.drawing.box : new THREE.Box3().setFromBufferAttribute(s.mesh.geometry.attributes.position));
     return b;
   }
   function fit() {
@@ -219,8 +222,8 @@
     frame = index;
     if (renderer && shown !== index) {
       for (const s of bake.systems) {
-        if (s.copies) {
-          s.copies.show(index);
+        if (s.drawing) {
+          s.drawing.show(index);
           continue;
         }
         const attribute = s.mesh.geometry.attributes.position, to = attribute.array, from = 3 * index * s.vertices;
@@ -305,6 +308,10 @@
     plots.push(plot('time', ' ms', [{ name: '', values: column('milliseconds', 1) }]));
     plots = plots.filter((p) => p !== null);
   }
+  function how_many(s) {
+    if (s.instances) return s.vertices + ' instances';
+    return (s.curves ? s.curves.strands + ' strands, ' : '') + s.vertices + ' vertices' + (s.curves?.note ? ' drawn' : '');
+  }
   function describe() {
     const worst = bake.frames.reduce((a, f) => a + f.crossings_body + f.crossings_self, 0);
     $('title').textContent = bake.shot + (bakes.length > 1 ? ': ' + bake.name : '');
@@ -317,8 +324,9 @@
       tick.checked = s.mesh ? s.mesh.visible : s.role !== 'collider' && !s.hidden;
       tick.addEventListener('change', () => { if (s.mesh) s.mesh.visible = tick.checked; draw(); });
       colour.style.background = '#' + (s.plain || 0x888888).toString(16).padStart(6, '0');
-      return element('label', tick, colour, s.name + (s.sheet ? '' : ' (' + s.role + ')'), element('span', s.vertices + (s.instances ? ' instances' : ' vertices')));
+      return element('label', tick, colour, s.name + (s.sheet ? '' : ' (' + s.role + ')'), element('span', how_many(s)));
     }));
+    for (const s of bake.systems) if (s.curves?.note) $('systems').append(element('label', s.curves.note));
     if (bake.systems.some((s) => s.absent)) {
       const colour = element('i');
       colour.style.background = '#8b539e';
@@ -358,7 +366,7 @@
     $('colour').addEventListener('change', () => { legend(); shown = null; show(frame); });
     $('home').addEventListener('click', fit);
     $('wireframe').addEventListener('change', () => {
-      for (const s of bakes.flatMap((b) => b.systems)) if (s.mesh && secondary(s)) (s.copies || s.mesh).material.wireframe = $('wireframe').checked;
+      for (const s of bakes.flatMap((b) => b.systems)) if (s.mesh && secondary(s)) (s.drawing || s.mesh).material.wireframe = $('wireframe').checked;
       draw();
     });
     $('bakes-row').hidden = bakes.length < 2;
@@ -410,8 +418,9 @@
     if ($('paths').checked) for (const path of paths.list) answer.paths[path.name] = paths.place(path, second(frame)).toArray();
     const [name, list] = wish.get('test').split(':');
     answer.vertices[name] = list.split(',').map((i) => vertex(name, +i));
-    const copies = (bake.systems.find((s) => s.name === name) || {}).copies;
-    if (copies) answer.axes = list.split(',').map((i) => copies.axis(+i));
+    const drawing = (bake.systems.find((s) => s.name === name) || {}).drawing;
+    if (drawing && drawing.axis) answer.axes = list.split(',').map((i) => drawing.axis(+i));
+    answer.systems = $('systems').textContent;
     $('scrub').value = 0;
     $('scrub').dispatchEvent(new Event('input'));
     answer.scrubbed = first + frame;

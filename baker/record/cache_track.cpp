@@ -22,14 +22,44 @@ Status CacheTrack::read(int index, FrameData& out) const {
   return input_error("the cache of \"" + name + "\": " + sound.error().what, sound.error().where);
 }
 
+namespace {
+
+/// What is wrong with the curves of a cache; empty: they are those of the manifest.
+std::string fault_of_curves(const CacheInfo& info, const ManifestSystem& system) {
+  if (info.curves.curve_count() == system.curve_count && info.vertex_count == system.count) return {};
+  return fmt::format("has {} curves of {} vertices, the manifest says {} of {}", info.curves.curve_count(),
+                     info.vertex_count, system.curve_count, system.count);
+}
+
+struct OpenedCache {
+  std::filesystem::path path;
+  std::unique_ptr<CacheReader> reader;
+};
+
+/// The first of a system's caches that holds its shape, for a format may take curves and give their vertices alone;
+/// where none does, the first.
+Result<OpenedCache> open_cache_of(const std::filesystem::path& folder, const ManifestSystem& system) {
+  OpenedCache first;
+  for (const ManifestCache& cache : system.caches) {
+    const auto path = folder / cache.file;
+    auto reader = system.shape == OutputShape::k_mesh ? open_cache(path) : open_cache_of_any_shape(path);
+    if (!reader) return reader.error();
+    if ((*reader)->info().content.shape == system.shape) return OpenedCache{path, std::move(*reader)};
+    if (!first.reader) first = {path, std::move(*reader)};
+  }
+  return first;
+}
+
+}  // namespace
+
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest) {
   if (system.caches.empty()) return input_error("system \"" + system.name + "\" has no cache", folder.string());
-  const auto path = folder / system.caches[0].file;
-  auto reader = system.shape == OutputShape::k_mesh ? open_cache(path) : open_cache_of_any_shape(path);
-  if (!reader) return reader.error();
+  auto opened = open_cache_of(folder, system);
+  if (!opened) return opened.error();
+  const std::filesystem::path& path = opened->path;
   CacheTrack track{.name = system.name,
-                   .reader = std::move(*reader),
+                   .reader = std::move(opened->reader),
                    .pattern_scale = system.pattern_scale,
                    .sheet = system.sheet,
                    .weld = system.weld};
@@ -45,6 +75,9 @@ Result<CacheTrack> open_track(const std::filesystem::path& folder, const Manifes
   }
   if (system.shape == OutputShape::k_instances)
     if (const Status added = add_instances(folder, system, track); !added) return added.error();
+  if (system.shape == OutputShape::k_curves)
+    if (std::string fault = fault_of_curves(info, system); !fault.empty())
+      return input_error(std::move(fault), path.string());
   if (system.shape == OutputShape::k_mesh && info.vertex_count != track.rest.vertex_count())
     return input_error(
         fmt::format("has {} vertices, {} has {}", info.vertex_count, system.topology, track.rest.vertex_count()),

@@ -29,8 +29,8 @@ struct CacheTrack {
   Status read(int index, FrameData& out) const;
 };
 
-/// Opens the first cache of a system; refuses one whose shape, topology or number of frames is not what the manifest
-/// says, and instances whose number, ids or prototypes are not.
+/// Opens the first cache of a system that holds its shape; refuses one whose shape, topology or number of frames is not
+/// what the manifest says, curves whose numbers are not, and instances whose number, ids or prototypes are not.
 Result<CacheTrack> open_track(const std::filesystem::path& folder, const ManifestSystem& system,
                               const Manifest& manifest);
 

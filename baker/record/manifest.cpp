@@ -26,6 +26,7 @@ Json system_json(const ManifestSystem& system) {
   } else {
     out["shape"] = shape_key(system.shape);
     out["count"] = system.count;
+    if (system.shape == OutputShape::k_curves) out["curves"] = system.curve_count;
     if (!system.prototypes.empty()) out["prototypes"] = Json::array();
     for (const ManifestPrototype& p : system.prototypes)
       out["prototypes"].push_back({{"name", p.name}, {"vertices", p.vertex_count}, {"faces", p.face_count}});
@@ -49,6 +50,7 @@ ManifestSystem system_from(const Json& json) {
     if (!shape) throw Json::other_error::create(501, "a system of an unknown shape", &json);
     out.shape = *shape;
     out.count = json.at("count").get<int>();
+    if (out.shape == OutputShape::k_curves) out.curve_count = json.at("curves").get<int>();
     if (json.contains("prototypes"))
       for (const Json& p : json["prototypes"])
         out.prototypes.push_back(

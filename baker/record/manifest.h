@@ -50,7 +50,8 @@ struct ManifestSystem {
   std::vector<std::string> meets{};
   bool sheet = false;  ///< of a body: it has no inside
   OutputShape shape = OutputShape::k_mesh;
-  int count = 0;                                ///< of what is no mesh: its elements; 0: their number changes
+  int count = 0;        ///< of what is no mesh: its elements; 0: their number changes. Of curves all their vertices
+  int curve_count = 0;  ///< of curves
   std::vector<ManifestPrototype> prototypes{};  ///< of instances, in the order in which the topology's file has them
 };
 

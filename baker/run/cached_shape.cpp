@@ -7,6 +7,7 @@ namespace ft::inline baker {
 void describe_shape(const SystemShape& shape, ManifestSystem& system) {
   system.shape = shape.content.shape;
   system.count = shape.element_count();
+  system.curve_count = shape.curves.curve_count();
   for (std::size_t i = 0; i < shape.prototypes.size(); ++i) {
     const Mesh& mesh = shape.prototypes[i];
     system.prototypes.push_back({shape.instances.prototype_names[i], mesh.vertex_count(), mesh.face_count()});

@@ -8,7 +8,7 @@
 
 namespace ft::inline baker {
 
-/// Its count and prototypes.
+/// Its counts and prototypes.
 void describe_shape(const SystemShape& shape, ManifestSystem& system);
 /// Its rest data.
 void fill_info(const SystemShape& shape, CacheInfo& info);

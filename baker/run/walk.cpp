@@ -228,9 +228,10 @@ Status Walk::frames() {
   int vertices = 0, instances = 0;
   for (const auto& solver : solvers_)
     for (int s = 0; s < solver->system_count(); ++s)
-      if (const SystemShape* shape = solver->system_shape(s))
+      if (const SystemShape* shape = solver->system_shape(s)) {
         instances += static_cast<int>(shape->instances.ids.size());
-      else
+        vertices += static_cast<int>(shape->curves.rest.size());
+      } else
         vertices += solver->system_mesh(s).vertex_count();
   progress_.begin({shot.file.filename().string(), folder_.path.string(), shot.first_frame, shot.last_frame,
                    shot.preroll, states_[0].frame + 1, vertices, thread_count(), instances});
