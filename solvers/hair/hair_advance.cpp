@@ -14,6 +14,7 @@ constexpr double k_slow = 2e-3;
 /// Beyond its thickness and what it goes in the step, a vertex looks so much farther for what is near [m]; and no
 /// farther than the second.
 constexpr double k_look = 2e-3, k_farthest = 0.06;
+constexpr double k_hold = 10;          ///< of what is tied, by a strand's stiffness along [1]
 constexpr std::size_t k_together = 1;  ///< vertices that look for triangles together
 
 Vec3 vec(const double* p) {
@@ -31,7 +32,7 @@ void HairSolver::add_contacts(std::size_t group, int lane, std::span<const Vec3>
   const std::size_t n = at(n_), s = strand_of(group, lane);
   const HairMaterial& material = setup_.material;
   const double way = bodies_.way();
-  for (std::size_t first = 2; first < n; first += k_together) {
+  for (std::size_t first = at(std::max(2, setup_.strands[s].held + 1)); first < n; first += k_together) {
     const std::size_t last = std::min(first + k_together, n);
     double reach[k_together];
     Box box;
@@ -104,10 +105,17 @@ void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
       const double blown = mass * material.air_drag * (air - v).norm() / implicit;
       pull += blown;
       goal += blown * (path + implicit * air);
+      if (static_cast<int>(i) <= setup_.strands[s].held) {  // counts the ghost
+        const double holds = k_hold * rod.stretch[lane] / rod.length[0][lane];
+        goal += holds * with_root;
+        pull += holds;
+      }
       w.around.pull[i][lane] = pull;
       set_lane(w.around.goal[i], lane, goal / pull);
       w.x[i] = x;
-      w.next[i] = i < 2 ? with_root : Vec3(with_root + h * v - (x - from_root));
+      w.next[i] = static_cast<int>(i) <= std::max(1, setup_.strands[s].held)
+                      ? with_root
+                      : Vec3(with_root + h * v - (x - from_root));
       set_lane(w.start.x[i], lane, x);
       set_lane(w.pose.x[i], lane, w.next[i]);
       w.tension[i][lane] = step.tension[base + i];

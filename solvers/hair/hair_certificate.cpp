@@ -54,7 +54,7 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
         NearSurface near;
         return find_nearest(bodies_, candidates, p, k_look, 1, &near) > 0 ? -near.gap : -k_look;
       };
-      for (std::size_t i = 2; i < n; ++i) {
+      for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i) {
         const std::size_t k = s * n + i;
         const double combed = std::max(0.0, -gaps_[k] + k_least_reach);
         const double deep = depth(x[k]);

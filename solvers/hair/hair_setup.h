@@ -32,6 +32,7 @@ struct HairStrand {
   std::uint64_t id = 0;         ///< as caches know it; any, each once
   std::vector<Vec3> positions;  ///< root first, in the scalp's bind pose [m]; all strands have as many
   double width = 80e-6;         ///< diameter, as drawn [m]
+  int held = 1;                 ///< so many vertices from the root on stay where they are on the root's frame: tied
 };
 
 /// What strands meet. Sheets have no inside: a strand stays on the side where it is.

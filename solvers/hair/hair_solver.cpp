@@ -47,6 +47,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
     if (x.size() < 3 || x.size() != setup.strands[0].positions.size())
       return refuse(fmt::format("strand {} has {} vertices, and the first {}; all have as many, 3 or more", s, x.size(),
                                 setup.strands[0].positions.size()));
+    if (setup.strands[s].held < 1) return refuse(fmt::format("strand {} is not held at its root", s));
     for (std::size_t i = 0; i < x.size(); ++i)
       if (!x[i].allFinite() || (i > 0 && !((x[i] - x[i - 1]).norm() > 1e-6)))
         return refuse(fmt::format("strand {} has an edge without length", s));
@@ -153,7 +154,10 @@ void HairSolver::make_groups() {
       }
       rod.k1.assign(n, 0), rod.k2 = rod.tw = rod.k1;
       Rod<double> trial = rod;
-      stiffened_[s] = stand_still(trial, pose_of(s), forces_of(s), slowest_wanted(lengths_[s], setup_.gravity.norm()));
+      const int held = setup_.strands[s].held;
+      double free = 1e-3;  // length that can swing
+      for (std::size_t j = at(held); j + 1 < n; ++j) free += rod.length[j];
+      stiffened_[s] = stand_still(trial, pose_of(s), forces_of(s), slowest_wanted(free, setup_.gravity.norm()), held);
     }
   });
   stiffen_alike(stiffened_);

@@ -72,14 +72,16 @@ double slowest_wanted(double length, double gravity) {
   return 0.7 * 1.2024 * std::sqrt(gravity / length);
 }
 
-bool is_stable(const Rod<double>& rod, const RodPose<double>& pose, double slowest) {
+bool is_stable(const Rod<double>& rod, const RodPose<double>& pose, double slowest, int held) {
   std::vector<double> gradient(at(rod.unknowns()));
   BandedMatrix<double> hessian;
   hessian.reset(rod.unknowns());
   add_potential(rod, pose, nullptr, 0, RodHessian<double>(), gradient, &hessian);
   for (int i = 2; i < rod.n; ++i)
     for (int a = 0; a < 3; ++a) hessian(4 * i + a, 4 * i + a) -= slowest * slowest * rod.mass[at(i)];
-  return hessian.factor(k_given) > 0;
+  // All that is given: of the last held vertex its position, and the turns of edges before it.
+  const int first = 4 * std::clamp(held, 1, rod.n - 1) + 3;
+  return first >= rod.unknowns() || hessian.factor(first) > 0;
 }
 
 void stand_still_at(double factor, Rod<double>& rod, const RodPose<double>& pose, std::span<const Vec3> forces) {
@@ -88,11 +90,12 @@ void stand_still_at(double factor, Rod<double>& rod, const RodPose<double>& pose
   make_rest_shape(rod, pose, forces);
 }
 
-double stand_still(Rod<double>& rod, const RodPose<double>& pose, std::span<const Vec3> forces, double slowest) {
+double stand_still(Rod<double>& rod, const RodPose<double>& pose, std::span<const Vec3> forces, double slowest,
+                   int held) {
   const auto stands = [&](double factor) {
     Rod<double> trial = rod;
     stand_still_at(factor, trial, pose, forces);
-    return is_stable(trial, pose, slowest);
+    return is_stable(trial, pose, slowest, held);
   };
   double factor = 1, low = 1;
   while (!stands(factor) && factor < 4096) low = factor, factor *= 2;

@@ -19,12 +19,14 @@ void make_rest_shape(Rod<double>& rod, const RodPose<double>& pose, std::span<co
 /// so that hair that hangs is never made stiffer.
 double slowest_wanted(double length, double gravity);
 
-/// Whether all modes of the pose, an equilibrium, are faster than `slowest` [rad/s].
-bool is_stable(const Rod<double>& rod, const RodPose<double>& pose, double slowest);
+/// Whether all modes of the pose, an equilibrium, are faster than `slowest` [rad/s]. The first `held` vertices beside
+/// the ghost do not move.
+bool is_stable(const Rod<double>& rod, const RodPose<double>& pose, double slowest, int held = 1);
 
 /// Rest shape and, where it could not stand, stiffness. Returns by how much bending and twisting stiffness had to be
 /// raised: 1 where it stands as it is, at most 2^12.
-double stand_still(Rod<double>& rod, const RodPose<double>& pose, std::span<const Vec3> forces, double slowest);
+double stand_still(Rod<double>& rod, const RodPose<double>& pose, std::span<const Vec3> forces, double slowest,
+                   int held = 1);
 
 /// At a given factor of stiffness.
 void stand_still_at(double factor, Rod<double>& rod, const RodPose<double>& pose, std::span<const Vec3> forces);

@@ -36,6 +36,9 @@ Status add_strands(const HairSpec& spec, const Trajectory& scalp, BakePlan& plan
     strand.positions = resampled(guides->strands[k], spec.vertices);
     for (Vec3& p : strand.positions) p += spec.position;
     strand.width = guides->widths.empty() ? spec.width : guides->widths[k];
+    // Held to where it leaves the band; what ends in it, whole.
+    for (std::size_t i = 0; i < strand.positions.size(); ++i)
+      if ((strand.positions[i] - spec.tie).norm() < spec.tie_radius) strand.held = static_cast<int>(i) + 1;
     setup.strands.push_back(std::move(strand));
   }
   return {};

@@ -17,6 +17,9 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
        "How many of its strands are solved, evenly chosen; 0: all"},
       {"vertices", &HairSpec::vertices, 4, 200, "", "", false, "points segments resolution",
        "Of each strand, at equal distances"},
+      {"tie", &HairSpec::tie, -1e4, 1e4, "m", "", false, "band ponytail_band",
+       "Centre of a band, as of a pony-tail: strands that go through it are held from the root to where they leave it"},
+      {"tie_radius", &HairSpec::tie_radius, 0, 10, "m", "", false, "band_radius", "Of that band; 0: there is none"},
       {"width", &HairSpec::width, 1e-6, 0.1, "m", "", false, "diameter", "Of a strand as drawn, for the caches"},
       {"radius", &HairSpec::radius, 5e-6, 0.02, "m", "", false, "hair_radius",
        "Of a hair, which its weight and stiffness follow: 30e-6 fine, 50e-6 thick. A strand stands for a lock of them"},
@@ -44,8 +47,12 @@ class HairSection final : public SectionOf<HairSpec> {
   HairSection() : SectionOf("hair", hair_keys()) {}
 
   void judge(const Value& root, SecondarySpec& spec, const Shot&, FaultList& faults) const override {
-    if (const Value* table = section_of(root, name(), spec.name); table && !table->find("guides"))
-      faults.add(table->place, spec.owner() + ": guides are missing");
+    const Value* table = section_of(root, name(), spec.name);
+    if (!table) return;
+    if (!table->find("guides")) faults.add(table->place, spec.owner() + ": guides are missing");
+    const Member *tie = table->find("tie"), *radius = table->find("tie_radius");
+    if ((tie == nullptr) != (radius == nullptr))
+      faults.add((tie ? tie : radius)->place, spec.owner() + ": tie and tie_radius go together");
   }
   std::vector<std::pair<std::string, std::filesystem::path>> files(const SecondarySpec& spec) const override {
     return {{"guides", of(spec).guides}};

@@ -16,6 +16,8 @@ struct HairSpec final : SecondarySpec {
   Vec3 position = Vec3::Zero();  ///< added to its places [m]
   int count = 0;                 ///< of guides that are solved, evenly chosen; 0: all
   int vertices = 24;             ///< of each
+  Vec3 tie = Vec3::Zero();       ///< centre of a band, on the body as garments lie on it [m]
+  double tie_radius = 0;         ///< strands are held from the root to where they leave it; 0: no band [m]
   double width = 1e-4;           ///< diameter of a strand as drawn [m]
   double radius = 40e-6;         ///< of a hair [m]
   double stiffness = 1;          ///< by a hair's [1]

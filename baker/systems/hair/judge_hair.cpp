@@ -26,8 +26,15 @@ class JudgedHair final : public JudgedGroup {
     }
     first_.push_back(first);
     std::vector<Vec3> start;
-    if (track_.read(0, start))
-      for (std::size_t s = 0; s + 1 < first_.size(); ++s) rest_.push_back(length(start, s));
+    combed_.assign(at(first_.back()), 0.0);
+    if (!track_.read(0, start)) return;
+    for (std::size_t s = 0; s + 1 < first_.size(); ++s) rest_.push_back(length(start, s));
+    for (const CacheTrack& body : met_.bodies) {
+      std::vector<Vec3> y;
+      if (body.sheet || !body.read(0, y)) continue;
+      for (const Penetration& p : penetrations(start, y, body.triangles, 0))
+        combed_[at(p.vertex)] = std::max(combed_[at(p.vertex)], p.depth);
+    }
   }
 
   Result<FrameReport> judge(int index, int frame, std::span<const AbsentRuns>) const override {
@@ -50,7 +57,7 @@ class JudgedHair final : public JudgedGroup {
       std::vector<Vec3> y;
       if (const Status read = body.read(index, y); !read) return read.error();
       for (const Penetration& p : penetrations(x, y, body.triangles, k_deep)) {
-        if (was_combed_inside(p.vertex)) continue;
+        if (p.depth < combed_[at(p.vertex)] + k_deep) continue;
         ++report.inside_body;
         if (p.depth <= report.deepest_drawn) continue;
         report.deepest_drawn = p.depth;
@@ -64,6 +71,11 @@ class JudgedHair final : public JudgedGroup {
     std::vector<std::string> out;
     for (const std::string& name : met_.missing)
       out.push_back("\"" + name + "\" is not cached: strands inside it are not judged");
+    const auto inside = std::count_if(combed_.begin(), combed_.end(), [](double depth) { return depth > k_deep; });
+    if (inside > 0)
+      out.push_back(fmt::format("{} vertices of \"{}\" are inside a body in the first frame: of those only what goes "
+                                "deeper is counted",
+                                inside, track_.name));
     return out;
   }
 
@@ -76,13 +88,11 @@ class JudgedHair final : public JudgedGroup {
   int strand_of(int vertex) const {
     return static_cast<int>(std::upper_bound(first_.begin(), first_.end(), vertex) - first_.begin()) - 1;
   }
-  /// Roots and what was combed into the body beside them.
-  bool was_combed_inside(int vertex) const { return vertex - first_[at(strand_of(vertex))] < 2; }
-
   CacheTrack track_;
   MetBodies met_;
   std::vector<int> first_;
-  std::vector<double> rest_;  ///< of strands in the first frame [m]
+  std::vector<double> rest_;    ///< lengths of strands in the first frame [m]
+  std::vector<double> combed_;  ///< depths of vertices in the first frame: roots, and what was combed inside [m]
 };
 
 }  // namespace
