@@ -135,8 +135,8 @@ function makeCurves(s, colour, unpack) {
         O /= max(length(O), 1e-6);
         // Each strand is a little lighter or darker, and a little more red or yellow, than the others.
         float chance = strand.z;
-        vec3 own = colour * (0.72 + 0.56 * chance) * (1.0 + 0.10 * (fract(7.31 * chance) - 0.5) * vec3(1.0, 0.1, -0.8));
-        own *= mix(0.55, 1.12, smoothstep(0.0, 0.75, strand.x));
+        vec3 own = colour * (0.8 + 0.6 * chance) * (1.0 + 0.10 * (fract(7.31 * chance) - 0.5) * vec3(1.0, 0.1, -0.8));
+        own *= mix(0.55, 1.25, smoothstep(0.0, 0.8, strand.x));
         float deep = mix(0.45, 1.0, smoothstep(0.0, 0.35, strand.x));  // little of the sky is seen from among the roots
         vec3 sum = vec3(0.0);
         #if NUM_HEMI_LIGHTS > 0
@@ -152,7 +152,7 @@ function makeCurves(s, colour, unpack) {
           vec3 H = normalize(L + V);
           float first = highlight(normalize(T + (shift - 0.09) * N), H, 90.0), second = highlight(normalize(T + (shift + 0.14) * N), H, 22.0);
           vec3 light = own * 1.15 * sqrt(max(1.0 - across * across, 0.0)) * facing;
-          light += (0.22 * first + (0.30 + 0.25 * strand.w * strand.w) * second * glint * sqrt(max(own.r, 0.02))) * facing;
+          light += (0.26 * first + (0.35 + 0.3 * strand.w * strand.w) * second * glint * sqrt(max(own.r, 0.02))) * facing;
           sum += directionalLights[i].color * come * light;
         }
         #endif
