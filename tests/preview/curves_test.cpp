@@ -170,7 +170,7 @@ TEST(PreviewCurves, Are_drawn_where_the_cache_has_them_and_counted_slow) {
   EXPECT_NE(systems.find("60 strands, 180 vertices drawn"), std::string::npos) << systems;
   EXPECT_NE(systems.find("20 of 60 strands are drawn, evenly chosen and wider"), std::string::npos) << systems;
   EXPECT_TRUE(answer["faults"].empty()) << answer["faults"];  // of shaders
-  EXPECT_GE(answer["triangles"], 179 * 12 + 1472);            // six pieces between any two vertices, and the ball
+  EXPECT_GE(answer["triangles"], 179 * 8 + 1472);             // four pieces between any two vertices, and the ball
 }
 
 }  // namespace
