@@ -13,6 +13,7 @@ function makeCurves(s, colour, unpack) {
   'use strict';
   const own = s.curves, count = s.vertices, counts = new Uint32Array(unpack(own.counts).buffer), ids = new Uint32Array(unpack(own.ids).buffer);
   const widths = own.widths ? new Float32Array(unpack(own.widths).buffer) : null;
+  const texels = 2048;  // along a side of the sun's shadow map
   const share = counts.length / Math.max(own.strands, 1), usual = 8e-5;  // m, of what has no width of its own
   const wider = Math.min(Math.sqrt(1 / Math.max(share, 1e-6)), 4);  // fewer strands cover more each
 
@@ -34,7 +35,7 @@ function makeCurves(s, colour, unpack) {
   }
 
   const geometry = new THREE.InstancedBufferGeometry(), corners = [], triangles = [];
-  const pieces = Math.min(Math.max(Math.ceil(64 * counts.length / Math.max(count, 1)), 2), 6);  // about 64 for a strand
+  const pieces = Math.min(Math.ceil(32 * counts.length / Math.max(count, 1)), 6) || 1;  // about 32 for a strand
   for (let k = 0; k <= pieces; ++k) corners.push(k / pieces, -1, 0, k / pieces, 1, 0);
   for (let k = 0; k < pieces; ++k) triangles.push(2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3);
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
@@ -76,9 +77,23 @@ function makeCurves(s, colour, unpack) {
     uniforms, lights: true, fog: true, side: THREE.DoubleSide,
     vertexShader: to_place + `
       #include <fog_pars_vertex>
+      #include <packing>
+      varying float lit;
       #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
         uniform mat4 directionalShadowMatrix[NUM_DIR_LIGHT_SHADOWS];
-        varying vec4 lit;
+        uniform sampler2D directionalShadowMap[NUM_DIR_LIGHT_SHADOWS];
+        uniform float depth, fade;  // of the shadow map [m]; light that goes through so much hair is 1/e [m]
+        /// The mean over texels about the place.
+        float through(vec3 at) {
+          float sum = 0.0;
+          for (int i = -1; i <= 1; ++i)
+            for (int j = -1; j <= 1; ++j) {
+              float first = unpackRGBAToDepth(texture2D(directionalShadowMap[0], at.xy + vec2(float(i), float(j)) * ${1.3 / texels}));
+              float hair = max(at.z - first, 0.0) * depth / fade;
+              sum += 0.7 * exp(-hair) + 0.3 * exp(-0.2 * hair);  // what is scattered on goes farther
+            }
+          return sum / 9.0;
+        }
       #endif
       uniform vec3 middle;
       varying vec3 way, outward, seen;
@@ -91,38 +106,21 @@ function makeCurves(s, colour, unpack) {
         seen = mvPosition.xyz;
         strand = vec4(along, position.y, trait.y, sin(37.0 * trait.y + 9.0 * along));
         #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
-          lit = directionalShadowMatrix[0] * vec4(centre, 1.0);
+          vec4 at = directionalShadowMatrix[0] * vec4(centre, 1.0);
+          lit = through(at.xyz / at.w);
+        #else
+          lit = 1.0;
         #endif
         #include <fog_vertex>
       }`,
     fragmentShader: `
       #include <common>
-      #include <packing>
       #include <lights_pars_begin>
       #include <fog_pars_fragment>
       uniform vec3 colour;
-      uniform float depth, fade;  // of the shadow map [m]; light that goes through so much hair is 1/e [m]
       varying vec3 way, outward, seen;
       varying vec4 strand;
-      #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
-        uniform sampler2D directionalShadowMap[NUM_DIR_LIGHT_SHADOWS];
-        varying vec4 lit;
-        /// Of the sun's light, what comes through: the mean over texels about the place.
-        float through() {
-          float sum = 0.0;
-          vec3 at = lit.xyz / lit.w;
-          if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-          for (int i = -1; i <= 1; ++i)
-            for (int j = -1; j <= 1; ++j) {
-              float first = unpackRGBAToDepth(texture2D(directionalShadowMap[0], at.xy + 1.3 * vec2(float(i), float(j)) / directionalLights[0].shadowMapSize));
-              float hair = max(at.z - first, 0.0) * depth / fade;
-              sum += 0.7 * exp(-hair) + 0.3 * exp(-0.2 * hair);  // what is scattered on goes farther
-            }
-          return sum / 9.0;
-        }
-      #else
-        float through() { return 1.0; }
-      #endif
+      varying float lit;  // of the sun's light, what comes through
       /// A highlight about the cone of directions in which a fibre with this tangent mirrors.
       float highlight(vec3 T, vec3 H, float sharp) {
         float across = dot(T, H);
@@ -135,8 +133,8 @@ function makeCurves(s, colour, unpack) {
         O /= max(length(O), 1e-6);
         // Each strand is a little lighter or darker, and a little more red or yellow, than the others.
         float chance = strand.z;
-        vec3 own = colour * (0.72 + 0.56 * chance) * (1.0 + 0.10 * (fract(7.31 * chance) - 0.5) * vec3(1.0, 0.1, -0.8));
-        own *= mix(0.55, 1.12, smoothstep(0.0, 0.75, strand.x));
+        vec3 own = colour * (0.8 + 0.6 * chance) * (1.0 + 0.10 * (fract(7.31 * chance) - 0.5) * vec3(1.0, 0.1, -0.8));
+        own *= mix(0.55, 1.25, smoothstep(0.0, 0.8, strand.x));
         float deep = mix(0.45, 1.0, smoothstep(0.0, 0.35, strand.x));  // little of the sky is seen from among the roots
         vec3 sum = vec3(0.0);
         #if NUM_HEMI_LIGHTS > 0
@@ -147,12 +145,12 @@ function makeCurves(s, colour, unpack) {
         #if NUM_DIR_LIGHTS > 0
         for (int i = 0; i < NUM_DIR_LIGHTS; ++i) {
           vec3 L = directionalLights[i].direction;
-          float across = dot(T, L), come = i == 0 ? through() : deep;
+          float across = dot(T, L), come = i == 0 ? lit : deep;
           float facing = clamp(0.35 + 0.65 * dot(O, L), 0.0, 1.0);  // hair is a body, too: its far side is dark
           vec3 H = normalize(L + V);
           float first = highlight(normalize(T + (shift - 0.09) * N), H, 90.0), second = highlight(normalize(T + (shift + 0.14) * N), H, 22.0);
           vec3 light = own * 1.15 * sqrt(max(1.0 - across * across, 0.0)) * facing;
-          light += (0.22 * first + (0.30 + 0.25 * strand.w * strand.w) * second * glint * sqrt(max(own.r, 0.02))) * facing;
+          light += (0.26 * first + (0.35 + 0.3 * strand.w * strand.w) * second * glint * sqrt(max(own.r, 0.02))) * facing;
           sum += directionalLights[i].color * come * light;
         }
         #endif
@@ -162,7 +160,7 @@ function makeCurves(s, colour, unpack) {
       }`,
   });
   const shade = new THREE.ShaderMaterial({
-    uniforms: { low: uniforms.low, grid: uniforms.grid, height: { value: 2048 } }, side: THREE.DoubleSide,
+    uniforms: { low: uniforms.low, grid: uniforms.grid, height: { value: texels } }, side: THREE.DoubleSide,
     vertexShader: to_place + 'void main() { gl_Position = corner(); }',
     fragmentShader: '#include <packing>\nvoid main() { gl_FragColor = packDepthToRGBA(gl_FragCoord.z); }',
   });

@@ -421,6 +421,8 @@
     const drawing = (bake.systems.find((s) => s.name === name) || {}).drawing;
     if (drawing && drawing.axis) answer.axes = list.split(',').map((i) => drawing.axis(+i));
     answer.systems = $('systems').textContent;
+    answer.faults = renderer ? renderer.info.programs.filter((p) => p.diagnostics && !p.diagnostics.runnable).map((p) => p.diagnostics.programLog) : [];
+    answer.triangles = renderer ? renderer.info.render.triangles : 0;
     $('scrub').value = 0;
     $('scrub').dispatchEvent(new Event('input'));
     answer.scrubbed = first + frame;

@@ -7,6 +7,7 @@
 #include "baker/core/hash.h"
 #include "io/shot/mesh_file.h"
 #include "tests/baker/swarm_kind.h"
+#include "tests/baker/tress_kind.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft::test {
@@ -84,8 +85,9 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-FakeScene::FakeScene(Beside beside) {
-  if (beside == Beside::k_swarm) swarm_.emplace(swarm_kind());
+FakeScene::FakeScene(Beside beside) : beside_(beside) {
+  if (beside == Beside::k_swarm) kind_.emplace(swarm_kind());
+  if (beside == Beside::k_tress) kind_.emplace(tress_kind());
   write_file(file("box.glb"), "not looked into by the fake importer");
   write_garment(sheet());
   write_shot();
@@ -110,7 +112,11 @@ void FakeScene::write_shot(int last_frame, const std::string& cloth_lines, const
       "[shot]\nframes = \"1-" + std::to_string(last_frame) +
           "\"\nfps = 24\npreroll = 3\n\n[primary.box]\nfile = \"box.glb\"\n\n[cloth.sheet]\nmesh = \"sheet.obj\"\n"
           "fabric = \"cotton\"\non = \"box\"\n" +
-          cloth_lines + (swarm_ ? "\n[swarm.tokens]\non = \"box\"\n" : "\n") + extra);
+          cloth_lines +
+          (beside_ == Beside::k_swarm   ? "\n[swarm.tokens]\non = \"box\"\n"
+           : beside_ == Beside::k_tress ? "\n[tress.locks]\non = \"box\"\n"
+                                        : "\n") +
+          extra);
 }
 
 BakeOptions FakeScene::options() const {

@@ -26,12 +26,13 @@ struct FakeBehaviour {
 };
 
 /// What the shot of a FakeScene has beside its sheet.
-enum class Beside { k_nothing, k_swarm };
+enum class Beside { k_nothing, k_swarm, k_tress };
 
 /// 3 x 3 x 3 sheet beside a box of 1 m; groups "top" (3 vertices) and "none" (weights 0).
 class FakeScene {
  public:
-  /// A swarm flies about the box (swarm_kind.h); its kind is there for as long as the scene is.
+  /// A swarm flies about the box (swarm_kind.h), or a tress swings beside it (tress_kind.h); their kind is there for as
+  /// long as the scene is.
   explicit FakeScene(Beside beside = Beside::k_nothing);
 
   /// frames "1-N"; extra: lines of TOML at the end.
@@ -53,7 +54,8 @@ class FakeScene {
 
  private:
   ScratchFolder scratch_;
-  std::optional<AddedSystemKind> swarm_;
+  Beside beside_;
+  std::optional<AddedSystemKind> kind_;
 };
 
 /// All faults in one string.

@@ -17,12 +17,13 @@
 namespace ft::test {
 namespace {
 
-/// With cloth alone, and with instances beside it.
+/// With cloth alone, with instances beside it, and with curves.
 class Resume : public testing::TestWithParam<Beside> {
  protected:
   /// Caches of the scene.
   static std::vector<std::string> caches(std::vector<std::string> of_meshes) {
     if (GetParam() == Beside::k_swarm) of_meshes.emplace_back("tokens.abc");
+    if (GetParam() == Beside::k_tress) of_meshes.insert(of_meshes.end(), {"locks.abc", "locks.pc2"});
     return of_meshes;
   }
 };
@@ -272,8 +273,12 @@ TEST(ResumedBake, Two_bakes_do_not_write_one_folder) {
   EXPECT_TRUE(std::filesystem::exists(scene.folder().lock()));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Resume, testing::Values(Beside::k_nothing, Beside::k_swarm),
-                         [](const auto& beside) { return beside.param == Beside::k_swarm ? "swarm" : "cloth"; });
+INSTANTIATE_TEST_SUITE_P(All, Resume, testing::Values(Beside::k_nothing, Beside::k_swarm, Beside::k_tress),
+                         [](const auto& beside) {
+                           return beside.param == Beside::k_swarm   ? "swarm"
+                                  : beside.param == Beside::k_tress ? "tress"
+                                                                    : "cloth";
+                         });
 
 }  // namespace
 }  // namespace ft::test

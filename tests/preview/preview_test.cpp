@@ -14,6 +14,7 @@
 #include "baker/record/manifest.h"
 #include "io/cache/cache.h"
 #include "io/shot/mesh_file.h"
+#include "tests/preview/ask_page.h"
 #include "tests/support/assets.h"
 #include "tests/support/scripted_body.h"
 #include "tests/support/shaped_samples.h"
@@ -82,28 +83,9 @@ void make_bake(const std::filesystem::path& folder, const Vec3& ball_per_frame =
 }
 
 Result<std::string> page_of(const std::vector<std::filesystem::path>& folders) {
-  return preview_page(folders);
-}
-
-nlohmann::json ask(const std::filesystem::path& page, const std::string& hash) {
-  const ScratchFolder profile;
-  const std::string command =
-      "timeout 120 chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader "
-      "--enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update "
-      "--disable-sync --user-data-dir=" +
-      profile.path().string() + " --virtual-time-budget=20000 --dump-dom 'file://" + page.string() + "#" + hash +
-      "' 2>/dev/null";
-  std::string dom;
-  FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 65536> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) dom.append(buffer.data(), n);
-  pclose(pipe);
-  const std::string open = "<pre id=\"test-answer\">";
-  const std::size_t begin = dom.find(open);
-  EXPECT_NE(begin, std::string::npos) << "the page did not answer; " << dom.size() << " bytes came";
-  if (begin == std::string::npos) return {};
-  const std::size_t end = dom.find("</pre>", begin);
-  return nlohmann::json::parse(dom.substr(begin + open.size(), end - begin - open.size()), nullptr, false);
+  auto page = preview_page({folders, {}});
+  if (!page) return page.error();
+  return std::move(page->text);
 }
 
 TEST(Preview, shows_every_vertex_where_the_cache_has_it_and_plays_slow) {
@@ -112,7 +94,7 @@ TEST(Preview, shows_every_vertex_where_the_cache_has_it_and_plays_slow) {
   make_bake(folder.path());
   const auto page = folder.path() / "page.html";
   ASSERT_EQ(run_preview({{folder.path()}, page}), 0);
-  const auto answer = ask(page, "frame=107&colour=strain&test=sheet:0,57,168");
+  const auto answer = test::ask_page(page, "frame=107&colour=strain&test=sheet:0,57,168");
   ASSERT_TRUE(answer.is_object());
   EXPECT_EQ(answer["frame"], 107);
   auto reader = open_cache(folder.path() / "sheet.abc");
@@ -140,7 +122,7 @@ TEST(Preview, draws_the_paths_of_several_bakes_and_plays_the_one_that_is_chosen_
   make_bake(folder / "moved", per_frame);
   const auto page = folder / "page.html";
   ASSERT_EQ(run_preview({{folder / "still", folder / "moved"}, page}), 0);
-  const auto answer = ask(page, "frame=107&bake=moved&test=ball:0");
+  const auto answer = test::ask_page(page, "frame=107&bake=moved&test=ball:0");
   ASSERT_TRUE(answer.is_object());
   EXPECT_EQ(answer["bake"], "moved");
   ASSERT_EQ(answer["paths"].size(), 2u);
@@ -157,7 +139,7 @@ TEST(Preview, draws_the_paths_of_several_bakes_and_plays_the_one_that_is_chosen_
                 1e-4);  // 16 bits over two metres
   // Of one bake with no prop they are not drawn unless they are asked for.
   ASSERT_EQ(run_preview({{folder / "moved"}, page}), 0);
-  EXPECT_TRUE(ask(page, "test=ball:0")["paths"].empty());
+  EXPECT_TRUE(test::ask_page(page, "test=ball:0")["paths"].empty());
 }
 
 /// Adds four leaves of two prototypes to a bake; the third never comes into being.
@@ -204,7 +186,7 @@ TEST(Preview, shows_instances_where_and_how_the_cache_has_them_slow) {
   const ShapedSample sample = add_leaves(folder.path());
   const auto page = folder.path() / "page.html";
   ASSERT_EQ(run_preview({{folder.path()}, page}), 0);
-  const auto answer = ask(page, "frame=107&test=leaves:0,1,2,3");
+  const auto answer = test::ask_page(page, "frame=107&test=leaves:0,1,2,3");
   ASSERT_TRUE(answer.is_object());
   const FrameData& frame = sample.frames[107 - k_first];
   for (std::size_t i = 0; i < 4; ++i) {

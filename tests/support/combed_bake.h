@@ -17,8 +17,9 @@ namespace ft::test {
 inline constexpr int k_combed_first = 101;
 inline constexpr int k_combed_swing = 48;  ///< frames from side to side and back
 
-/// Systems "ball", the body as drawn, and "tress".
-inline void write_combed_bake(const std::filesystem::path& folder, const CombedBall& ball, int frames) {
+/// Systems "ball", the body as drawn, and "tress", which goes on by `drift` in every frame [m].
+inline void write_combed_bake(const std::filesystem::path& folder, const CombedBall& ball, int frames,
+                              const Vec3& drift = Vec3::Zero()) {
   std::filesystem::create_directories(folder);
   Manifest manifest;
   manifest.version = manifest.build = manifest.fingerprint = "0";
@@ -56,7 +57,8 @@ inline void write_combed_bake(const std::filesystem::path& folder, const CombedB
   writer = find_cache_format("abc")->open_writer(folder / "tress.abc", info, 0);
   ASSERT_TRUE(writer) << writer.error().text();
   for (int f = 0; f < frames; ++f) {
-    const std::vector<Vec3> x = combed_places(ball, 2 * std::numbers::pi * f / k_combed_swing);
+    std::vector<Vec3> x = combed_places(ball, 2 * std::numbers::pi * f / k_combed_swing);
+    for (Vec3& p : x) p += f * drift;
     ASSERT_TRUE((*writer)->write_frame(x, {}));
     FrameReport& report = manifest.frames.emplace_back();
     report.frame = k_combed_first + f;
