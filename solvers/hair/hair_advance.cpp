@@ -14,8 +14,8 @@ constexpr double k_slow = 2e-3;
 /// Beyond its thickness and what it goes in the step, a vertex looks so much farther for what is near [m]; and no
 /// farther than the second.
 constexpr double k_look = 2e-3, k_farthest = 0.06;
-constexpr double k_hold = 10;          ///< of what is tied, by a strand's stiffness along [1]
-constexpr std::size_t k_together = 1;  ///< vertices that look for triangles together
+constexpr double k_hold = 10;     ///< of what is tied, by a strand's stiffness along [1]
+constexpr int k_most_pieces = 8;  ///< of a step that does not settle
 
 Vec3 vec(const double* p) {
   return {p[0], p[1], p[2]};
@@ -24,80 +24,113 @@ void put(double* p, const Vec3& v) {
   p[0] = v.x(), p[1] = v.y(), p[2] = v.z();
 }
 
+/// At a share of the way from one frame to the other, or beyond.
+RootFrame between(const RootFrame& a, const RootFrame& b, double share) {
+  if (share == 0) return a;
+  if (share == 1) return b;
+  const Eigen::AngleAxisd turn(Mat3(b.turn * a.turn.transpose()));
+  return {a.place + share * (b.place - a.place),
+          Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix() * a.turn};
+}
+
 }  // namespace
 
-/// Planes for the vertices of one strand. x: at the start; next: where they would be, going on freely with their roots.
-void HairSolver::add_contacts(std::size_t group, int lane, std::span<const Vec3> x, std::span<const Vec3> next,
-                              Work& w) const {
-  const std::size_t n = at(n_), s = strand_of(group, lane);
-  const HairMaterial& material = setup_.material;
-  const double way = bodies_.way();
-  for (std::size_t first = at(std::max(2, setup_.strands[s].held + 1)); first < n; first += k_together) {
-    const std::size_t last = std::min(first + k_together, n);
-    double reach[k_together];
-    Box box;
-    for (std::size_t i = first; i < last; ++i) {
-      reach[i - first] = std::min(material.thickness + k_look + way + (next[i] - x[i]).norm(), k_farthest);
-      const Vec3 grown = Vec3::Constant(reach[i - first]);
-      box.include((x[i] - grown).eval()), box.include((x[i] + grown).eval());
-    }
-    find_candidates(bodies_, box, w.candidates);
-    if (w.candidates.empty()) continue;
-    for (std::size_t i = first; i < last; ++i) {
-      NearSurface near[k_contacts];
-      const int count = find_nearest(bodies_, w.candidates, x[i], reach[i - first], k_contacts, near);
-      const double gap = gaps_[s * n + i];
-      const double keeps = std::clamp(0.98 * gap, k_least_reach, material.thickness);
-      const double shift = std::min(0.0, gap - k_least_reach);
-      for (int c = 0; c < count; ++c) {
-        const NearSurface& surface = near[c];
-        const Triangle& t = bodies_.triangles(surface.body)[at(surface.triangle)];
-        const auto a = bodies_.before(surface.body), b = bodies_.after(surface.body);
-        const Mat3 turn = triangle_frame(b[at(t[0])], b[at(t[1])], b[at(t[2])]) *
-                          triangle_frame(a[at(t[0])], a[at(t[1])], a[at(t[2])]).transpose();
-        if (!turn.allFinite()) continue;
-        Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-        for (int k = 0; k < 3; ++k)
-          from += surface.weights[k] * a[at(t[at(k)])], to += surface.weights[k] * b[at(t[at(k)])];
-        const Vec3 normal = turn * surface.normal;
-        HairContact<Lanes>& contact = w.around.contacts[k_contacts * i + at(c)];
-        set_lane(contact.normal, lane, normal);
-        contact.offset[lane] = normal.dot(to) + shift;
-        contact.reach[lane] = keeps;
-        contact.stiffness[lane] = k_stiffness * groups_[group].rod.mass[i][lane];
-        set_lane(contact.carried, lane, to + turn * (x[i] - from));
-        contact.friction[lane] = c == 0 ? material.friction * bodies_.friction(surface.body) : 0;
-        w.around.touches = true;
-      }
+void HairSolver::load(const Step& step, std::size_t g, Work& w) const {
+  const std::size_t n = at(n_);
+  for (int lane = 0; lane < k_lanes; ++lane) {
+    StrandNow& now = w.strands[at(lane)];
+    const std::size_t s = strand_of(g, lane), base = s * n;
+    now.x.resize(n), now.x_before.resize(n), now.v.resize(n), now.v_before.resize(n), now.m.resize(n - 1);
+    now.tension.assign(step.tension + base, step.tension + base + n);
+    for (std::size_t i = 0; i < n; ++i) {
+      now.x[i] = vec(step.x + 3 * (base + i)), now.x_before[i] = vec(step.x_before + 3 * (base + i));
+      now.v[i] = vec(step.v + 3 * (base + i)), now.v_before[i] = vec(step.v_before + 3 * (base + i));
+      if (i + 1 < n) now.m[i] = vec(step.m + 3 * (s * (n - 1) + i));
     }
   }
 }
 
-void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
+/// Where the step began becomes what was before.
+void HairSolver::store(const Step& step, std::size_t g, int lane, const StrandNow& now) const {
+  const std::size_t n = at(n_), s = strand_of(g, lane), base = s * n;
+  for (std::size_t i = 0; i < n; ++i) {
+    double *x = step.x + 3 * (base + i), *v = step.v + 3 * (base + i);
+    put(step.x_before + 3 * (base + i), vec(x)), put(step.v_before + 3 * (base + i), vec(v));
+    put(x, now.x[i]), put(v, now.v[i]);
+    step.tension[base + i] = now.tension[i];
+    if (i + 1 < n) put(step.m + 3 * (s * (n - 1) + i), now.m[i]);
+  }
+}
+
+/// Planes for the vertices of one strand, as it is at the start of the step.
+void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Work& w) const {
+  const std::size_t n = at(n_), s = strand_of(group, lane);
+  const HairMaterial& material = setup_.material;
+  const StrandNow& strand = w.strands[at(lane)];
+  const double way = bodies_.way();
+  for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i) {
+    const Vec3& x = strand.x[i];
+    // Where it would be, going on freely with its root.
+    const Vec3 goes = step.roots_after[s].carry(step.roots_now[s], x) - x + step.h * strand.v[i] -
+                      (x - step.roots_before[s].carry(step.roots_now[s], x));
+    const double reach = std::min(material.thickness + k_look + way + goes.norm(), k_farthest);
+    const Vec3 grown = Vec3::Constant(reach);
+    find_candidates(bodies_, {x - grown, x + grown}, w.candidates);
+    if (w.candidates.empty()) continue;
+    NearSurface near[k_contacts];
+    const int count = find_nearest(bodies_, w.candidates, x, reach, k_contacts, near);
+    const double gap = gaps_[s * n + i];
+    const double keeps = std::clamp(0.98 * gap, k_least_reach, material.thickness);
+    const double shift = std::min(0.0, gap - k_least_reach);
+    for (int c = 0; c < count; ++c) {
+      const NearSurface& surface = near[c];
+      const Triangle& t = bodies_.triangles(surface.body)[at(surface.triangle)];
+      const auto a = bodies_.before(surface.body), b = bodies_.after(surface.body);
+      const Mat3 turn = triangle_frame(b[at(t[0])], b[at(t[1])], b[at(t[2])]) *
+                        triangle_frame(a[at(t[0])], a[at(t[1])], a[at(t[2])]).transpose();
+      Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+      for (int k = 0; k < 3; ++k)
+        from += surface.weights[k] * a[at(t[at(k)])], to += surface.weights[k] * b[at(t[at(k)])];
+      const Vec3 normal = turn * surface.normal;
+      HairContact<Lanes>& contact = w.contacts[k_contacts * i + at(c)];
+      set_lane(contact.normal, lane, normal);
+      contact.offset[lane] = normal.dot(to) + shift;
+      contact.reach[lane] = keeps;
+      contact.stiffness[lane] = k_stiffness * groups_[group].rod.mass[i][lane];
+      set_lane(w.moved[k_contacts * i + at(c)], lane, to + turn * (x - from) - x);
+      contact.friction[lane] = c == 0 ? material.friction * bodies_.friction(surface.body) : 0;
+      w.around.touches = true;
+    }
+  }
+}
+
+/// Of the strands in the work, from where they are; they are where it ends after it.
+RodStepReport HairSolver::run_piece(const Step& step, const Piece& piece, std::size_t g, Work& w) const {
   const std::size_t n = at(n_);
   const Rod<Lanes>& rod = groups_[g].rod;
-  const double h = step.h, implicit = step.implicit();
+  const double h = piece.h, implicit = piece.implicit();
   const HairMaterial& material = setup_.material;
   w.pose.x.resize(n), w.pose.director.resize(n - 1), w.start.x.resize(n), w.start.director.resize(n - 1);
   w.around.pull.assign(n, Lanes{}), w.around.goal.resize(n), w.tension.resize(n);
-  w.around.contacts.assign(k_contacts * n, HairContact<Lanes>());
-  w.around.touches = false;
+  w.around.contacts = w.contacts;
   w.around.friction_speed_way = k_slow * h;
-  w.x.resize(n), w.next.resize(n);
   for (int lane = 0; lane < k_lanes; ++lane) {
-    const std::size_t s = strand_of(g, lane), base = s * n;
-    const RootFrame &before = step.roots_before[s], &now = step.roots_now[s], &after = step.roots_after[s];
+    const StrandNow& strand = w.strands[at(lane)];
+    const std::size_t s = strand_of(g, lane);
+    const RootFrame now = between(step.roots_now[s], step.roots_after[s], piece.from),
+                    after = between(step.roots_now[s], step.roots_after[s], piece.to);
+    const RootFrame before = piece.from > 0 ? between(step.roots_now[s], step.roots_after[s], 2 * piece.from - piece.to)
+                                            : between(step.roots_now[s], step.roots_before[s], piece.to);
+    std::vector<Vec3> next(n);
     for (std::size_t i = 0; i < n; ++i) {
-      const double* state = step.x + 3 * (base + i);
-      const Vec3 x = vec(state), x_before = vec(step.x_before + 3 * (base + i)), v = vec(step.v + 3 * (base + i)),
-                 v_before = vec(step.v_before + 3 * (base + i));
+      const Vec3 &x = strand.x[i], &v = strand.v[i], &x_before = strand.x_before[i], &v_before = strand.v_before[i];
       const Vec3 with_root = after.carry(now, x), from_root = before.carry(now, x);
       const double mass = rod.mass[i][lane];
       // Inertia and gravity; drag towards the root; drag towards the air.
-      const Vec3 path = step.first ? x : Vec3((4 * x - x_before) / 3);
+      const Vec3 path = piece.first ? x : Vec3((4 * x - x_before) / 3);
       const Vec3 free =
-          path + implicit * (step.first ? v : Vec3((4 * v - v_before) / 3)) + implicit * implicit * setup_.gravity;
-      const Vec3 still = step.first ? with_root : Vec3(with_root + (from_root - x_before) / 3);
+          path + implicit * (piece.first ? v : Vec3((4 * v - v_before) / 3)) + implicit * implicit * setup_.gravity;
+      const Vec3 still = piece.first ? with_root : Vec3(with_root + (from_root - x_before) / 3);
       const double inertia = mass / (implicit * implicit), slow = mass * material.drag / implicit;
       double pull = inertia + slow;
       Vec3 goal = inertia * free + slow * still;
@@ -105,47 +138,80 @@ void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
       const double blown = mass * material.air_drag * (air - v).norm() / implicit;
       pull += blown;
       goal += blown * (path + implicit * air);
-      if (static_cast<int>(i) <= setup_.strands[s].held) {  // counts the ghost
+      const bool held = static_cast<int>(i) <= setup_.strands[s].held;  // counts the ghost
+      if (held) {
         const double holds = k_hold * rod.stretch[lane] / rod.length[0][lane];
         goal += holds * with_root;
         pull += holds;
       }
       w.around.pull[i][lane] = pull;
       set_lane(w.around.goal[i], lane, goal / pull);
-      w.x[i] = x;
-      w.next[i] = static_cast<int>(i) <= std::max(1, setup_.strands[s].held)
-                      ? with_root
-                      : Vec3(with_root + h * v - (x - from_root));
+      next[i] = held ? with_root : Vec3(with_root + h * v - (x - from_root));
       set_lane(w.start.x[i], lane, x);
-      set_lane(w.pose.x[i], lane, w.next[i]);
-      w.tension[i][lane] = step.tension[base + i];
+      set_lane(w.pose.x[i], lane, next[i]);
+      w.tension[i][lane] = strand.tension[i];
+      for (std::size_t c = k_contacts * i; c < k_contacts * (i + 1); ++c) {
+        HairContact<Lanes>& contact = w.around.contacts[c];
+        const Vec3 moved = lane_of(w.moved[c], lane), normal = lane_of(contact.normal, lane);
+        contact.offset[lane] -= (1 - piece.to) * moved.dot(normal);
+        set_lane(contact.carried, lane, x + (piece.to - piece.from) * moved);
+      }
     }
     const Mat3 turn = after.turn * now.turn.transpose();
     for (std::size_t j = 0; j + 1 < n; ++j) {
-      const Vec3 m = vec(step.m + 3 * (s * (n - 1) + j));
-      set_lane(w.start.director[j], lane, m);
-      const Vec3 e = turn * (w.x[j + 1] - w.x[j]).normalized(), f = (w.next[j + 1] - w.next[j]).normalized();
-      set_lane(w.pose.director[j], lane, plain(carried_director(plain(Vec3(turn * m)), plain(e), plain(f))));
+      set_lane(w.start.director[j], lane, strand.m[j]);
+      const Vec3 e = turn * (strand.x[j + 1] - strand.x[j]).normalized(), f = (next[j + 1] - next[j]).normalized();
+      set_lane(w.pose.director[j], lane, plain(carried_director(plain(Vec3(turn * strand.m[j])), plain(e), plain(f))));
     }
-    add_contacts(g, lane, w.x, w.next, w);
   }
   strains_of(w.start, w.since);
   const RodStepReport report = w.step.run(rod, w.around, w.since, material.damping / h, w.tension, w.pose);
-  step.iterations[g] += report.iterations;
-  for (int lane = 0; lane < k_lanes && k_lanes * g + at(lane) < setup_.strands.size(); ++lane) {
-    const std::size_t s = strand_of(g, lane), base = s * n;
-    step.unsettled[g] += report.settled[lane] ? 0 : 1;
+  for (int lane = 0; lane < k_lanes; ++lane) {
+    StrandNow& strand = w.strands[at(lane)];
     for (std::size_t i = 0; i < n; ++i) {
-      double *x = step.x + 3 * (base + i), *x_before = step.x_before + 3 * (base + i), *v = step.v + 3 * (base + i);
-      const Vec3 old = vec(x), older = vec(x_before), now = lane_of(w.pose.x[i], lane);
-      put(step.v_before + 3 * (base + i), vec(v));
-      put(v, step.first ? Vec3((now - old) / h) : Vec3((3 * now - 4 * old + older) / (2 * h)));
-      put(x_before, old);
-      put(x, now);
-      step.tension[base + i] = w.tension[i][lane];
-      if (i + 1 < n) put(step.m + 3 * (s * (n - 1) + i), lane_of(w.pose.director[i], lane));
+      const Vec3 now = lane_of(w.pose.x[i], lane), old = strand.x[i];
+      const Vec3 v = piece.first ? Vec3((now - old) / h) : Vec3((3 * now - 4 * old + strand.x_before[i]) / (2 * h));
+      strand.x_before[i] = old, strand.v_before[i] = strand.v[i];
+      strand.x[i] = now, strand.v[i] = v;
+      strand.tension[i] = w.tension[i][lane];
+      if (i + 1 < n) strand.m[i] = lane_of(w.pose.director[i], lane);
     }
   }
+  return report;
+}
+
+void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
+  load(step, g, w);
+  w.contacts.assign(at(k_contacts * n_), HairContact<Lanes>());
+  w.moved.assign(at(k_contacts * n_), V3<Lanes>());
+  w.around.touches = false;
+  for (int lane = 0; lane < k_lanes; ++lane) add_contacts(step, g, lane, w);
+  RodStepReport report = run_piece(step, {.h = step.h, .first = step.first}, g, w);
+  step.iterations[g] += report.iterations;
+  bool open[k_lanes];  // neither settled nor given up; of the padding, no lane is
+  const auto settle = [&](bool last) {
+    bool any = false;
+    for (int lane = 0; lane < k_lanes; ++lane) {
+      if (open[lane] && (report.settled[lane] || last)) w.settled[at(lane)] = w.strands[at(lane)];
+      if (open[lane] && !report.settled[lane] && last) ++step.unsettled[g];
+      open[lane] = open[lane] && !report.settled[lane] && !last;
+      any = any || open[lane];
+    }
+    return any;
+  };
+  for (int lane = 0; lane < k_lanes; ++lane) open[lane] = k_lanes * g + at(lane) < setup_.strands.size();
+  for (int pieces = 2; settle(pieces > k_most_pieces); pieces *= 2) {
+    load(step, g, w);
+    report = RodStepReport();
+    for (int p = 0; p < pieces; ++p) {
+      const RodStepReport one = run_piece(
+          step, {.h = step.h / pieces, .first = true, .from = double(p) / pieces, .to = double(p + 1) / pieces}, g, w);
+      step.iterations[g] += one.iterations;
+      for (int lane = 0; lane < k_lanes; ++lane) report.settled[lane] = report.settled[lane] && one.settled[lane];
+    }
+  }
+  for (int lane = 0; lane < k_lanes && k_lanes * g + at(lane) < setup_.strands.size(); ++lane)
+    store(step, g, lane, w.settled[at(lane)]);
 }
 
 }  // namespace ft::inline solvers

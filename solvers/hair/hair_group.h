@@ -22,15 +22,31 @@ struct HairSolver::Step {
   int* unsettled = nullptr;
 };
 
+/// What moves of one strand.
+struct StrandNow {
+  std::vector<Vec3> x, x_before, v, v_before, m;
+  std::vector<double> tension;
+};
+
+/// A step of four strands, or a piece of one.
+struct HairSolver::Piece {
+  double h = 0;             ///< s
+  bool first = false;       ///< implicit Euler: x = y + implicit^2 a
+  double from = 0, to = 1;  ///< of the step
+  double implicit() const { return first ? h : 2.0 / 3 * h; }
+};
+
 /// Scratch of a thread.
 struct HairSolver::Work {
   RodStep<Lanes> step;
   RodPose<Lanes> pose, start;
   RodSurroundings<Lanes> around;
+  std::vector<HairContact<Lanes>> contacts;  ///< of the whole step
+  std::vector<V3<Lanes>> moved;              ///< how far each of their places goes in it [m]
   RodStrains<Lanes> since;
   std::vector<Lanes> tension;
   std::vector<std::pair<int, int>> candidates;
-  std::vector<Vec3> x, v, now, next;
+  std::array<StrandNow, k_lanes> strands, settled;
 };
 
 /// Gap that a vertex keeps where it was combed nearer than that, or inside [m].

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ struct HairSetup {
   double fps = 24;
   int preroll_frames = 24;
   Vec3 gravity = Vec3(0, -k_gravity, 0);  ///< m/s2
-  double air_density = 1.225;             ///< kg/m3
+  std::optional<Vec3> combed_gravity;     ///< under which the groom stands still, where it is not gravity [m/s2]
   std::shared_ptr<const Wind> wind;       ///< null: still air
   HairMaterial material;
   std::vector<HairStrand> strands;

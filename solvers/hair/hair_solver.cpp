@@ -133,7 +133,7 @@ void HairSolver::make_groups() {
   };
   const auto forces_of = [&](std::size_t s) {
     std::vector<Vec3> out;
-    for (const double mass : rods[s].mass) out.push_back(mass * setup_.gravity);
+    for (const double mass : rods[s].mass) out.push_back(mass * setup_.combed_gravity.value_or(setup_.gravity));
     return out;
   };
   stiffened_.assign(count, 1.0);
@@ -157,7 +157,8 @@ void HairSolver::make_groups() {
       const int held = setup_.strands[s].held;
       double free = 1e-3;  // length that can swing
       for (std::size_t j = at(held); j + 1 < n; ++j) free += rod.length[j];
-      stiffened_[s] = stand_still(trial, pose_of(s), forces_of(s), slowest_wanted(free, setup_.gravity.norm()), held);
+      stiffened_[s] = stand_still(trial, pose_of(s), forces_of(s),
+                                  slowest_wanted(free, setup_.combed_gravity.value_or(setup_.gravity).norm()), held);
     }
   });
   stiffen_alike(stiffened_);

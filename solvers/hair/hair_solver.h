@@ -4,7 +4,8 @@
 // A frame is a number of equal steps, so many that no body goes farther than some millimetres in one. In a step, what
 // is near each vertex at its start becomes up to three planes of the body as it is at its end (hair_contact.h); four
 // strands at a time are then solved by Newton's method (rod_step.h). BDF2, which keeps swings; a step that differs from
-// the one before it begins anew with implicit Euler. The groom is the equilibrium: rest_shape.h.
+// the one before it begins anew with implicit Euler. What does not settle is done again in 2, 4 or 8 pieces. The groom
+// is the equilibrium: rest_shape.h.
 //
 // Drag is towards the motion of the root, as the difference formula of the step has it at the step's end, so that hair
 // that falls together with its head is not braked; and towards the air by the square of the speed.
@@ -20,6 +21,8 @@
 #include "solvers/hair/rod_step.h"
 
 namespace ft::inline solvers {
+
+struct StrandNow;
 
 /// Blocks of its states, of all strands in the setup's order, with the ghost vertex first: "x" and "v" now, "x_before"
 /// and "v_before" a step before [m, m/s], "m" directors, "tension" [N], "step" the last step's length [s].
@@ -50,6 +53,7 @@ class HairSolver final : public Solver {
  private:
   struct Group;
   struct Step;
+  struct Piece;
   struct Work;
 
   explicit HairSolver(HairSetup setup);
@@ -57,7 +61,10 @@ class HairSolver final : public Solver {
   void stiffen_alike(std::vector<double>& factors) const;
   std::size_t strand_of(std::size_t group, int lane) const;
   void advance_group(const Step& step, std::size_t group, Work& work) const;
-  void add_contacts(std::size_t group, int lane, std::span<const Vec3> x, std::span<const Vec3> next, Work& work) const;
+  void load(const Step& step, std::size_t group, Work& work) const;
+  void store(const Step& step, std::size_t group, int lane, const StrandNow& now) const;
+  void add_contacts(const Step& step, std::size_t group, int lane, Work& work) const;
+  RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
   void certify(const State& state, FrameReport& report) const;
 
   HairSetup setup_;
