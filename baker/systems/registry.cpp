@@ -13,11 +13,7 @@ namespace {
 
 struct Registry {
   std::vector<const SystemKind*> kinds = {
-      cloth_kind(),
-      cords_kind(),
-      follow_kind(),
-      leaves_kind(),
-      hair_kind(),
+      cloth_kind(), cords_kind(), follow_kind(), leaves_kind(), hair_kind(),
   };
   std::vector<Metric> metrics = metrics_of(kinds);
 

@@ -26,7 +26,7 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
       {"stiffness", &HairSpec::stiffness, 1e-3, 1e6, "1", "", false, "bend_stiffness cohesion",
        "Of bending and twisting, by that of a hair: hairs of a lock that stick together are 2 to 100 times as stiff"},
       {"damping", &HairSpec::damping, 0, 1, "s", "", false, "bend_damping", "Time constant of bending and twisting"},
-      {"drag", &HairSpec::drag, 0, 1000, "1/s", "", false, "inner_drag",
+      {"inner_drag", &HairSpec::drag, 0, 1000, "1/s", "", false, "drag sway_damping",
        "Slows what moves otherwise than its root: 0 swings long, 4 usual, 20 as if wet"},
       {"air_drag", &HairSpec::air_drag, 0, 100, "1/m", "", false, "wind_drag",
        "By the air, for a metre of way: 0.5 among others, 25 a hair alone"},

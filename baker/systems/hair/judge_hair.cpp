@@ -73,9 +73,10 @@ class JudgedHair final : public JudgedGroup {
       out.push_back("\"" + name + "\" is not cached: strands inside it are not judged");
     const auto inside = std::count_if(combed_.begin(), combed_.end(), [](double depth) { return depth > k_deep; });
     if (inside > 0)
-      out.push_back(fmt::format("{} vertices of \"{}\" are inside a body in the first frame: of those only what goes "
-                                "deeper is counted",
-                                inside, track_.name));
+      out.push_back(
+          fmt::format("{} vertices of \"{}\" are inside a body in the first frame: of those only what goes "
+                      "deeper is counted",
+                      inside, track_.name));
     return out;
   }
 
