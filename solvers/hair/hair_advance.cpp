@@ -73,12 +73,12 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
     // Where it would be, going on freely with its root.
     const Vec3 goes = step.roots_after[s].carry(step.roots_now[s], x) - x + step.h * strand.v[i] -
                       (x - step.roots_before[s].carry(step.roots_now[s], x));
-    const double reach = std::min(material.thickness + k_look + way + goes.norm(), k_farthest);
-    const Vec3 grown = Vec3::Constant(reach);
+    const double reach = material.thickness + k_look;
+    const Vec3 grown = Vec3::Constant(std::min(reach + way + goes.norm(), k_farthest));
     find_candidates(bodies_, {x - grown, x + grown}, w.candidates);
     if (w.candidates.empty()) continue;
     NearSurface near[k_contacts];
-    const int count = find_nearest(bodies_, w.candidates, x, reach, k_contacts, near);
+    const int count = find_nearest(bodies_, w.candidates, x, reach, k_contacts, near, &goes);
     const double gap = gaps_[s * n + i];
     const double keeps = std::clamp(0.98 * gap, k_least_reach, material.thickness);
     const double shift = std::min(0.0, gap - k_least_reach);

@@ -30,7 +30,8 @@ Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 HairBodies::HairBodies(std::span<const HairBody> bodies) : given_(bodies), bodies_(bodies.size()) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::vector<Vec3> bind = bind_pose_of(*given_[b].trajectory);
-    bodies_[b].tree = TriangleTree(bind, given_[b].trajectory->surface().triangles);
+    bodies_[b].triangles = given_[b].trajectory->surface().triangles;
+    bodies_[b].tree = TriangleTree(bind, bodies_[b].triangles);
     bodies_[b].before = bodies_[b].after = bind;
   }
 }
@@ -60,15 +61,12 @@ void HairBodies::advance() {
 
 void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::pair<int, int>>& out) {
   out.clear();
-  for (int b = 0; b < bodies.count(); ++b) {
-    const std::size_t first = out.size();
+  for (int b = 0; b < bodies.count(); ++b)
     bodies.tree(b).for_each_near(TreeBox::around(box.lo, box.hi), [&](int t) { out.emplace_back(b, t); });
-    std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
-  }
 }
 
 int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> candidates, const Vec3& point,
-                 double reach, int most, NearSurface* out) {
+                 double least_reach, int most, NearSurface* out, const Vec3* goes) {
   struct Found {
     int body, triangle;
     ClosestOnTriangle closest;
@@ -80,6 +78,7 @@ int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> 
     const Triangle& corner = bodies.triangles(b)[at(t)];
     const auto x = bodies.before(b);
     const Vec3 &p0 = x[at(corner[0])], &p1 = x[at(corner[1])], &p2 = x[at(corner[2])];
+    const double reach = least_reach + (goes ? (*goes - (bodies.after(b)[at(corner[0])] - p0)).norm() : 0.0);
     // The box first: most candidates of a group are far from this point.
     const Vec3 lo = p0.cwiseMin(p1).cwiseMin(p2), hi = p0.cwiseMax(p1).cwiseMax(p2);
     if ((lo - point).cwiseMax(point - hi).cwiseMax(0.0).squaredNorm() > reach * reach) continue;

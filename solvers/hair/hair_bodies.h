@@ -24,7 +24,7 @@ class HairBodies {
   int count() const { return static_cast<int>(bodies_.size()); }
   bool sheet(int body) const { return given_[at(body)].sheet; }
   double friction(int body) const { return given_[at(body)].friction; }
-  std::span<const Triangle> triangles(int body) const { return given_[at(body)].trajectory->surface().triangles; }
+  std::span<const Triangle> triangles(int body) const { return bodies_[at(body)].triangles; }
   std::span<const Vec3> before(int body) const { return bodies_[at(body)].before; }
   std::span<const Vec3> after(int body) const { return bodies_[at(body)].after; }
   /// Over the triangles at the start.
@@ -35,6 +35,7 @@ class HairBodies {
  private:
   struct Body {
     std::vector<Vec3> before, after;
+    std::span<const Triangle> triangles;
     TriangleTree tree;
   };
   std::span<const HairBody> given_;
@@ -51,11 +52,12 @@ struct NearSurface {
 };
 
 /// The nearest places of bodies around a point, of up to `most` directions that differ by more than 40 degrees, the
-/// nearest first; none farther than reach. candidates: pairs of body and triangle in which all of them are.
+/// nearest first; none farther than reach and, where the point goes somewhere in the step, what it goes beside the
+/// body there. candidates: pairs of body and triangle in which all of them are.
 int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> candidates, const Vec3& point,
-                 double reach, int most, NearSurface* out);
+                 double reach, int most, NearSurface* out, const Vec3* goes = nullptr);
 
-/// All triangles whose boxes at the start meet a box, by body and number.
+/// Pairs of body and triangle: all whose boxes at the start meet a box, in any order.
 void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::pair<int, int>>& out);
 
 }  // namespace ft::inline solvers
