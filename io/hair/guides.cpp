@@ -17,7 +17,8 @@ namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_most_obj_bytes = std::uint64_t{1} << 30;
-constexpr double k_farthest = 1e6;  ///< from the origin: beyond this the scale is wrong, or the file is [m]
+constexpr int k_most_vertices = 2'000'000;  ///< of a hair mesh: its largest piece is solved at once
+constexpr double k_farthest = 1e6;          ///< from the origin: beyond this the scale is wrong, or the file is [m]
 
 Result<GuideSet> from_tfx(const std::filesystem::path& file) {
   GuideSet out;
@@ -42,6 +43,9 @@ Result<GuideSet> from_obj(const std::filesystem::path& file, double scale, std::
   if (!mesh) return mesh.error();
   if (mesh->face_sizes.empty())
     return input_error("holds no curves", file.string(), "guides are lines (l elements) or a mesh of cards and tubes");
+  if (mesh->vertex_count() > k_most_vertices)
+    return input_error(fmt::format("has {} vertices; a hair mesh may have {}", mesh->vertex_count(), k_most_vertices),
+                       file.string(), "give lines");
   for (Vec3& p : mesh->positions) {
     p *= scale;
     if (!(p.cwiseAbs().maxCoeff() <= k_farthest))

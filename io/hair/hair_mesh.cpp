@@ -13,9 +13,11 @@
 namespace ft::inline io {
 namespace {
 
-constexpr double k_least_ratio = 2;                       ///< length by breadth of what is a strand
-constexpr double k_least_single_share = 0.8;              ///< of its slices
+constexpr double k_least_ratio = 3;            ///< length by breadth of what is a strand; real cards have 6 and more
+constexpr std::size_t k_fewest_triangles = 3;  ///< of what can bend
+constexpr double k_least_single_share = 0.8;   ///< of its slices
 constexpr double k_least_side = 0.2, k_least_fall = 0.2;  ///< of a ribbon over a head, by its length
+constexpr double k_way_counts = 0.1;                      ///< of a vertex's place, beside how near the line is [1]
 constexpr int k_fewest_slices = 8, k_most_slices = 64;
 constexpr std::size_t k_shown_pieces = 5;  ///< named in full; the rest is counted
 
@@ -69,8 +71,32 @@ std::optional<std::size_t> crest_of(std::span<const Vec3> line) {
   return inside && fall > k_least_fall * whole ? std::optional(top) : std::nullopt;
 }
 
+/// Where along a line [m] a vertex is: near to it, and about where its way says. A way alone would not do, for it is
+/// late to reach the corners of an end and the shorter ones of frayed tips.
+double place_of(const Vec3& vertex, double way, const MiddleLine& middle, std::span<const double> places) {
+  const auto next = std::ranges::upper_bound(middle.ways, way) - middle.ways.begin();
+  const auto k = static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(next, 1, static_cast<std::ptrdiff_t>(middle.ways.size()) - 1));
+  const double share = (way - middle.ways[k - 1]) / (middle.ways[k] - middle.ways[k - 1]);
+  const double by_way = (1 - share) * places[k - 1] + share * places[k];
+  // Least |vertex - point|^2 + k_way_counts (place - by_way)^2 of all points of the line.
+  double least = std::numeric_limits<double>::infinity(), out = by_way;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Vec3 to_vertex = vertex - middle.line[i - 1], step = middle.line[i] - middle.line[i - 1];
+    const double length = places[i] - places[i - 1], wanted = by_way - places[i - 1];
+    if (!(length > 0)) continue;
+    const double best = (to_vertex.dot(step) / length + k_way_counts * wanted) / (1 + k_way_counts);
+    const double along = std::clamp(best, 0.0, length);
+    const double off = along - wanted;
+    const double cost = (to_vertex - along / length * step).squaredNorm() + k_way_counts * off * off;
+    if (cost < least) least = cost, out = places[i - 1] + along;
+  }
+  return out;
+}
+
 /// The strands out of a piece and the riders of its vertices; how many.
 int add_strands(const Piece& piece, std::span<const Vec3> scalp, MiddleLines& out) {
+  if (piece.triangles.size() < k_fewest_triangles) return 0;
   const auto ways = long_way(piece.positions, piece.triangles);
   if (ways.empty()) return 0;
   const int slices = std::clamp(static_cast<int>(piece.vertices.size()) / 2, k_fewest_slices, k_most_slices);
@@ -93,11 +119,7 @@ int add_strands(const Piece& piece, std::span<const Vec3> scalp, MiddleLines& ou
     parts = {{places.back(), 0}};
   const int first = static_cast<int>(out.strands.size());
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    const auto next = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(middle.ways, ways[i]) - middle.ways.begin(),
-                                                 1, static_cast<std::ptrdiff_t>(middle.ways.size()) - 1);
-    const auto k = static_cast<std::size_t>(next);
-    const double share = (ways[i] - middle.ways[k - 1]) / (middle.ways[k] - middle.ways[k - 1]);
-    const double place = (1 - share) * places[k - 1] + share * places[k];
+    const double place = place_of(piece.positions[i], ways[i], middle, places);
     const int which = crest && place > places[*crest] ? 1 : 0;
     const Part& part = parts[at(which)];
     const double along = std::clamp((place - part.root) / (part.tip - part.root), 0.0, 1.0);

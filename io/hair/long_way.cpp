@@ -96,6 +96,11 @@ std::vector<double> long_way(std::span<const Vec3> positions, std::span<const Tr
   const double length = from_one[at(other_end)];
   if (!(length > 0) || !std::isfinite(length)) return {};
 
+  double area = 0;
+  for (const Triangle& t : triangles)
+    area += triangle_area(positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]);
+  if (!(area > 1e-14 * length * length)) return {};
+
   const Operators op = operators_of(positions, triangles, graph);
   Eigen::SparseMatrix<double> shifted = op.stiffness;
   shifted.diagonal() += 0.1 / (length * length) * op.mass;  // far below the eigenvalue (pi / length)^2

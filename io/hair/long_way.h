@@ -9,7 +9,7 @@
 namespace ft::inline io {
 
 /// From 0 at one end to 1 at the other, for each vertex of one connected piece; lines of equal values cross a strip or
-/// go round a tube. Empty where the piece has no two ends: it is a point, or numbers fail. Of what is as wide as long,
+/// go round a tube. Empty for what has no area. Of what is as wide as long,
 /// and of rings, the values mean little: look at the slices.
 std::vector<double> long_way(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 

@@ -1,6 +1,6 @@
 // A slice is where the way has one value: a polyline across a strip, a circle about a tube. Its centre is that of its
 // length, so that it does not matter where the mesh has its vertices. The line is led on beyond the first and the last
-// slice as far as there are vertices.
+// slice as far as the mesh goes.
 #include "io/hair/slices.h"
 
 #include <algorithm>
@@ -11,6 +11,24 @@
 
 namespace ft::inline io {
 namespace {
+
+constexpr std::size_t k_slices_of_direction = 2;
+/// A slice at an end that is so much shorter than the next one only cuts a corner off, for the corners of an end are
+/// not reached at once.
+constexpr double k_least_of_next = 0.8;
+
+struct Range {
+  std::size_t first, last;
+};
+/// Without what cuts corners off; at each end never more than about a sixteenth, for ends may fray.
+Range whole_slices(std::span<const double> lengths) {
+  Range out{0, lengths.size() - 1};
+  const std::size_t most = (lengths.size() + 15) / 16;
+  while (out.first < most && lengths[out.first] < k_least_of_next * lengths[out.first + 1]) ++out.first;
+  while (lengths.size() - 1 - out.last < most && lengths[out.last] < k_least_of_next * lengths[out.last - 1])
+    --out.last;
+  return out;
+}
 
 /// Where a slice crosses a triangle: from one of its edges to another.
 struct Crossing {
@@ -81,41 +99,48 @@ std::vector<Slice> cut(std::span<const Vec3> x, std::span<const Triangle> triang
   return out;
 }
 
-/// How far vertices lie beyond an end of the line, in its direction [m].
-double beyond(const Vec3& end, const Vec3& inner, std::span<const Vec3> x, std::span<const double> ways, double from,
-              double to) {
-  const Vec3 outwards = (end - inner).normalized();
-  double out = 0;
+/// Where a line ends that is led on beyond its last slice: in the direction of its last few slices, as far as the
+/// vertices there lie in the mean.
+Vec3 led_on(std::span<const Vec3> from_end, std::span<const Vec3> x, std::span<const double> ways, double from,
+            double to) {
+  const Vec3& end = from_end.front();
+  const Vec3 outwards = (end - from_end[std::min(k_slices_of_direction, from_end.size() - 1)]).normalized();
+  std::vector<double> beyond;
   for (std::size_t v = 0; v < x.size(); ++v)
-    if (ways[v] >= from && ways[v] <= to) out = std::max(out, outwards.dot(x[v] - end));
-  return out;
+    if (ways[v] >= from && ways[v] <= to) beyond.push_back(outwards.dot(x[v] - end));
+  const double most = beyond.empty() ? 0 : std::max(0.0, *std::ranges::max_element(beyond));
+  double sum = 0;
+  int count = 0;
+  for (const double b : beyond)
+    if (b > most / 2) sum += b, ++count;
+  return end + (count > 0 ? sum / count : 0) * outwards;
 }
 
 }  // namespace
 
 MiddleLine middle_line(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                        std::span<const double> ways, int slices) {
+  const auto all = cut(positions, triangles, ways, slices);
+  std::vector<double> lengths;
+  for (const Slice& slice : all) lengths.push_back(slice.length());
+  const Range whole = whole_slices(lengths);
   MiddleLine out;
   double singles = 0, closed = 0, sum = 0;
-  int count = 0;
-  const auto all = cut(positions, triangles, ways, slices);
-  for (int k = 0; k < slices; ++k) {
-    const Slice& slice = all[at(k)];
-    if (slice.crossings.empty()) continue;
-    out.line.push_back(slice.centre());
-    out.ways.push_back(way_of_slice(k, slices));
-    const auto [parts, points] = slice.parts_and_points();
-    const bool closes = points <= slice.crossings.size();
-    singles += parts == 1 ? 1 : 0, closed += closes ? 1 : 0, ++count;
-    sum += slice.length() / (closes ? std::numbers::pi : 1);
+  for (std::size_t k = whole.first; k <= whole.last; ++k) {
+    if (all[k].crossings.empty()) continue;
+    out.line.push_back(all[k].centre());
+    out.ways.push_back(way_of_slice(static_cast<int>(k), slices));
+    const auto [parts, points] = all[k].parts_and_points();
+    const bool closes = points <= all[k].crossings.size();
+    singles += parts == 1 ? 1 : 0, closed += closes ? 1 : 0;
+    sum += lengths[k] / (closes ? std::numbers::pi : 1);
   }
-  if (count < 2) return {};
+  if (out.line.size() < 2) return {};
+  const auto count = static_cast<double>(out.line.size());
   out.breadth = sum / count, out.single_share = singles / count, out.closed_share = closed / count;
-  const std::size_t n = out.line.size();
-  const double at_start = beyond(out.line[0], out.line[1], positions, ways, 0, out.ways.front());
-  const double at_end = beyond(out.line[n - 1], out.line[n - 2], positions, ways, out.ways.back(), 1);
-  const Vec3 start = out.line[0] + at_start * (out.line[0] - out.line[1]).normalized();
-  const Vec3 end = out.line[n - 1] + at_end * (out.line[n - 1] - out.line[n - 2]).normalized();
+  const std::vector<Vec3> backwards(out.line.rbegin(), out.line.rend());
+  const Vec3 start = led_on(out.line, positions, ways, 0, out.ways.front());
+  const Vec3 end = led_on(backwards, positions, ways, out.ways.back(), 1);
   out.line.insert(out.line.begin(), start), out.ways.insert(out.ways.begin(), 0.0);
   out.line.push_back(end), out.ways.push_back(1.0);
   return out;
