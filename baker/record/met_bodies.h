@@ -13,7 +13,8 @@ struct MetBodies {
   std::vector<std::string> missing;  ///< what it met and is not cached
 };
 
-/// Bodies as they were drawn; of a system that names none, the one that it is on.
+/// Bodies as they were drawn, and what was baked before, "cloth.robe"; of a system that names none, the one that it is
+/// on.
 Result<MetBodies> met_bodies(const CachedBake& bake, const ManifestSystem& system);
 
 }  // namespace ft::inline baker

@@ -13,7 +13,7 @@ std::vector<std::string> output_names(const Shot& shot) {
       if (const CacheFormat* known = find_cache_format(format)) out.push_back(name + std::string(known->extension));
   };
   for (const auto& secondary : shot.secondaries) {
-    add_system(secondary->name);
+    for (const std::string& name : secondary->section->system_names(*secondary)) add_system(name);
     for (std::string& file : secondary->section->written_files(*secondary)) out.push_back(std::move(file));
   }
   if (!shot.winds.empty() || shot.wind.velocity != Vec3::Zero()) out.emplace_back(k_wind_file);

@@ -54,6 +54,8 @@ class SecondarySection {
   virtual void append_reference(const ShotVocabulary& vocabulary, std::string& out) const = 0;
   /// Files that it reads: the key, "mesh", and the path.
   virtual std::vector<std::pair<std::string, std::filesystem::path>> files(const SecondarySpec& spec) const = 0;
+  /// Names of its systems, after which their caches are called.
+  virtual std::vector<std::string> system_names(const SecondarySpec& spec) const { return {spec.name}; }
   /// Files beside its caches that its bake writes; names in the bake's folder.
   virtual std::vector<std::string> written_files(const SecondarySpec&) const { return {}; }
   /// Lists of words that its keys name by "@...".

@@ -30,9 +30,11 @@ std::string suggestion_of_wearer(const SecondarySpec& spec, std::vector<std::str
 void judge_wearer(const Value& root, SecondarySpec& spec, const std::vector<std::string>& primaries,
                   const std::vector<std::string>& carriers, FaultList& faults) {
   const std::string owner = spec.owner();
-  if (contains(primaries, spec.name))
-    faults.add(place_of(root, {spec.kind(), spec.name}),
-               owner + ": a primary has the same name, their caches would overwrite each other");
+  for (const std::string& name : spec.section->system_names(spec))
+    if (contains(primaries, name))
+      faults.add(place_of(root, {spec.kind(), spec.name}), owner + ": a primary has the same name" +
+                                                               (name == spec.name ? "" : " as its " + in_quotes(name)) +
+                                                               ", their caches would overwrite each other");
   if (spec.on.empty() && primaries.size() == 1) spec.on = primaries.front();
   if (primaries.empty() || contains(primaries, spec.on) || contains(carriers, spec.on)) return;
   const Place place = place_of(root, {spec.kind(), spec.name, "on"});
@@ -137,11 +139,18 @@ void judge_whole(const Value& root, Shot& shot, const ShotVocabulary& vocabulary
   for (const auto& secondary : shot.secondaries) judge_wearer(root, *secondary, primaries, carriers, faults);
   for (std::size_t i = 0; i < shot.secondaries.size(); ++i) {
     const SecondarySpec& own = *shot.secondaries[i];
-    for (std::size_t k = 0; k < i; ++k)
-      if (shot.secondaries[k]->name == own.name)
-        faults.add(place_of(root, {own.kind(), own.name}),
-                   own.owner() + ": a " + std::string(shot.secondaries[k]->kind()) +
-                       " has the same name, their caches would overwrite each other");
+    const std::vector<std::string> names = own.section->system_names(own);
+    for (std::size_t k = 0; k < i; ++k) {
+      const SecondarySpec& other = *shot.secondaries[k];
+      for (const std::string& name : other.section->system_names(other))
+        if (contains(names, name))
+          faults.add(
+              place_of(root, {own.kind(), own.name}),
+              own.owner() + ": " +
+                  (name == own.name && name == other.name ? "a " + std::string(other.kind()) + " has the same name"
+                                                          : other.owner() + " makes " + in_quotes(name) + ", too") +
+                  ", their caches would overwrite each other");
+    }
   }
   for (const auto& secondary : shot.secondaries) secondary->section->judge(root, *secondary, shot, faults);
   judge_couplings(root, shot, faults);

@@ -96,7 +96,7 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
       set_lane(contact.normal, lane, normal);
       contact.offset[lane] = normal.dot(to) + shift;
       contact.reach[lane] = keeps;
-      contact.stiffness[lane] = k_stiffness * groups_[group].rod.mass[i][lane];
+      contact.stiffness[lane] = k_stiffness * rods_[group].mass[i][lane];
       set_lane(w.moved[k_contacts * i + at(c)], lane, to + turn * (x - from) - x);
       contact.friction[lane] = c == 0 ? material.friction * bodies_.friction(surface.body) : 0;
       w.around.touches = true;
@@ -107,7 +107,7 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
 /// Of the strands in the work, from where they are; they are where it ends after it.
 RodStepReport HairSolver::run_piece(const Step& step, const Piece& piece, std::size_t g, Work& w) const {
   const std::size_t n = at(n_);
-  const Rod<Lanes>& rod = groups_[g].rod;
+  const Rod<Lanes>& rod = rods_[g];
   const double h = piece.h, implicit = piece.implicit();
   const HairMaterial& material = setup_.material;
   w.pose.x.resize(n), w.pose.director.resize(n - 1), w.start.x.resize(n), w.start.director.resize(n - 1);

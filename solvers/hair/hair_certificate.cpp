@@ -41,7 +41,7 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
         const std::size_t k = s * n + i;
         out.finite = out.finite && x[k].allFinite() && v[k].allFinite();
         if (i > 1) length += (x[k] - x[k - 1]).norm();
-        out.energy += 0.5 * groups_[s / k_lanes].rod.mass[i][static_cast<int>(s % k_lanes)] * v[k].squaredNorm();
+        out.energy += 0.5 * rods_[s / k_lanes].mass[i][static_cast<int>(s % k_lanes)] * v[k].squaredNorm();
       }
       off[s] = std::abs(length / lengths_[s] - 1);
       if (!out.finite) continue;

@@ -1,19 +1,14 @@
-// What never changes of four strands, and what is around them in a step. Between the files of the solver.
+// What is around four strands in a step, and scratch. Between the files of the solver.
 #pragma once
 
 #include "solvers/hair/hair_solver.h"
 
 namespace ft::inline solvers {
 
-struct HairSolver::Group {
-  Rod<Lanes> rod;
-};
-
 /// Of a step, the same for all strands.
 struct HairSolver::Step {
   double h = 0;        ///< s
   bool first = false;  ///< implicit Euler: there is no step of this length before
-  double implicit() const { return first ? h : 2.0 / 3 * h; }       ///< x = y + implicit^2 a
   std::span<const RootFrame> roots_before, roots_now, roots_after;  ///< a step before its start; its start; its end
   const AirNow* air = nullptr;
   // Blocks of the state.

@@ -27,8 +27,6 @@ constexpr double k_alike = 0.02;
 
 }  // namespace
 
-HairSolver::~HairSolver() = default;
-
 Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
   const auto refuse = [&](const std::string& what) {
     return usage_error(fmt::format("hair \"{}\": {}", setup.name, what));
@@ -120,6 +118,18 @@ void HairSolver::stiffen_alike(std::vector<double>& factors) const {
   for (std::size_t s = 0; s < factors.size(); ++s) factors[s] = std::exp(logs[s]);
 }
 
+CombedInside HairSolver::combed_inside() const {
+  CombedInside out;
+  for (std::size_t s = 0; s < setup_.strands.size(); ++s)
+    for (std::size_t i = at(setup_.strands[s].held) + 1; i < at(n_); ++i) {
+      const double gap = gaps_[s * at(n_) + i];
+      if (gap >= 0) continue;
+      ++out.vertices;
+      out.deepest = std::max(out.deepest, -gap);
+    }
+  return out;
+}
+
 void HairSolver::make_groups() {
   const HairMaterial& m = setup_.material;
   const double area = std::numbers::pi * m.radius * m.radius;
@@ -165,9 +175,9 @@ void HairSolver::make_groups() {
   parallel_for(count, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) stand_still_at(stiffened_[s], rods[s], pose_of(s), forces_of(s));
   });
-  groups_.resize((count + k_lanes - 1) / k_lanes);
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    Rod<Lanes>& all = groups_[g].rod;
+  rods_.resize((count + k_lanes - 1) / k_lanes);
+  for (std::size_t g = 0; g < rods_.size(); ++g) {
+    Rod<Lanes>& all = rods_[g];
     all.n = n_;
     all.length.resize(n - 1), all.voronoi.resize(n), all.mass.resize(n), all.k1.resize(n), all.k2.resize(n),
         all.tw.resize(n);
@@ -241,11 +251,12 @@ FrameReport HairSolver::advance_frame(State& state) {
   roots_at(t0, now), roots_at(t1, after);
   double way = bodies_.way();
   for (std::size_t s = 0; s < now.size(); ++s) way = std::max(way, (after[s].place - now[s].place).norm());
-  const int steps = std::clamp(static_cast<int>(std::ceil(way / k_way)), setup_.least_steps, setup_.most_steps);
+  const int wanted = static_cast<int>(std::min(std::ceil(way / k_way), 1e6));
+  const int steps = std::clamp(wanted, setup_.least_steps, setup_.most_steps);
   const double h = (t1 - t0) / steps;
   const bool goes_on = std::abs(state.find("step")->at(0) - h) < 1e-9 * h;
   roots_at(t0 - h, before);
-  std::vector<int> iterations(groups_.size(), 0), unsettled(groups_.size(), 0);
+  std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0);
   for (int k = 0; k < steps; ++k) {
     const double end = k + 1 == steps ? t1 : t0 + h * (k + 1);
     bodies_.end_at(end);
@@ -261,7 +272,7 @@ FrameReport HairSolver::advance_frame(State& state) {
     step.v = state.block("v").data(), step.v_before = state.block("v_before").data();
     step.m = state.block("m").data(), step.tension = state.block("tension").data();
     step.iterations = iterations.data(), step.unsettled = unsettled.data();
-    parallel_for(groups_.size(), 1, [&](std::size_t begin, std::size_t finish) {
+    parallel_for(rods_.size(), 1, [&](std::size_t begin, std::size_t finish) {
       thread_local Work work;
       for (std::size_t g = begin; g < finish; ++g) advance_group(step, g, work);
     });
@@ -274,11 +285,25 @@ FrameReport HairSolver::advance_frame(State& state) {
   state.time = t1;
   report.substeps = steps;
   double sum = 0, rest = 0;
-  for (std::size_t g = 0; g < groups_.size(); ++g) sum += iterations[g], rest += unsettled[g];
+  for (std::size_t g = 0; g < rods_.size(); ++g) sum += iterations[g], rest += unsettled[g];
   report.newton_iterations = static_cast<int>(sum);
   report.own["hair_steps"] = steps;
-  report.own["hair_iterations"] = sum / (steps * static_cast<double>(groups_.size()));
+  report.own["hair_iterations"] = sum / (steps * static_cast<double>(rods_.size()));
   report.own["hair_unsettled"] = rest;
+  const auto say = [&](const std::string& text) {
+    Incident& incident = report.incidents.emplace_back();
+    incident.kind = Incident::Kind::k_unsettled;
+    incident.frame = report.frame;
+    incident.system = setup_.name;
+    incident.place = as_points(*state.find("x"))[1];
+    incident.text = text;
+  };
+  if (wanted > setup_.most_steps)
+    say(fmt::format(
+        "a body or a root goes {:.2g} m in this frame, {:.0f} mm in each of {} steps: strands may not keep up "
+        "with it; more frames per second help",
+        way, 1e3 * way / steps, steps));
+  if (rest > 0) say(fmt::format("{:.0f} times a strand did not settle in a step, nor in pieces of it", rest));
   certify(state, report);
   report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return report;

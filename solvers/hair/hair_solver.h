@@ -24,6 +24,12 @@ namespace ft::inline solvers {
 
 struct StrandNow;
 
+/// Vertices that are inside of what they meet as they were combed, and may stay as deep.
+struct CombedInside {
+  int vertices = 0;
+  double deepest = 0;  ///< m
+};
+
 /// Blocks of its states, of all strands in the setup's order, with the ghost vertex first: "x" and "v" now, "x_before"
 /// and "v_before" a step before [m, m/s], "m" directors, "tension" [N], "step" the last step's length [s].
 ///
@@ -40,7 +46,9 @@ class HairSolver final : public Solver {
   int vertices() const { return n_ - 1; }
   /// By how much each strand is stiffer than its material, so that it stands as it is combed [1].
   std::span<const double> stiffened() const { return stiffened_; }
+  /// From the scalp [m].
   double farthest_root() const { return roots_->farthest(); }
+  CombedInside combed_inside() const;
 
   int system_count() const override { return 1; }
   const SystemShape* system_shape(int) const override { return &shape_; }
@@ -51,7 +59,6 @@ class HairSolver final : public Solver {
   FrameReport advance_frame(State& state) override;
 
  private:
-  struct Group;
   struct Step;
   struct Piece;
   struct Work;
@@ -70,16 +77,13 @@ class HairSolver final : public Solver {
   HairSetup setup_;
   int n_ = 0;  ///< vertices of a strand, with its ghost
   std::unique_ptr<HairRoots> roots_;
-  HairBodies bodies_;  ///< scratch of a frame
-  std::vector<Group> groups_;
+  HairBodies bodies_;                     ///< scratch of a frame
+  std::vector<Rod<Lanes>> rods_;          ///< of four strands each, the last ones padded
   std::vector<std::vector<Vec3>> groom_;  ///< of each strand, with its ghost, in the bind pose [m]
   std::vector<Vec3> directors_;           ///< of all strands' edges, in the bind pose
   std::vector<double> gaps_;              ///< of each vertex as combed, to what it meets [m]
   std::vector<double> lengths_, stiffened_;
   SystemShape shape_;
-
- public:
-  ~HairSolver() override;
 };
 
 }  // namespace ft::inline solvers

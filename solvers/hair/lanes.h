@@ -44,9 +44,6 @@ template <class T>
 T absolute(const T& a) {
   return choose(a < T{} + 0.0, T(-a), a);
 }
-inline double sum_of_lanes(const Lanes& a) {
-  return a[0] + a[1] + a[2] + a[3];
-}
 inline double largest_lane(const Lanes& a) {
   return std::max(std::max(a[0], a[1]), std::max(a[2], a[3]));
 }

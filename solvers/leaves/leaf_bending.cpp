@@ -9,7 +9,7 @@
 namespace ft::inline solvers {
 namespace {
 
-/// Of critical damping: dry leaves rattle, and do not ring [1].
+/// Of critical damping: dry leaves rattle, and do not ring. Guessed [1].
 constexpr double k_damping_ratio = 0.1;
 /// Steps of free flight, by the fastest mode's radian [1].
 constexpr double k_step = 0.25;

@@ -34,7 +34,8 @@ Result<std::unique_ptr<LeavesSolver>> LeavesSolver::make(LeavesSetup setup) {
     return usage_error(fmt::format("leaves \"{}\": {}", setup.name, what));
   };
   if (!(setup.fps > 0) || !(setup.air_density > 0)) return refuse("fps and air density must be positive");
-  if (!(setup.bending >= 0 && setup.bending < 1e6)) return refuse("bending stiffness is not below 0");
+  if (!(setup.bending >= 0 && setup.bending < 1e6))
+    return refuse("bending stiffness must be 0 or more, and below 1e6 N m");
   if (!(setup.mass_variation >= 0 && setup.mass_variation <= 0.9)) return refuse("mass variation is 0 to 0.9");
   for (const LeafPrototype& p : setup.prototypes) {
     double area = 0;

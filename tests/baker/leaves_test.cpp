@@ -181,6 +181,14 @@ TEST_F(LeavesShot, What_makes_no_sense_is_refused_with_its_place) {
   }
 }
 
+TEST_F(LeavesShot, What_else_is_called_as_the_near_leaves_is_refused) {
+  const std::string near = std::string(k_region) + "camera = [1, 0, 0]\nnear = 0.5\n";
+  const std::string twice = refusal(near + "[leaves.oak_near]\non = \"floor\"\nsize = [1, 0, 1]\n");
+  EXPECT_NE(twice.find("makes \"oak_near\", too"), std::string::npos) << twice;
+  const std::string body = refusal(near + "[primary.oak_near]\nshape = \"sphere\"\nradius = 0.1\n");
+  EXPECT_NE(body.find("a primary has the same name as its \"oak_near\""), std::string::npos) << body;
+}
+
 TEST_F(LeavesShot, Winds_that_make_no_sense_are_refused_with_their_place) {
   for (const auto& [lines, words] : {
            std::pair("kind = \"uniform\"\nvelocity = [0, 0, 0]\n", "a direction"),

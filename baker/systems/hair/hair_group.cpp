@@ -5,15 +5,15 @@
 #include <algorithm>
 
 #include "baker/plan/located.h"
-#include "baker/plan/meets.h"
 #include "baker/systems/interface/plan_common.h"
 #include "io/hair/guides.h"
 #include "io/hair/resample.h"
-#include "io/shot/words.h"
-#include "solvers/hair/hair_solver.h"
 
 namespace ft::inline baker {
 namespace {
+
+/// Roots that are farther from the surface are a note [m].
+constexpr double k_root_off = 2e-3;
 
 /// `count` of so many, evenly.
 std::vector<std::size_t> evenly(std::size_t all, int count) {
@@ -44,29 +44,30 @@ Status add_strands(const HairSpec& spec, const Trajectory& scalp, BakePlan& plan
   return {};
 }
 
-Status add_bodies(const HairSpec& spec, BakePlan& plan, HairGroup& group) {
-  const auto meets = meets_of(spec.meets, spec.on, plan.primaries);
-  if (!meets) return meets.error();
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-    const PrimaryPlan& primary = plan.primaries[p];
-    if ((*meets)[p] == 0 && primary.name != spec.on) continue;
-    if (const std::string why = why_alone(plan.shot(), primary); !why.empty()) {
-      plan.notes.push_back(fmt::format("{} does not meet \"{}\": {}", spec.owner(), primary.name, why));
-      continue;
-    }
-    group.meets.push_back(p);
-    group.setup.bodies.push_back(
-        {primary.name, primary.trajectory, 1, has_sheets(primary.trajectory->surface().parts)});
-  }
-  return {};
+/// What differs from what one would think: a note each.
+void add_notes(const HairSpec& spec, const PrimaryPlan& primary, const HairSolver& solver, BakePlan& plan) {
+  const auto note = [&](const std::string& text) { plan.notes.push_back(spec.owner() + ": " + text); };
+  const auto stiff = solver.stiffened();
+  const auto stiffer = std::count_if(stiff.begin(), stiff.end(), [](double factor) { return factor > 1; });
+  if (stiffer > 0)
+    note(
+        fmt::format("{} of {} strands could not stand as they are combed, or grow beside one that could not: they are "
+                    "stiffer, up to {:.2g} times",
+                    stiffer, stiff.size(), *std::max_element(stiff.begin(), stiff.end())));
+  if (const CombedInside inside = solver.combed_inside(); inside.vertices > 0)
+    note(fmt::format("{} vertices are combed up to {:.1f} mm inside of what it meets, and may stay as deep",
+                     inside.vertices, 1e3 * inside.deepest));
+  if (solver.farthest_root() > k_root_off)
+    note(
+        fmt::format("roots are up to {:.1f} mm off the surface, and keep that distance", 1e3 * solver.farthest_root()));
+  for (const Teleport& jump : primary.scan.teleports)
+    note(fmt::format("\"{}\" jumps into frame {}: strands are dragged along", primary.name, jump.frame));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& spec, std::size_t primary,
-                                             BakePlan& plan) {
-  auto group = std::make_unique<HairGroup>(primary);
-  HairSetup& setup = group->setup;
+Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t primary, BakePlan& plan) {
+  HairSetup setup;
   setup.name = spec.name;
   take_from_shot(shot, plan.wind, setup);
   setup.material.radius = spec.radius;
@@ -77,45 +78,53 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
   setup.material.friction = spec.friction;
   setup.material.thickness = spec.thickness;
   setup.scalp = plan.primaries[primary].trajectory;
-  for (const Status& done : {add_strands(spec, *setup.scalp, plan, setup), add_bodies(spec, plan, *group)})
-    if (!done) return located(done.error(), shot, spec.owner());
-  for (const HairStrand& strand : setup.strands)
-    for (const Vec3& p : strand.positions) group->around.include(setup.scalp->bind_to_start() * p);
+  if (const Status added = add_strands(spec, *setup.scalp, plan, setup); !added)
+    return located(added.error(), shot, spec.owner());
+  return setup;
+}
+
+Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& spec, std::size_t primary,
+                                             BakePlan& plan) {
+  auto group = std::make_unique<HairGroup>(primary);
+  auto setup = hair_setup(shot, spec, primary, plan);
+  if (!setup) return setup.error();
+  if (const Status found = find_met(spec, spec.meets, plan, group->meets); !found)
+    return located(found.error(), shot, spec.owner());
+  for (const std::size_t p : group->meets) {
+    const PrimaryPlan& met = plan.primaries[p];
+    setup->bodies.push_back({met.name, met.trajectory, 1, has_sheets(met.trajectory->surface().parts)});
+  }
+  for (const HairStrand& strand : setup->strands)
+    for (const Vec3& p : strand.positions) group->around.include(setup->scalp->bind_to_start() * p);
   SystemOutput output;
   output.primary = primary;
-  output.shape = std::make_shared<const SystemShape>(curves_of(setup));
+  output.shape = std::make_shared<const SystemShape>(curves_of(*setup));
   group->outputs.push_back(std::move(output));
+  auto solver = HairSolver::make(std::move(*setup));
+  if (!solver) return located(solver.error(), shot, spec.owner());
+  group->solver = std::move(*solver);
+  add_notes(spec, plan.primaries[primary], *group->solver, plan);
   return group;
 }
 
 Result<std::unique_ptr<Solver>> HairGroup::make_solver() {
-  auto solver = HairSolver::make(std::move(setup));
-  if (!solver) return solver.error();
-  return std::unique_ptr<Solver>(std::move(*solver));
+  return std::unique_ptr<Solver>(std::move(solver));
 }
 
 std::vector<std::string> HairGroup::lines(const BakePlan& plan) const {
-  std::vector<std::string> met;
-  for (const std::size_t p : meets) met.push_back(in_quotes(plan.primaries[p].name));
+  const CurveSet& curves = outputs.at(0).shape->curves;
   double length = 0, longest = 0;
-  for (const HairStrand& strand : setup.strands) {
-    const double own = length_of(strand.positions);
-    length += own / static_cast<double>(setup.strands.size());
+  for (int s = 0; s < curves.curve_count(); ++s) {
+    const auto vertices = at(curves.vertices_per_curve[at(s)]);
+    const double own = length_of(std::span(curves.rest).subspan(at(s) * vertices, vertices));
+    length += own / curves.curve_count();
     longest = std::max(longest, own);
   }
-  return {fmt::format(
-      "hair \"{}\" on \"{}\": {} strands of {} vertices, {:.0f} mm long in the mean and {:.0f} at most; "
-      "it meets {}",
-      setup.name, plan.primaries[primary].name, setup.strands.size(),
-      setup.strands.empty() ? 0 : setup.strands[0].positions.size(), 1e3 * length, 1e3 * longest, joined(met))};
-}
-
-/// All of them are met as they are drawn.
-std::vector<ColliderSlice> HairGroup::slices(const BakePlan& plan, std::span<const std::string>) const {
-  std::vector<ColliderSlice> out;
-  for (const std::size_t p : meets)
-    out.push_back({.primary = p, .name = plan.primaries[p].name, .fixed = true, .vertices = {}, .triangles = {}});
-  return out;
+  return {
+      fmt::format("hair \"{}\" on \"{}\": {} strands of {} vertices, {:.0f} mm long in the mean and {:.0f} at most; "
+                  "it meets {}; strands do not meet one another",
+                  outputs[0].name(), plan.primaries[primary].name, curves.curve_count(),
+                  curves.vertices_per_curve.at(0), 1e3 * length, 1e3 * longest, met_names(plan))};
 }
 
 }  // namespace ft::inline baker

@@ -3,24 +3,24 @@
 
 #include "baker/plan/plan.h"
 #include "baker/systems/hair/hair_spec.h"
-#include "solvers/hair/hair_setup.h"
+#include "baker/systems/interface/drawn_group.h"
+#include "solvers/hair/hair_solver.h"
 
 namespace ft::inline baker {
 
-class HairGroup final : public SystemGroup {
+class HairGroup final : public DrawnGroup {
  public:
-  using SystemGroup::SystemGroup;
+  using DrawnGroup::DrawnGroup;
 
-  HairSetup setup;
-  std::vector<std::size_t> meets;  ///< primaries, into BakePlan::primaries
-  Box around;                      ///< all strands at the start [m]
+  std::unique_ptr<HairSolver> solver;  ///< until make_solver()
 
-  Box start() const override { return around; }
   std::string_view role() const override { return "hair"; }
   Result<std::unique_ptr<Solver>> make_solver() override;
   std::vector<std::string> lines(const BakePlan& plan) const override;
-  std::vector<ColliderSlice> slices(const BakePlan& plan, std::span<const std::string> taken) const override;
 };
+
+/// What the shot says of a solver's setup, all but what it meets. Errors say where; notes go into the plan.
+Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t primary, BakePlan& plan);
 
 /// Errors say where; notes go into the plan.
 Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& spec, std::size_t primary,

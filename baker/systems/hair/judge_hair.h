@@ -1,5 +1,5 @@
-// What `check` says of hair, from the caches of strands and of what they met: segments through a body's surface, and
-// lengths beside those at rest.
+// What `check` says of hair, from the caches of strands and of what they met: vertices inside of bodies, segments
+// through sheets, and lengths beside those of the first frame.
 #pragma once
 
 #include "baker/record/cache_track.h"

@@ -16,17 +16,9 @@ namespace ft::inline baker {
 namespace {
 
 /// What they lie on and what comes by.
-Status add_bodies(const Shot& shot, const LeavesSpec& spec, BakePlan& plan, LeavesGroup& group) {
-  const auto meets = meets_of(spec.meets, spec.on, plan.primaries);
-  if (!meets) return meets.error();
-  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+void add_bodies(const Shot& shot, const LeavesSpec& spec, const BakePlan& plan, LeavesGroup& group) {
+  for (const std::size_t p : group.meets) {
     const PrimaryPlan& primary = plan.primaries[p];
-    if ((*meets)[p] == 0 && primary.name != spec.on) continue;
-    if (const std::string why = why_alone(plan.shot(), primary); !why.empty()) {
-      plan.notes.push_back(fmt::format("{} do not meet \"{}\": {}", spec.owner(), primary.name, why));
-      continue;
-    }
-    group.meets.push_back(p);
     const auto own = std::find_if(shot.primaries.begin(), shot.primaries.end(),
                                   [&](const PrimarySpec& s) { return s.name == primary.name; });
     if (own != shot.primaries.end() && own->shape == k_ground)
@@ -34,7 +26,6 @@ Status add_bodies(const Shot& shot, const LeavesSpec& spec, BakePlan& plan, Leav
     else
       group.setup.bodies.push_back({primary.name, primary.trajectory, spec.friction, stands_still(shot, primary)});
   }
-  return {};
 }
 
 }  // namespace
@@ -51,6 +42,10 @@ Result<std::vector<std::unique_ptr<LeavesGroup>>> plan_leaves(const Shot& shot, 
   if (spec.near > 0 && first_near == leaves->end())
     plan.notes.push_back(
         fmt::format("{}: none of them starts within {} m of its camera: none bends", spec.owner(), spec.near));
+  std::vector<std::size_t> meets;
+  if (const Status found = find_met(spec, spec.meets, plan, meets); !found)
+    return located(found.error(), shot, spec.owner());
+  plan.notes.push_back(spec.owner() + ": forces are those of awake leaves; what sleeps is recorded as weightless");
   std::vector<std::unique_ptr<LeavesGroup>> out;
   for (const bool near : {false, true}) {
     const std::span<const Leaf> own =
@@ -58,7 +53,7 @@ Result<std::vector<std::unique_ptr<LeavesGroup>>> plan_leaves(const Shot& shot, 
     if (own.empty()) continue;
     auto group = std::make_unique<LeavesGroup>(primary);
     LeavesSetup& setup = group->setup;
-    setup.name = near ? spec.name + "_near" : spec.name;
+    setup.name = near ? spec.near_name() : spec.name;
     take_from_shot(shot, plan.wind, setup);
     setup.seed = static_cast<std::uint64_t>(spec.seed);
     setup.mass_variation = spec.variation;
@@ -66,8 +61,8 @@ Result<std::vector<std::unique_ptr<LeavesGroup>>> plan_leaves(const Shot& shot, 
     setup.prototypes.push_back(*prototype);
     setup.leaves.assign(own.begin(), own.end());
     for (const Leaf& leaf : setup.leaves) group->around.include(leaf.position);
-    if (const Status added = add_bodies(shot, spec, plan, *group); !added)
-      return located(added.error(), shot, spec.owner());
+    group->meets = meets;
+    add_bodies(shot, spec, plan, *group);
     SystemOutput output;
     output.primary = primary;
     if (near)
@@ -89,8 +84,6 @@ Result<std::unique_ptr<Solver>> LeavesGroup::make_solver() {
 std::vector<std::string> LeavesGroup::lines(const BakePlan& plan) const {
   const LeafPrototype& leaf = setup.prototypes.at(0);
   const auto lying = std::count_if(setup.leaves.begin(), setup.leaves.end(), [](const Leaf& l) { return l.asleep; });
-  std::vector<std::string> met;
-  for (const std::size_t p : meets) met.push_back(in_quotes(plan.primaries[p].name));
   double friction = 0.5;
   for (const LeafGround& ground : setup.grounds) friction = ground.friction;
   return {fmt::format(
@@ -98,15 +91,7 @@ std::vector<std::string> LeavesGroup::lines(const BakePlan& plan) const {
       "are lifted by winds from {:.2g} m/s on; they meet {}",
       setup.name, plan.primaries[primary].name, setup.leaves.size(), setup.bending > 0 ? " that bend, as a mesh" : "",
       lying, leaf.positions.size(), 1e3 * leaf.mass_per_area * shape_of(leaf).area,
-      lift_off_speed(leaf, 1, friction, setup.gravity.norm(), setup.air_density), joined(met))};
-}
-
-/// All of them are met as they are drawn.
-std::vector<ColliderSlice> LeavesGroup::slices(const BakePlan& plan, std::span<const std::string>) const {
-  std::vector<ColliderSlice> out;
-  for (const std::size_t p : meets)
-    out.push_back({.primary = p, .name = plan.primaries[p].name, .fixed = true, .vertices = {}, .triangles = {}});
-  return out;
+      lift_off_speed(leaf, 1, friction, setup.gravity.norm(), setup.air_density), met_names(plan))};
 }
 
 }  // namespace ft::inline baker

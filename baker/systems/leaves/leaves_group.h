@@ -3,24 +3,21 @@
 #pragma once
 
 #include "baker/plan/plan.h"
+#include "baker/systems/interface/drawn_group.h"
 #include "baker/systems/leaves/leaves_spec.h"
 #include "solvers/leaves/leaves_setup.h"
 
 namespace ft::inline baker {
 
-class LeavesGroup final : public SystemGroup {
+class LeavesGroup final : public DrawnGroup {
  public:
-  using SystemGroup::SystemGroup;
+  using DrawnGroup::DrawnGroup;
 
   LeavesSetup setup;
-  std::vector<std::size_t> meets;  ///< primaries, into BakePlan::primaries
-  Box around;                      ///< all leaves at the start [m]
 
-  Box start() const override { return around; }
   std::string_view role() const override { return "leaves"; }
   Result<std::unique_ptr<Solver>> make_solver() override;
   std::vector<std::string> lines(const BakePlan& plan) const override;
-  std::vector<ColliderSlice> slices(const BakePlan& plan, std::span<const std::string> taken) const override;
 };
 
 /// Those that are far and those that are near, where there are any. Errors say where; notes go into the plan.

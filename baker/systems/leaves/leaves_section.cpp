@@ -81,6 +81,10 @@ class LeavesSection final : public SectionOf<LeavesSpec> {
   std::vector<std::pair<std::string, std::filesystem::path>> files(const SecondarySpec& spec) const override {
     return {{"over", of(spec).over}, {"placed", of(spec).placed}, {"mesh", of(spec).mesh}};
   }
+  std::vector<std::string> system_names(const SecondarySpec& spec) const override {
+    if (of(spec).near > 0) return {spec.name, of(spec).near_name()};
+    return {spec.name};
+  }
   std::string_view whom() const override { return "on which they lie"; }
   std::vector<std::string> meets(const SecondarySpec& spec) const override { return of(spec).meets; }
   std::string_view why_no_carrier() const override {

@@ -30,6 +30,9 @@ struct LeavesSpec final : SecondarySpec {
   Vec3 camera = Vec3::Zero();    ///< m
   double bending = 1e-4;         ///< stiffness of those [N m]
   std::vector<std::string> meets{"*"};
+
+  /// Of the system of near leaves.
+  std::string near_name() const { return name + "_near"; }
 };
 
 }  // namespace ft::inline baker
