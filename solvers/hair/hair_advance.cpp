@@ -7,7 +7,8 @@
 namespace ft::inline solvers {
 namespace {
 
-/// Contact stiffness by mass: k = 20 m / (2/3 h)^2 at h = 1/96 s, whatever the step is: it must not move a groom.
+/// Contact stiffness by mass: k = 20 m / (2/3 h)^2 at h = 1/96 s, whatever the step is: it must not move a groom. What
+/// was combed nearer than its thickness is met as firmly within what it keeps.
 constexpr double k_stiffness = 20 * (1.5 * 96) * (1.5 * 96);
 /// Friction is viscous below this speed [m/s].
 constexpr double k_slow = 2e-3;
@@ -96,7 +97,7 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
       set_lane(contact.normal, lane, normal);
       contact.offset[lane] = normal.dot(to) + shift;
       contact.reach[lane] = keeps;
-      contact.stiffness[lane] = k_stiffness * rods_[group].mass[i][lane];
+      contact.stiffness[lane] = k_stiffness * material.thickness / keeps * rods_[group].mass[i][lane];
       set_lane(w.moved[k_contacts * i + at(c)], lane, to + turn * (x - from) - x);
       contact.friction[lane] = c == 0 ? material.friction * bodies_.friction(surface.body) : 0;
       w.around.touches = true;

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/check/penetration.h"
+
 namespace ft::inline solvers {
 namespace {
 
 /// Cosine of the angle between directions that are told apart.
 constexpr double k_apart = 0.77;
-
-Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = (b - a).cross(c - a);
-  const double size = n.norm();
-  return size > 0 ? Vec3(n / size) : Vec3::Zero();
-}
+/// What is said to be deeper inside than this is asked by rays, too [m].
+constexpr double k_deep = 1e-3;
 
 /// Of a point of the plane of a triangle.
 Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -33,6 +31,7 @@ HairBodies::HairBodies(std::span<const HairBody> bodies) : given_(bodies), bodie
     bodies_[b].triangles = given_[b].trajectory->surface().triangles;
     bodies_[b].tree = TriangleTree(bind, bodies_[b].triangles);
     bodies_[b].before = bodies_[b].after = bind;
+    if (!given_[b].sheet) bodies_[b].surface.emplace(bind, bodies_[b].triangles, std::vector<int>(bind.size(), 0), 1);
   }
 }
 
@@ -59,6 +58,18 @@ void HairBodies::advance() {
   }
 }
 
+bool HairBodies::inside(int body, const Vec3& point, const TriangleTree::Hit& hit, Vec3& normal) const {
+  const Body& own = bodies_[at(body)];
+  if (!own.surface) return false;
+  const char one = 1;
+  const auto answer = own.surface->judge(point, hit, {&one, 1}, own.before);
+  if (!answer) return false;
+  normal = answer->normal;
+  if (answer->distance >= 0) return false;
+  return answer->distance > -k_deep || !own.surface->closed(0) ||
+         rays_say_inside(point, own.tree, own.before, own.triangles);
+}
+
 void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::pair<int, int>>& out) {
   out.clear();
   for (int b = 0; b < bodies.count(); ++b)
@@ -68,9 +79,8 @@ void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::
 int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> candidates, const Vec3& point,
                  double least_reach, int most, NearSurface* out, const Vec3* goes) {
   struct Found {
-    int body, triangle;
-    ClosestOnTriangle closest;
-    Vec3 normal;
+    int body;
+    TriangleTree::Hit hit;
   };
   thread_local std::vector<Found> found;
   found.clear();
@@ -84,36 +94,31 @@ int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> 
     if ((lo - point).cwiseMax(point - hi).cwiseMax(0.0).squaredNorm() > reach * reach) continue;
     const ClosestOnTriangle c = closest_on_triangle(point, p0, p1, p2);
     if (c.squared_distance > reach * reach) continue;
-    found.push_back({b, t, c, face_normal(p0, p1, p2)});
+    found.push_back({b, {c, t}});
   }
   std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-    return std::tuple(a.closest.squared_distance, a.body, a.triangle) <
-           std::tuple(b.closest.squared_distance, b.body, b.triangle);
+    return std::tuple(a.hit.closest.squared_distance, a.body, a.hit.triangle) <
+           std::tuple(b.hit.closest.squared_distance, b.body, b.hit.triangle);
   });
   int count = 0;
   for (std::size_t i = 0; i < found.size() && count < most; ++i) {
     const Found& f = found[i];
-    const double distance = std::sqrt(f.closest.squared_distance);
-    const Vec3 off = point - f.closest.point;
-    // Triangles that share the place: their normals together tell inside from outside.
-    Vec3 faces = f.normal;
-    for (std::size_t k = 0; k < found.size(); ++k)
-      if (k != i && found[k].body == f.body && (found[k].closest.point - f.closest.point).squaredNorm() < 1e-16)
-        faces += found[k].normal;
+    const double distance = std::sqrt(f.hit.closest.squared_distance);
+    const Vec3 off = point - f.hit.closest.point;
     NearSurface near;
-    const bool inside = !bodies.sheet(f.body) && off.dot(faces) < 0;
+    near.normal = Vec3::Zero();
+    const bool inside = bodies.inside(f.body, point, f.hit, near.normal);
     near.gap = inside ? -distance : distance;
-    near.normal = distance > 1e-7 ? Vec3((inside ? -1 : 1) / distance * off)
-                                  : (faces.norm() > 1e-9 ? Vec3(faces.normalized()) : f.normal);
+    if (distance > 1e-7) near.normal = (inside ? -1 : 1) / distance * off;
     if (near.normal.isZero(0)) continue;
     bool known = false;
     for (int k = 0; k < count && !known; ++k) known = out[k].normal.dot(near.normal) > k_apart;
     // Where it is outside of the nearest surface, what it is behind of is another sheet of the body.
     if (known || (inside && count > 0)) continue;
-    near.body = f.body, near.triangle = f.triangle;
-    const Triangle& corner = bodies.triangles(f.body)[at(f.triangle)];
+    near.body = f.body, near.triangle = f.hit.triangle;
+    const Triangle& corner = bodies.triangles(f.body)[at(f.hit.triangle)];
     const auto x = bodies.before(f.body);
-    near.weights = barycentric(f.closest.point, x[at(corner[0])], x[at(corner[1])], x[at(corner[2])]);
+    near.weights = barycentric(f.hit.closest.point, x[at(corner[0])], x[at(corner[1])], x[at(corner[2])]);
     out[count++] = near;
   }
   return count;

@@ -1,9 +1,11 @@
 // The bodies that strands meet, at the start and the end of a step, with a box tree for the start.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "collision/body/part_distance.h"
 #include "collision/geometry/triangle_tree.h"
 #include "solvers/hair/hair_setup.h"
 
@@ -29,6 +31,9 @@ class HairBodies {
   std::span<const Vec3> after(int body) const { return bodies_[at(body)].after; }
   /// Over the triangles at the start.
   const TriangleTree& tree(int body) const { return bodies_[at(body)].tree; }
+  /// Whether a point, whose closest one on a body is known, is inside; and the normal there, outwards. A body's own
+  /// folds, where the closest triangle tells the wrong side, are asked by rays.
+  bool inside(int body, const Vec3& point, const TriangleTree::Hit& hit, Vec3& normal) const;
   /// The farthest that a vertex of any body goes in the step [m].
   double way() const { return way_; }
 
@@ -37,6 +42,7 @@ class HairBodies {
     std::vector<Vec3> before, after;
     std::span<const Triangle> triangles;
     TriangleTree tree;
+    std::optional<PartSurface> surface;  ///< as one part; of sheets, none
   };
   std::span<const HairBody> given_;
   std::vector<Body> bodies_;

@@ -71,7 +71,7 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
     return out;
   });
   report.inside_body = sum.inside;
-  report.crossings_body = report.crossings_drawn = sum.segments;
+  report.crossings_body = report.crossings_drawn = sum.inside + sum.segments;
   report.deepest_drawn = sum.deepest;
   report.kinetic_energy = sum.energy;
   report.finite = sum.finite;

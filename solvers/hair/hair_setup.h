@@ -60,6 +60,9 @@ struct HairSetup {
   int most_steps = 32;
 };
 
+/// Attribute of caches: HairStrand::held of each strand.
+inline constexpr const char* k_held = "followthrough_held";
+
 /// What caches know of the setup's strands: vertices, widths, ids, and what grooming tools ask for: version, ids,
 /// widths
 /// (`groom_...`, as Unreal's import reads them).

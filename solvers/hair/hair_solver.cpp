@@ -12,6 +12,7 @@
 #include "baker/core/output_frame.h"
 #include "baker/core/parallel.h"
 #include "baker/core/state_points.h"
+#include "collision/check/penetration.h"
 #include "solvers/hair/hair_group.h"
 #include "solvers/hair/rest_shape.h"
 
@@ -76,23 +77,35 @@ HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setu
     }
     lengths_.push_back(length);
   }
-  // How near each vertex was combed: bodies_ stands in its bind pose.
-  gaps_.assign(setup_.strands.size() * at(n_), 1.0);
-  const double thickness = setup_.material.thickness;
-  parallel_for(setup_.strands.size(), 16, [&](std::size_t begin, std::size_t end) {
+  measure_gaps();
+  make_groups();
+}
+
+/// How near each vertex was combed; bodies_ stands in its bind pose.
+void HairSolver::measure_gaps() {
+  const std::size_t n = at(n_), count = setup_.strands.size();
+  gaps_.assign(count * n, 1.0);
+  const double reach = 4 * setup_.material.thickness;
+  parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<int, int>> candidates;
     for (std::size_t s = begin; s < end; ++s) {
       Box box = bounds(groom_[s]);
-      box.inflate(4 * thickness);
+      box.inflate(reach);
       find_candidates(bodies_, box, candidates);
-      for (std::size_t i = 1; i < at(n_); ++i) {
+      for (std::size_t i = 1; i < n; ++i) {
         NearSurface near;
-        if (find_nearest(bodies_, candidates, groom_[s][i], 4 * thickness, 1, &near) > 0)
-          gaps_[s * at(n_) + i] = near.gap;
+        if (find_nearest(bodies_, candidates, groom_[s][i], reach, 1, &near) > 0) gaps_[s * n + i] = near.gap;
       }
     }
   });
-  make_groups();
+  // What is deep inside, too.
+  std::vector<Vec3> all;
+  for (const std::vector<Vec3>& strand : groom_) all.insert(all.end(), strand.begin(), strand.end());
+  for (int b = 0; b < bodies_.count(); ++b) {
+    if (bodies_.sheet(b)) continue;
+    for (const Penetration& p : penetrations(all, bodies_.before(b), bodies_.triangles(b), 0))
+      gaps_[at(p.vertex)] = std::min(gaps_[at(p.vertex)], -p.depth);
+  }
 }
 
 std::size_t HairSolver::strand_of(std::size_t group, int lane) const {

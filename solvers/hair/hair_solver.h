@@ -35,7 +35,7 @@ struct CombedInside {
 ///
 /// A report's `own`: hair_steps of the frame, hair_iterations in the mean of steps and groups, hair_unsettled groups of
 /// steps, hair_longest and hair_p99, of |length / rest length - 1| of strands. inside_body counts vertices that are
-/// inside of a body by more than they were combed, crossings_body segments that are.
+/// inside of a body by more than they were combed, crossings_body those and segments whose middles are.
 class HairSolver final : public Solver {
  public:
   /// Refuses, by a usage error, what makes no sense: strands of different numbers of vertices or of no length, roots
@@ -64,6 +64,7 @@ class HairSolver final : public Solver {
   struct Work;
 
   explicit HairSolver(HairSetup setup);
+  void measure_gaps();
   void make_groups();
   void stiffen_alike(std::vector<double>& factors) const;
   std::size_t strand_of(std::size_t group, int lane) const;

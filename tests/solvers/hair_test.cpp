@@ -31,6 +31,36 @@ Placing turn(const Vec3& axis, double angle, double speed, double until) {
   };
 }
 
+TEST(Hair, What_is_outside_of_a_sharp_tip_is_outside_however_its_triangles_lie_around_it) {
+  // A thin cone with 24 slivers on the side of +x and +z, and three triangles on the rest.
+  TriangleSurface cone;
+  cone.positions = {Vec3(0, 0.1, 0), Vec3::Zero()};
+  std::vector<double> angles;
+  for (int k = 0; k < 24; ++k) angles.push_back(0.5 * std::numbers::pi * k / 24);
+  for (int k = 0; k < 3; ++k) angles.push_back(0.5 * std::numbers::pi * (k + 1));
+  for (const double a : angles) cone.positions.emplace_back(0.02 * std::cos(a), 0, -0.02 * std::sin(a));
+  const int ring = static_cast<int>(angles.size());
+  for (int k = 0; k < ring; ++k) {
+    const int now = 2 + k, next = 2 + (k + 1) % ring;
+    cone.triangles.push_back({0, now, next});
+    cone.triangles.push_back({1, next, now});
+  }
+  const std::vector<HairBody> bodies{{"cone", rigid_body(cone, Vec3::Zero())}};
+  const HairBodies all(bodies);
+  std::vector<std::pair<int, int>> candidates;
+  find_candidates(all, {Vec3::Constant(-1), Vec3::Constant(1)}, candidates);
+  ASSERT_EQ(candidates.size(), cone.triangles.size());
+  for (int k = 0; k < 16; ++k) {
+    const double a = std::numbers::pi / 8 * k;
+    NearSurface near;
+    const Vec3 outside = Vec3(0, 0.1, 0) + 0.005 * Vec3(0.9 * std::cos(a), 0.43, -0.9 * std::sin(a));
+    ASSERT_EQ(find_nearest(all, candidates, outside, 0.02, 1, &near), 1);
+    EXPECT_NEAR(near.gap, 0.005, 1e-4) << k;
+    ASSERT_EQ(find_nearest(all, candidates, Vec3(1e-4 * std::cos(a), 0.07, 1e-4 * std::sin(a)), 0.02, 1, &near), 1);
+    EXPECT_LT(near.gap, -0.003) << k;
+  }
+}
+
 TEST(Hair, A_groom_stands_still) {
   const auto solver = solver_of(head_of_hair(60, 0.2, 24));
   State state = solver->initial_state();

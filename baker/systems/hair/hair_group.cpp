@@ -45,8 +45,16 @@ Status add_strands(const HairSpec& spec, const Trajectory& scalp, BakePlan& plan
 }
 
 /// What differs from what one would think: a note each.
-void add_notes(const HairSpec& spec, const PrimaryPlan& primary, const HairSolver& solver, BakePlan& plan) {
+void add_notes(const HairSpec& spec, std::size_t scalp, const HairGroup& group, BakePlan& plan) {
   const auto note = [&](const std::string& text) { plan.notes.push_back(spec.owner() + ": " + text); };
+  const PrimaryPlan& primary = plan.primaries[scalp];
+  const HairSolver& solver = *group.solver;
+  for (const std::size_t p : group.meets)
+    if (has_sheets(plan.primaries[p].trajectory->surface().parts))
+      note(
+          fmt::format("vertices stay on their side of \"{}\", but its rims and folds may cut through between them; "
+                      "check counts where",
+                      plan.primaries[p].name));
   const auto stiff = solver.stiffened();
   const auto stiffer = std::count_if(stiff.begin(), stiff.end(), [](double factor) { return factor > 1; });
   if (stiffer > 0)
@@ -103,7 +111,7 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
   auto solver = HairSolver::make(std::move(*setup));
   if (!solver) return located(solver.error(), shot, spec.owner());
   group->solver = std::move(*solver);
-  add_notes(spec, plan.primaries[primary], *group->solver, plan);
+  add_notes(spec, primary, *group, plan);
   return group;
 }
 

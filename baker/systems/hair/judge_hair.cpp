@@ -10,6 +10,7 @@
 #include "collision/check/penetration.h"
 #include "collision/geometry/triangle_tree.h"
 #include "io/hair/resample.h"
+#include "solvers/hair/hair_setup.h"
 
 namespace ft::inline baker {
 namespace {
@@ -74,10 +75,8 @@ class JudgedHair final : public JudgedGroup {
       out.push_back("\"" + name + "\" is not cached: strands in it are not judged");
     const auto inside = std::count_if(combed_.begin(), combed_.end(), [](double depth) { return depth > k_deep; });
     if (inside > 0)
-      out.push_back(
-          fmt::format("{} vertices of \"{}\" are inside a body in the first frame: of those only what goes "
-                      "deeper is counted",
-                      inside, track_.name));
+      out.push_back(fmt::format("{} vertices of \"{}\" are inside a body in the first frame and not judged", inside,
+                                track_.name));
     const auto through = std::count(through_.begin(), through_.end(), 1);
     if (through > 0)
       out.push_back(fmt::format("{} segments of \"{}\" are through a sheet in the first frame and not judged", through,
@@ -93,6 +92,11 @@ class JudgedHair final : public JudgedGroup {
     std::vector<Vec3> start;
     if (const Status read = track_.read(0, start); !read) return read;
     combed_.assign(start.size(), 0.0);
+    held_.assign(first_.size() - 1, 1);
+    for (const CacheAttribute& attribute : track_.reader->info().attributes)
+      if (const auto* held = std::get_if<std::vector<std::int16_t>>(&attribute.values);
+          held && attribute.name == k_held && held->size() == held_.size())
+        held_ = *held;
     through_.assign(start.size(), 0);
     for (std::size_t s = 0; s + 1 < first_.size(); ++s) lengths_.push_back(length(start, s));
     for (const CacheTrack& body : met_.bodies) {
@@ -109,8 +113,9 @@ class JudgedHair final : public JudgedGroup {
   }
   void judge_body(std::span<const Vec3> x, const CacheTrack& body, std::span<const Vec3> y, FrameReport& report) const {
     for (const Penetration& p : penetrations(x, y, body.triangles, k_deep)) {
-      if (p.depth < combed_[at(p.vertex)] + k_deep) continue;
+      if (combed_[at(p.vertex)] > k_deep || is_held(p.vertex)) continue;
       ++report.inside_body;
+      ++report.crossings_body;
       if (p.depth <= report.deepest_drawn) continue;
       report.deepest_drawn = p.depth;
       report.incidents.assign(1, {Incident::Kind::k_penetration, report.frame, track_.name, strand_of(p.vertex),
@@ -130,16 +135,22 @@ class JudgedHair final : public JudgedGroup {
   double length(std::span<const Vec3> x, std::size_t s) const {
     return length_of(x.subspan(at(first_[s]), at(first_[s + 1] - first_[s])));
   }
+  /// What does not move beside its root is where the groom has it.
+  bool is_held(int vertex) const {
+    const auto strand = at(strand_of(vertex));
+    return vertex - first_[strand] < held_[strand];
+  }
   int strand_of(int vertex) const {
     return static_cast<int>(std::upper_bound(first_.begin(), first_.end(), vertex) - first_.begin()) - 1;
   }
 
   CacheTrack track_;
   MetBodies met_;
-  std::vector<int> first_;       ///< vertex of each strand, and how many there are in all
-  std::vector<double> lengths_;  ///< of strands in the first frame [m]
-  std::vector<double> combed_;   ///< depths of vertices in the first frame: roots, and what was combed inside [m]
-  std::vector<char> through_;    ///< 1: in the first frame the segment that ends at the vertex is through a sheet
+  std::vector<int> first_;          ///< vertex of each strand, and how many there are in all
+  std::vector<double> lengths_;     ///< of strands in the first frame [m]
+  std::vector<double> combed_;      ///< depths of vertices in the first frame: roots, and what was combed inside [m]
+  std::vector<std::int16_t> held_;  ///< vertices of each strand, from the root on, that do not move beside it
+  std::vector<char> through_;       ///< 1: in the first frame the segment that ends at the vertex is through a sheet
 };
 
 }  // namespace
