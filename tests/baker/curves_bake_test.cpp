@@ -15,27 +15,9 @@
 namespace ft::test {
 namespace {
 
-class CurvesBake : public testing::Test {
+class CurvesBake : public ShapesBakeTest {
  protected:
-  std::filesystem::path bake_with(const std::string& name, const std::vector<std::string>& overrides) const {
-    BakeOptions options = scene_.options();
-    options.folder = scene_.file(name);
-    options.overrides = overrides;
-    const BakeResult result = scene_.run(options);
-    EXPECT_EQ(result.exit_code, 0) << text(result);
-    return options.folder;
-  }
-  void falsify(const std::function<void(ManifestSystem&)>& change) const {
-    auto manifest = read_manifest(scene_.folder().path);
-    ASSERT_TRUE(manifest);
-    for (ManifestSystem& system : manifest->systems)
-      if (system.name == "locks") change(system);
-    ASSERT_TRUE(write_text_durably(scene_.folder().manifest(), to_text(*manifest)));
-  }
-  std::string judged() const {
-    const auto judgement = judge_caches(scene_.folder().path);
-    return judgement ? std::string() : judgement.error().text();
-  }
+  CurvesBake() : ShapesBakeTest(Beside::k_tress, "locks") {}
   static std::string info_of(const std::filesystem::path& path) {
     std::string words[] = {"followthrough", "info", path.string()};
     char* arguments[] = {words[0].data(), words[1].data(), words[2].data()};
@@ -49,8 +31,6 @@ class CurvesBake : public testing::Test {
     ADD_FAILURE() << "no report of the curves";
     return {};
   }
-
-  const FakeScene scene_{Beside::k_tress};
 };
 
 TEST_F(CurvesBake, Every_frame_has_the_strands_where_the_solver_has_them) {

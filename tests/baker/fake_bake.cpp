@@ -1,10 +1,14 @@
 #include "tests/baker/fake_bake.h"
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
+#include "baker/core/parallel.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/record/manifest.h"
 #include "io/shot/mesh_file.h"
 #include "tests/baker/swarm_kind.h"
 #include "tests/baker/tress_kind.h"
@@ -165,6 +169,43 @@ std::string text(const BakeResult& result) {
   for (const std::string& fault : result.faults) out += fault + "\n";
   for (const std::string& line : result.lines) out += line + "\n";
   return out;
+}
+
+BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& name, int threads,
+                        int interrupted_after, bool resume) {
+  BakeOptions options;
+  options.shot_file = folder / "shot.toml";
+  options.folder = folder / name;
+  options.resume = resume;
+  const ThreadLimit limit(threads);
+  RecordedProgress progress;
+  int count = 0;
+  progress.on_frame = [&](int) { ++count == interrupted_after ? void(std::raise(SIGINT)) : void(); };
+  const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> { return input_error("no files here"); };
+  return bake(options, {none, make_group_solver}, progress);
+}
+
+std::filesystem::path ShapesBakeTest::bake_with(const std::string& name,
+                                                const std::vector<std::string>& overrides) const {
+  BakeOptions options = scene_.options();
+  options.folder = scene_.file(name);
+  options.overrides = overrides;
+  const BakeResult result = scene_.run(options);
+  EXPECT_EQ(result.exit_code, 0) << text(result);
+  return options.folder;
+}
+
+void ShapesBakeTest::falsify(const std::function<void(ManifestSystem&)>& change) const {
+  auto manifest = read_manifest(scene_.folder().path);
+  ASSERT_TRUE(manifest);
+  for (ManifestSystem& system : manifest->systems)
+    if (system.name == system_) change(system);
+  ASSERT_TRUE(write_text_durably(scene_.folder().manifest(), to_text(*manifest)));
+}
+
+std::string ShapesBakeTest::judged() const {
+  const auto judgement = judge_caches(scene_.folder().path);
+  return judgement ? std::string() : judgement.error().text();
 }
 
 }  // namespace ft::test

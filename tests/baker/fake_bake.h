@@ -3,6 +3,8 @@
 // misbehave on demand.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -77,6 +79,29 @@ class RecordedProgress : public Progress {
   std::vector<int> frames;
   ProgressEnd last;
   std::function<void(int)> on_frame;
+};
+
+/// A bake of folder/shot.toml, which reads no primary from a file, into folder/name. interrupted_after: frames, by
+/// SIGINT.
+BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& name, int threads = 1,
+                        int interrupted_after = 0, bool resume = false);
+
+/// A bake of a scene in which systems of other shapes than meshes are written and judged.
+class ShapesBakeTest : public testing::Test {
+ protected:
+  ShapesBakeTest(Beside beside, std::string system) : scene_(beside), system_(std::move(system)) {}
+
+  /// Into a folder of its own, with other settings.
+  std::filesystem::path bake_with(const std::string& name, const std::vector<std::string>& overrides) const;
+  /// Says something else of the system in the manifest.
+  void falsify(const std::function<void(ManifestSystem&)>& change) const;
+  /// What check refuses.
+  std::string judged() const;
+
+  const FakeScene scene_;
+
+ private:
+  std::string system_;
 };
 
 }  // namespace ft::test

@@ -2,14 +2,11 @@
 // byte, check judges them, and what makes no sense is refused with its place.
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <fstream>
 
-#include "baker/core/parallel.h"
 #include "baker/judge/judge_caches.h"
 #include "baker/plan/plan.h"
 #include "baker/record/manifest.h"
-#include "baker/run/bake.h"
 #include "baker/systems/hair/hair_group.h"
 #include "tests/baker/fake_bake.h"
 
@@ -48,15 +45,7 @@ class HairBakeTest : public testing::Test {
         << lines << "[cache]\nformats = [\"abc\", \"pc2\"]\n";
   }
   BakeResult run(const std::string& name, int threads = 1, int interrupted_after = 0, bool resume = false) const {
-    BakeOptions options;
-    options.shot_file = folder_ / "shot.toml";
-    options.folder = folder_ / name;
-    options.resume = resume;
-    const ThreadLimit limit(threads);
-    RecordedProgress progress;
-    int count = 0;
-    progress.on_frame = [&](int) { ++count == interrupted_after ? void(std::raise(SIGINT)) : void(); };
-    return bake(options, {no_files(), make_group_solver}, progress);
+    return bake_shot_in(folder_.path(), name, threads, interrupted_after, resume);
   }
   std::string refusal(const std::string& lines) const {
     write_shot(lines);

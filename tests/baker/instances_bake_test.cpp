@@ -15,38 +15,16 @@
 namespace ft::test {
 namespace {
 
-class InstancesBake : public testing::Test {
+class InstancesBake : public ShapesBakeTest {
  protected:
+  InstancesBake() : ShapesBakeTest(Beside::k_swarm, "tokens") {}
   std::filesystem::path cache() const { return scene_.folder().path / "tokens.abc"; }
-  /// Into a folder of its own, with settings of the swarm.
-  std::filesystem::path bake_with(const std::string& name, const std::vector<std::string>& overrides) const {
-    BakeOptions options = scene_.options();
-    options.folder = scene_.file(name);
-    options.overrides = overrides;
-    const BakeResult result = scene_.run(options);
-    EXPECT_EQ(result.exit_code, 0) << text(result);
-    return options.folder;
-  }
-  /// Says something else of the instances in the manifest.
-  void falsify(const std::function<void(ManifestSystem&)>& change) const {
-    auto manifest = read_manifest(scene_.folder().path);
-    ASSERT_TRUE(manifest);
-    for (ManifestSystem& system : manifest->systems)
-      if (system.name == "tokens") change(system);
-    ASSERT_TRUE(write_text_durably(scene_.folder().manifest(), to_text(*manifest)));
-  }
-  std::string judged() const {
-    const auto judgement = judge_caches(scene_.folder().path);
-    return judgement ? std::string() : judgement.error().text();
-  }
   static CompareReport of_tokens(const std::vector<CompareReport>& reports) {
     for (const CompareReport& r : reports)
       if (r.system == "tokens") return r;
     ADD_FAILURE() << "no report of the instances";
     return {};
   }
-
-  const FakeScene scene_{Beside::k_swarm};
 };
 
 TEST_F(InstancesBake, Every_frame_is_what_the_solver_says_and_velocities_are_not_differences) {

@@ -1,15 +1,12 @@
 // Leaves baked for real: their caches are the same whatever the threads and interruptions, and check judges them.
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "baker/core/file.h"
-#include "baker/core/parallel.h"
 #include "baker/judge/judge_caches.h"
 #include "baker/record/manifest.h"
-#include "baker/run/bake.h"
 #include "baker/run/wind_file.h"
 #include "tests/baker/fake_bake.h"
 
@@ -33,16 +30,7 @@ class LeavesBakeTest : public testing::Test {
            "[cache]\nformats = [\"abc\", \"pc2\"]\n";
   }
   BakeResult run(const std::string& name, int threads = 1, int interrupted_after = 0, bool resume = false) const {
-    BakeOptions options;
-    options.shot_file = folder_ / "shot.toml";
-    options.folder = folder_ / name;
-    options.resume = resume;
-    const ThreadLimit limit(threads);
-    RecordedProgress progress;
-    int count = 0;
-    progress.on_frame = [&](int) { ++count == interrupted_after ? void(std::raise(SIGINT)) : void(); };
-    const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> { return input_error("no files here"); };
-    return bake(options, {none, make_group_solver}, progress);
+    return bake_shot_in(folder_.path(), name, threads, interrupted_after, resume);
   }
   std::map<std::string, std::string> products(const std::string& name) const {
     return FakeScene().products(folder_ / name);

@@ -53,7 +53,7 @@ double residual(const Rod<double>& rod, const RodPose<double>& pose) {
 TEST(RestShape, Any_groom_is_the_equilibrium_of_its_rest_shape) {
   for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.3, -1, 0.2)})
     for (const double radius : {0.0, 0.008}) {
-      Rod<double> rod = straight_rod(32, 0.2, HairMaterial());
+      Rod<double> rod = straight_rod(32, 0.2, OneHair());
       const RodPose<double> pose = curl(rod, radius, 0.03, way.normalized());
       make_rest_shape(rod, pose, weights(rod));
       EXPECT_LT(residual(rod, pose), 1e-6) << radius << " " << way.transpose();
@@ -61,7 +61,7 @@ TEST(RestShape, Any_groom_is_the_equilibrium_of_its_rest_shape) {
 }
 
 TEST(RestShape, What_cannot_stand_is_made_stiffer_and_what_hangs_is_not) {
-  const HairMaterial m;
+  const OneHair m;
   const auto raised = [&](double length, const Vec3& way, double slowest) {
     Rod<double> rod = straight_rod(32, length, m);
     const RodPose<double> pose = straight_pose(rod, way, way.unitOrthogonal());
@@ -80,7 +80,7 @@ TEST(RestShape, What_cannot_stand_is_made_stiffer_and_what_hangs_is_not) {
 
 TEST(RestShape, A_strand_that_was_kicked_comes_back_to_where_it_was_combed) {
   for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
-    Rod<double> rod = straight_rod(24, 0.2, HairMaterial());
+    Rod<double> rod = straight_rod(24, 0.2, OneHair());
     const RodPose<double> groom = curl(rod, 0.006, 0.04, way);
     stand_still(rod, groom, weights(rod), slowest_wanted(0.2, k_gravity));
     RodPose<double> pose = groom;

@@ -13,7 +13,7 @@ struct Crooked {
   RodStrains<double> since;
 
   Crooked() {
-    HairMaterial m;
+    OneHair m;
     rod = straight_rod(6, 0.05, m);
     pose = straight_pose(rod, Vec3::UnitX(), Vec3::UnitY());
     const RandomKey key{7, 1, 0, 0};
@@ -70,7 +70,7 @@ TEST(Rods, Gradient_and_Hessian_are_those_of_differences_along_the_way_that_pose
 
 /// A strand clamped level, sagging: the drop of its tip by its length.
 double droop(int n, double gamma) {
-  const HairMaterial m;
+  const OneHair m;
   const double length = m.bending_length() * std::cbrt(gamma);
   const Rod<double> rod = straight_rod(n, length, m);
   RodPose<double> pose = straight_pose(rod, Vec3::UnitX(), Vec3::UnitZ());
@@ -108,7 +108,7 @@ TEST(Rods, A_clamped_strand_droops_as_the_heavy_elastica_does_whatever_its_mesh)
 }
 
 TEST(Rods, The_height_at_which_an_upright_strand_buckles_is_where_a_pivot_becomes_negative) {
-  const HairMaterial m;
+  const OneHair m;
   const auto stands = [&](double height) {
     const int n = 33;
     const Rod<double> rod = straight_rod(n - 1, height, m);
@@ -133,7 +133,7 @@ TEST(Rods, The_height_at_which_an_upright_strand_buckles_is_where_a_pivot_become
 }
 
 TEST(Rods, Four_strands_at_once_move_as_each_does_alone) {
-  const HairMaterial m;
+  const OneHair m;
   RodStep<Lanes> four;
   Rod<Lanes> rods;
   RodPose<Lanes> poses;

@@ -3,23 +3,25 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "baker/core/random.h"
+#include "solvers/hair/hair_setup.h"
 #include "solvers/hair/rod_step.h"
 
 namespace ft::test {
 
-/// Of a hair: radius 40 um, E 3.9 GPa, G 0.89 GPa, 1320 kg/m3.
-struct HairMaterial {
-  double radius = 40e-6, young = 3.9e9, shear = 0.89e9, density = 1320;
-  double area() const { return 3.14159265358979 * radius * radius; }
-  double bend() const { return young * 3.14159265358979 * std::pow(radius, 4) / 4; }
-  double twist() const { return shear * 3.14159265358979 * std::pow(radius, 4) / 2; }
+/// What follows for a strand of the solver's own hair.
+struct OneHair : HairMaterial {
+  double area() const { return std::numbers::pi * radius * radius; }
+  double bend() const { return young * std::numbers::pi * std::pow(radius, 4) / 4; }
+  double twist() const { return shear * std::numbers::pi * std::pow(radius, 4) / 2; }
   double weight() const { return density * area() * k_gravity; }          // by length [N/m]
   double bending_length() const { return std::cbrt(bend() / weight()); }  // [m]
 };
 
 /// A straight strand of n vertices on the hair, and a ghost, along `way`.
-inline Rod<double> straight_rod(int n, double length, const HairMaterial& m) {
+inline Rod<double> straight_rod(int n, double length, const OneHair& m) {
   Rod<double> rod;
   rod.n = n + 1;
   const double l = length / (n - 1);
