@@ -1,9 +1,9 @@
 // One [hair.NAME] in a plan: its strands as curves.
 #pragma once
 
+#include "baker/plan/drawn_group.h"
 #include "baker/plan/plan.h"
 #include "baker/systems/hair/hair_spec.h"
-#include "baker/systems/interface/drawn_group.h"
 #include "solvers/hair/hair_solver.h"
 
 namespace ft::inline baker {

@@ -2,8 +2,8 @@
 // their own, which bends and is a mesh. Leaves do not meet one another, so nothing is lost between the two.
 #pragma once
 
+#include "baker/plan/drawn_group.h"
 #include "baker/plan/plan.h"
-#include "baker/systems/interface/drawn_group.h"
 #include "baker/systems/leaves/leaves_spec.h"
 #include "solvers/leaves/leaves_setup.h"
 

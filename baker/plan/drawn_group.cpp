@@ -1,4 +1,4 @@
-#include "baker/systems/interface/drawn_group.h"
+#include "baker/plan/drawn_group.h"
 
 #include <fmt/format.h>
 
