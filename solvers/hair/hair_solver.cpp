@@ -19,11 +19,12 @@
 namespace ft::inline solvers {
 namespace {
 
-/// The farthest that a body goes in a step [m].
+/// The farthest that a body or a root goes in a step. With it no vertex gets into a head that is shaken by 5 cm eight
+/// times a second (hair_test.cpp) [m].
 constexpr double k_way = 0.008;
 /// A root that is farther from its scalp is a mistake [m].
 constexpr double k_root_off = 0.05;
-/// Within so far of a root its neighbours are stiffened as much, fading outwards [m].
+/// Neighbours of a stiffened strand are stiffened with it within so far of its root, fading outwards. Guessed [m].
 constexpr double k_alike = 0.02;
 
 }  // namespace
@@ -34,7 +35,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
   };
   const HairMaterial& m = setup.material;
   if (!(setup.fps > 0) || setup.least_steps < 1 || setup.most_steps < setup.least_steps)
-    return refuse("fps or steps make no sense");
+    return refuse("fps must be positive, least_steps 1 or more, and most_steps no less than that");
   if (!(m.radius > 0 && m.young > 0 && m.shear > 0 && m.density > 0 && m.stiffness > 0 && m.thickness > 0))
     return refuse("a material's numbers must be positive");
   if (!(m.damping >= 0 && m.drag >= 0 && m.air_drag >= 0 && m.friction >= 0))
@@ -53,8 +54,10 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
   }
   std::unique_ptr<HairSolver> solver(new HairSolver(std::move(setup)));
   if (solver->farthest_root() > k_root_off)
-    return usage_error(fmt::format("hair \"{}\": a root is {:.0f} mm from the surface that it should grow on",
-                                   solver->setup_.name, 1e3 * solver->farthest_root()));
+    return usage_error(
+        fmt::format("hair \"{}\": a root is {:.0f} mm from the surface that it should grow on; scale and "
+                    "position of the guides, or what it is on, may be wrong",
+                    solver->setup_.name, 1e3 * solver->farthest_root()));
   return solver;
 }
 

@@ -22,7 +22,9 @@ struct HairContact {
   T friction{};   ///< Coulomb [1]
   T drag{};       ///< scratch: friction's stiffness across, frozen [N/m]
 };
-/// Force along the normal [N] and its slope, positive, at a gap.
+/// Force along the normal [N], its slope, positive [N/m], and its energy [J], at a gap d below the reach r: k (r - d)
+/// down to r/2, k r^2 / (4 d) down to r/8, so that what presses harder is held nearer but out, and straight on from
+/// there, so that what is inside is pushed out.
 template <class T>
 void contact_force(const T& gap, const T& reach, const T& stiffness, T& force, T& slope, T& energy);
 
