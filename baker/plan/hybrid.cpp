@@ -40,6 +40,12 @@ DeviationSettings settings_of(const Shot& shot, const PrimarySpec& spec) {
 
 }  // namespace
 
+std::vector<std::string> HybridPass::lines(const std::string& primary) const {
+  std::vector<std::string> out{text(primary)};
+  out.insert(out.end(), notes.begin(), notes.end());
+  return out;
+}
+
 std::string HybridPass::text(const std::string& primary) const {
   std::string of;
   for (const std::string& name : names) of += (of.empty() ? "\"" : "\", \"") + name;

@@ -37,6 +37,8 @@ struct HybridPass {
 
   /// What it came to, in a line.
   std::string text(const std::string& primary) const;
+  /// That line, and the notes.
+  std::vector<std::string> lines(const std::string& primary) const;
   /// Deviation at a time, between samples in a straight line; before the shot none, after it the last.
   RigidPose offset(double time) const;
 };

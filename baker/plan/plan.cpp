@@ -4,180 +4,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <iterator>
 
 #include "baker/plan/air.h"
 #include "baker/plan/carrier.h"
+#include "baker/plan/character_plan.h"
 #include "baker/plan/known_motion.h"
 #include "baker/plan/output_formats.h"
-#include "baker/plan/placed_trajectory.h"
 #include "baker/plan/preroll_speed.h"
 #include "baker/plan/quality.h"
-#include "baker/plan/repeated_trajectory.h"
 #include "io/shot/chains.h"
 
 namespace ft::inline baker {
 namespace {
 
-// A primary outside these sizes is a slip of units, nearly always: said, unless the shot file sets the scale itself
-// [m].
-constexpr double k_smallest_primary = 0.05, k_largest_primary = 30;
-
-/// What moves by less than this share of its size over a whole shot stands still.
-constexpr double k_still = 1e-5;
-
 constexpr double k_prop_step = 1.0 / 600;  ///< longest between samples of a prop's adjusted track [s]
-
-ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const std::filesystem::path& cache) {
-  ImportRequest request;
-  request.file = spec.file;
-  request.animation = spec.animation;
-  request.topology = spec.topology;
-  request.clip = spec.clip;
-  request.clip_start = spec.clip_start;
-  request.clip_bind = spec.clip_bind;
-  request.speed = spec.speed;
-  request.unit_scale = spec.unit_scale.value_or(0);
-  request.up = spec.up;
-  request.source_fps = spec.source_fps.value_or(0);
-  request.shot_fps = shot.fps;
-  if (!spec.body.empty()) request.body = spec.body;
-  request.height = spec.height.value_or(0);
-  request.meshes = spec.meshes;
-  request.surface = spec.surface;
-  request.preroll = shot.preroll / shot.fps;
-  // What is repeated need not last as long as the shot; whether it does is looked at once its length is known.
-  request.duration = spec.repeat > 1 ? 0 : (shot.last_frame - shot.first_frame) / shot.fps;
-  request.first_frame = shot.first_frame;
-  request.cache_folder = cache;
-  const auto asks = [&](const auto& s) { return s->on == spec.name && s->section->needs_character(); };
-  request.keep_character =
-      is_hybrid(shot, spec.name) || std::any_of(shot.secondaries.begin(), shot.secondaries.end(), asks);
-  return request;
-}
-
-Status check_primary(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory, const CharacterInfo& info,
-                     std::vector<std::string>& notes) {
-  const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
-  const auto pose = bind_pose_of(trajectory);
-  if (pose.empty() || trajectory.surface().triangles.empty())
-    return input_error("there is no surface in " + spec.file.filename().string(), where,
-                       "cloth needs a body: a mesh, or a BVH, for which one is built");
-  if (!all_finite(pose)) return input_error("the bind pose has positions that are not finite", where);
-  const double size = bounds(pose).size().maxCoeff();
-  if (!spec.unit_scale && !spec.height && !(size >= k_smallest_primary && size <= k_largest_primary))
-    return input_error(
-        fmt::format("the character is {:.4g} m in size", size), where,
-        size > k_largest_primary
-            ? "if the file is in centimetres, write unit_scale = 0.01; any unit_scale or height silences this"
-            : "write unit_scale, in metres per unit of the file, or height");
-  // Every frame's pose is looked at once before the first is solved: a pose that is not finite must not reach a solver.
-  std::vector<Vec3> sample(pose.size()), first;
-  bool moves = false;
-  for (int frame = shot.first_frame; frame <= shot.last_frame; ++frame) {
-    trajectory.sample((frame - shot.first_frame) / shot.fps, sample);
-    if (!all_finite(sample)) return input_error(fmt::format("the pose at frame {} is not finite", frame), where);
-    if (frame == shot.first_frame) first = sample;
-    for (std::size_t v = 0; v < sample.size() && !moves; ++v) moves = (sample[v] - first[v]).norm() > k_still * size;
-  }
-  if (!moves && shot.last_frame > shot.first_frame && !info.still)
-    notes.push_back(fmt::format("primary \"{}\" does not move in frames {}-{}: is it the right clip, and clip_start?",
-                                spec.name, shot.first_frame, shot.last_frame));
-  return {};
-}
-
-TeleportScan scan_of(const Shot& shot, const PrimarySpec& spec, const Trajectory& trajectory) {
-  TeleportScanSettings settings;
-  settings.first_frame = shot.first_frame;
-  settings.last_frame = shot.last_frame;
-  settings.preroll_frames = shot.preroll;
-  settings.fps = shot.fps;
-  settings.detect = spec.teleports == Teleports::k_detect;
-  settings.frames = spec.teleport_frames;
-  return scan_teleports(trajectory, settings);
-}
-
-void note_pass(const HybridPass& pass, const std::string& primary, std::vector<std::string>& notes) {
-  notes.push_back(pass.text(primary));
-  notes.insert(notes.end(), pass.notes.begin(), pass.notes.end());
-}
-
-/// As often in a row as `repeat` says.
-Status repeat_clip(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported,
-                   std::vector<std::string>& notes) {
-  if (spec.repeat <= 1) return {};
-  const std::string where = shot.file.filename().string() + ": primary \"" + spec.name + "\"";
-  if (is_hybrid(shot, spec.name)) return usage_error("what yields to stand-ins cannot be repeated", where);
-  for (const auto& secondary : shot.secondaries)
-    if (secondary->on == spec.name && secondary->section->needs_character())
-      return usage_error("its clip is repeated, and " + secondary->owner() + " changes the clip itself", where,
-                         "repeat the clip in the program that it comes from");
-  const auto& clips = imported.info.clips;
-  const auto clip = std::find_if(clips.begin(), clips.end(),
-                                 [&](const ClipInfo& c) { return spec.clip.empty() || c.name == spec.clip; });
-  if (clip == clips.end()) return usage_error("repeat needs a clip to repeat", where);
-  const double period = (clip->duration - spec.clip_start) / spec.speed;
-  const double needed = (shot.last_frame - shot.first_frame) / shot.fps;
-  if (!(period > 0)) return usage_error("clip_start is behind the clip's end: there is nothing to repeat", where);
-  if (period * spec.repeat < needed - 1e-6)
-    return usage_error(fmt::format("{} times its clip last {:.4g} s, and the shot {:.4g} s", spec.repeat,
-                                   period * spec.repeat, needed),
-                       where, fmt::format("repeat = {}", static_cast<int>(std::ceil(needed / period))));
-  auto repeated = std::make_unique<RepeatedTrajectory>(std::move(imported.trajectory), period, spec.repeat);
-  constexpr double k_no_cycle = 0.02;  // m
-  if (repeated->misfit() > k_no_cycle)
-    notes.push_back(
-        fmt::format("primary \"{}\": its clip does not end as it begins: it jumps by {:.2g} cm where it "
-                    "is repeated",
-                    spec.name, 100 * repeated->misfit()));
-  imported.trajectory = std::move(repeated);
-  return {};
-}
-
-/// Where `position` and `rotation` have it.
-Status place_character(const Shot& shot, const PrimarySpec& spec, ImportedPrimary& imported, Eigen::Isometry3d& place) {
-  if (spec.position == Vec3::Zero() && spec.rotation_deg == Vec3::Zero()) return {};
-  if (is_hybrid(shot, spec.name))
-    return usage_error("a character that yields to stand-ins cannot have position or rotation",
-                       shot.file.filename().string() + ": primary \"" + spec.name + "\"",
-                       "move it in the program that it comes from");
-  place = Eigen::Translation3d(spec.position) * rotation_of_degrees(spec.rotation_deg);
-  imported.trajectory = std::make_unique<PlacedTrajectory>(std::move(imported.trajectory), place);
-  return {};
-}
-
-Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, const Importer& importer,
-                                   const std::filesystem::path& import_cache, std::vector<std::string>& notes) {
-  const ImportRequest request = import_request(shot, spec, import_cache);
-  auto imported = importer(request);
-  if (!imported) return imported.error();
-  CHECK(imported->trajectory);
-  if (const Status repeated = repeat_clip(shot, spec, *imported, notes); !repeated) return repeated.error();
-  for (const std::string& note : imported->info.notes) notes.push_back("primary \"" + spec.name + "\": " + note);
-  if (const Status checked = check_primary(shot, spec, *imported->trajectory, imported->info, notes); !checked)
-    return checked.error();
-  PrimaryPlan out;
-  if (const Status placed = place_character(shot, spec, *imported, out.place); !placed) return placed.error();
-  out.name = spec.name;
-  out.scan = scan_of(shot, spec, *imported->trajectory);
-  for (std::string& note : teleport_notes(out.scan, spec.name)) notes.push_back(std::move(note));
-  if (auto note = hasty_preroll(shot, spec.name, *imported->trajectory)) notes.push_back(std::move(*note));
-  out.mass = primary_mass(spec, *imported->trajectory);
-  out.trajectory = std::move(imported->trajectory);
-  out.info = std::move(imported->info);
-  out.character = imported->character;
-  out.request = request;
-  if (is_hybrid(shot, spec.name) && imported->character && has_joints(*imported->character)) {
-    auto yielded = yield_character(shot, spec, request, imported->character, *out.trajectory, out.mass.kilograms);
-    if (!yielded) return yielded.error();
-    note_pass(yielded->pass, spec.name, notes);
-    notes.insert(notes.end(), yielded->notes.begin(), yielded->notes.end());
-    out.trajectory = std::move(yielded->trajectory);
-    out.hybrid = std::make_shared<const HybridPass>(std::move(yielded->pass));
-    out.yielding = std::make_shared<const YieldingCharacter>(std::move(yielded->character));
-  }
-  return out;
-}
 
 /// Whether something asks for a primary that is one rigid body: a secondary that asks for it, or a coupling that moves
 /// it.
@@ -207,7 +48,7 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
     primary.track = [before = prop.track, after = sampled_motion(0, pass->dt, pass->motion)](double time) {
       return time < 0 ? before(time) : after(time);
     };
-    note_pass(*pass, spec.name, notes);
+    std::ranges::move(pass->lines(spec.name), std::back_inserter(notes));
     primary.hybrid = std::make_shared<const HybridPass>(std::move(*pass));
   }
   primary.trajectory = prop_trajectory(*primary.prop, primary.track, shot.preroll / shot.fps);
@@ -217,8 +58,48 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
     primary.info.vertex_count = primary.trajectory->surface().vertex_count();
     primary.info.triangle_count = static_cast<int>(primary.trajectory->surface().triangles.size());
     primary.info.bind_bounds = bounds(bind_pose_of(*primary.trajectory));
-    primary.info.up = "y";
+    primary.info.up.assign(1, 'y');
   }
+  return {};
+}
+
+/// Characters and props, with the pre-roll that the shot has now.
+Status plan_primaries_once(BakePlan& plan, const Importer& importer, const std::filesystem::path& import_cache) {
+  const Shot& shot = plan.shot();
+  plan.primaries.clear();
+  plan.notes = shot.notes;
+  for (const PrimarySpec& spec : shot.primaries) {
+    PrimaryPlan primary;
+    primary.name = spec.name;
+    if (spec.shape.empty()) {
+      auto character = plan_character(shot, spec, importer, import_cache, plan.notes);
+      if (!character) return character.error();
+      primary = std::move(*character);
+    }
+    if (const Status planned = plan_prop(shot, spec, primary, plan.notes); !planned) return planned.error();
+    plan.primaries.push_back(std::move(primary));
+  }
+  return {};
+}
+
+/// A pre-roll that the shot does not name becomes as long as its characters need to get to its first frame calmly.
+Status plan_primaries(BakePlan& plan, const Importer& importer, const std::filesystem::path& import_cache) {
+  if (const Status planned = plan_primaries_once(plan, importer, import_cache); !planned) return planned.error();
+  Shot& shot = plan.inputs.shot;
+  std::vector<std::string> lines;
+  int calm = shot.preroll;
+  for (const PrimaryPlan& primary : plan.primaries) {
+    if (primary.prop) continue;
+    if (const auto hasty = hasty_preroll(shot, *primary.trajectory)) {
+      lines.push_back(hasty->text(primary.name, shot.preroll_given));
+      calm = std::max(calm, hasty->calm);
+    }
+  }
+  if (calm > shot.preroll && !shot.preroll_given) {
+    shot.preroll = calm;
+    if (const Status planned = plan_primaries_once(plan, importer, import_cache); !planned) return planned.error();
+  }
+  std::ranges::move(lines, std::back_inserter(plan.notes));
   return {};
 }
 
@@ -293,19 +174,8 @@ Result<BakePlan> make_plan(BakeInputs inputs, const Importer& importer, const st
   BakePlan plan;
   plan.inputs = std::move(inputs);
   const Shot& shot = plan.shot();
-  plan.notes = shot.notes;
   const auto clock = std::chrono::steady_clock::now();
-  for (const PrimarySpec& spec : shot.primaries) {
-    PrimaryPlan primary;
-    primary.name = spec.name;
-    if (spec.shape.empty()) {
-      auto character = plan_character(shot, spec, importer, import_cache, plan.notes);
-      if (!character) return character.error();
-      primary = std::move(*character);
-    }
-    if (const Status planned = plan_prop(shot, spec, primary, plan.notes); !planned) return planned.error();
-    plan.primaries.push_back(std::move(primary));
-  }
+  if (const Status planned = plan_primaries(plan, importer, import_cache); !planned) return planned.error();
   auto wind = plan_wind(shot, plan.primaries, plan.notes);
   if (!wind) return wind.error();
   plan.wind = std::move(*wind);

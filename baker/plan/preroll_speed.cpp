@@ -8,9 +8,9 @@
 namespace ft::inline baker {
 namespace {
 
-constexpr double k_hasty = 2;      ///< m/s
 constexpr double k_by_shot = 3;    ///< times as fast as the shot
 constexpr double k_at_ease = 2.5;  ///< m/s, of the pre-roll that is advised
+constexpr int k_longest = 240;     ///< frames, of the pre-roll that is advised
 
 /// Of any vertex between two frames [m/s].
 double fastest(const Shot& shot, const Trajectory& trajectory, int first, int last) {
@@ -27,16 +27,30 @@ double fastest(const Shot& shot, const Trajectory& trajectory, int first, int la
 
 }  // namespace
 
-std::optional<std::string> hasty_preroll(const Shot& shot, const std::string& primary, const Trajectory& trajectory) {
-  if (shot.preroll < 2) return std::nullopt;
-  const double there = fastest(shot, trajectory, shot.first_frame - shot.preroll, shot.first_frame);
-  const double here = fastest(shot, trajectory, shot.first_frame, shot.last_frame);
-  if (there < k_hasty || there < k_by_shot * here) return std::nullopt;
-  return fmt::format(
+std::string HastyPreroll::text(const std::string& primary, bool is_kept) const {
+  const std::string gets_there = fmt::format(
       "primary \"{}\": goes from its bind pose to the first frame at up to {:.2g} m/s, where the shot has {:.2g} m/s "
       "at "
-      "most: frames of the pre-roll may cost many times those of the shot; preroll = {} is calmer",
-      primary, there, here, static_cast<int>(std::ceil(shot.preroll * there / k_at_ease)));
+      "most",
+      primary, there, here);
+  return is_kept
+             ? fmt::format("{}: frames of the pre-roll may cost many times those of the shot; preroll = {} is calmer",
+                           gets_there, calm)
+             : fmt::format(
+                   "{}, in the pre-roll of a shot that names none: it has {} frames instead (preroll under "
+                   "[shot] sets it)",
+                   gets_there, calm);
+}
+
+std::optional<HastyPreroll> hasty_preroll(const Shot& shot, const Trajectory& trajectory) {
+  if (shot.preroll < 2) return std::nullopt;
+  HastyPreroll out;
+  out.there = fastest(shot, trajectory, shot.first_frame - shot.preroll, shot.first_frame);
+  out.here = fastest(shot, trajectory, shot.first_frame, shot.last_frame);
+  if (out.there < k_by_shot * out.here) return std::nullopt;
+  out.calm = std::min(k_longest, static_cast<int>(std::ceil(shot.preroll * out.there / k_at_ease)));
+  if (out.calm <= shot.preroll) return std::nullopt;
+  return out;
 }
 
 }  // namespace ft::inline baker

@@ -9,8 +9,16 @@
 
 namespace ft::inline baker {
 
-/// A note where the pre-roll is much faster than the shot, and fast: cloth is torn at there, and its frames cost many
-/// times those of the shot. Says how long a pre-roll would do.
-std::optional<std::string> hasty_preroll(const Shot& shot, const std::string& primary, const Trajectory& trajectory);
+/// A pre-roll that is much faster than the shot, and fast: cloth is torn at there, and its frames cost many times those
+/// of the shot.
+struct HastyPreroll {
+  double there = 0, here = 0;  ///< fastest vertex of the pre-roll and of the shot [m/s]
+  int calm = 0;                ///< how long a pre-roll would do [frames]
+
+  /// A note; whether the shot names its pre-roll, and keeps it.
+  std::string text(const std::string& primary, bool is_kept) const;
+};
+
+std::optional<HastyPreroll> hasty_preroll(const Shot& shot, const Trajectory& trajectory);
 
 }  // namespace ft::inline baker

@@ -122,9 +122,9 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   if (!lock) return failed(lock.error());
   auto checkpoint = find_checkpoint(options, folder, inputs, status, progress);
   if (!checkpoint) return failed(checkpoint.error());
-  Manifest manifest = manifest_of(inputs);
   auto plan = make_plan(std::move(inputs), services.importer, folder.import_cache());
   if (!plan) return failed(plan.error());
+  Manifest manifest = manifest_of(plan->inputs);
   plan->later.clear();
   StageBake stages{services, folder, status.before, std::move(*checkpoint), progress};
   WalkResult result{std::move(manifest), {}, 0};

@@ -154,7 +154,8 @@ struct Shot {
   std::filesystem::path file;  ///< the shot file; other paths are resolved against its folder
   int first_frame = 1, last_frame = 1;
   double fps = 24;
-  int preroll = 24;  ///< frames before the first
+  int preroll = 24;            ///< frames before the first
+  bool preroll_given = false;  ///< whether the shot file says it; else it may become longer (make_plan)
   bool write_preroll = false;
   std::string quality = "final";  ///< "final" or "preview"
   std::vector<PrimarySpec> primaries;

@@ -61,8 +61,9 @@ std::span<const ShotKey<Shot>> shot_keys() {
       {"fps", &Shot::fps, 1, 240, "1/s", "", false, "frame_rate framerate frames_per_second",
        "Frames per second of the shot"},
       {"preroll", &Shot::preroll, 0, 1000, "frames", "", false, "warmup run_up pre_roll",
-       "Frames before the first, in which the bind pose blends into the first frame and the cloth settles; with 0, "
-       "cloth that starts through the body stays there"},
+       "Frames before the first, in which the bind pose blends into the first frame and the cloth settles; a shot that "
+       "does not name it has more of them where a character would tear away from its bind pose; with 0, cloth that "
+       "starts through the body stays there"},
       {"write_preroll", &Shot::write_preroll, 0, 0, "", "", false, "",
        "Also write the frames of the pre-roll into the caches"},
       {"quality", &Shot::quality, 0, 0, "", "final preview", false, "",

@@ -53,6 +53,8 @@ class ShotReader {
     }
     for (const SecondarySection* section : vocabulary_.sections)
       if (const Member* member = root.find(section->name())) read_secondaries(*member, *section);
+    const Member* own = root.find("shot");
+    shot_.preroll_given = own != nullptr && own->value.find("preroll") != nullptr;
     judge_whole(root, shot_, vocabulary_, faults_);
     return std::move(shot_);
   }

@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "baker/core/file.h"
+#include "baker/record/manifest.h"
 #include "tests/baker/fake_bake.h"
 #include "tests/support/scripted_body.h"
 
@@ -137,6 +141,48 @@ TEST(StartReport, A_preroll_that_is_much_faster_than_the_shot_is_a_note) {
                "goes from its bind pose to the first frame at up to 4 m/s, where the shot has 0.1 m/s at most");
   expect_words(notes(0.5), "preroll = 5 is calmer");
   EXPECT_EQ(notes(0.2).find("bind pose to the first frame"), std::string::npos);
+}
+
+/// A box that comes from `metres` away in a straight line and then hardly moves; `prerolls` gets those that it was
+/// asked for [s].
+FakeBehaviour far_away(double metres, std::vector<double>& prerolls) {
+  FakeBehaviour out;
+  out.move = [metres, &prerolls](const Trajectory& box, const ImportRequest& request) -> std::unique_ptr<Trajectory> {
+    std::vector<Vec3> corners(8);
+    box.bind_pose(corners);
+    prerolls.push_back(request.preroll);
+    return std::make_unique<ScriptedBody>(box.surface(), corners, request.preroll,
+                                          [metres, s = request.preroll](double time, std::span<Vec3> x) {
+                                            for (Vec3& p : x) p.z() += time < 0 ? -metres * time / s : 0.1 * time;
+                                          });
+  };
+  return out;
+}
+
+TEST(StartReport, A_preroll_that_the_shot_does_not_name_becomes_a_calm_one) {
+  FakeScene scene;  // 24 fps
+  std::string shot = read_text(scene.file("shot.toml")).value();
+  shot.replace(shot.find("preroll = 3\n"), 12, "");
+  std::ofstream(scene.file("shot.toml")) << shot;
+  std::vector<double> prerolls;
+  const BakeResult baked = scene.run(scene.options(), far_away(4.9, prerolls));  // in 24 frames at 4.9 m/s
+  EXPECT_EQ(baked.exit_code, 0) << text(baked);
+  EXPECT_EQ(prerolls, (std::vector<double>{1, 2}));
+  const auto manifest = read_manifest(scene.folder().path);
+  ASSERT_TRUE(manifest);
+  EXPECT_EQ(manifest->preroll, 48);
+  EXPECT_EQ(manifest->first_written, 1);
+  expect_words(scene.manifest_text(), "a shot that names none: it has 48 frames instead");
+  prerolls.clear();
+  expect_words(text(scene.run(scene.options(), far_away(4.9, prerolls))), "up to date");
+
+  scene.write_shot();
+  BakeOptions named = scene.options();
+  named.overrides.push_back("shot.preroll=24");
+  named.dry_run = true;
+  prerolls.clear();
+  expect_words(text(scene.run(named, far_away(4.9, prerolls))), "preroll = 48 is calmer");
+  EXPECT_EQ(prerolls, std::vector<double>{1});
 }
 
 TEST(StartReport, A_part_of_a_shot_with_a_repeated_clip_starts_where_the_shot_does) {
