@@ -28,7 +28,7 @@ struct Head {
     for (const Vec3& p : surface.positions) weight.push_back(paint(p));
   }
   std::vector<GrownStrand> grow(const Growth& growth) const {
-    auto out = grown(growth, surface.positions, surface.triangles, weight);
+    auto out = grown(growth, surface.positions, surface.triangles, {surface.positions, surface.triangles, weight});
     EXPECT_TRUE(out) << out.error().text();
     return out ? std::move(*out) : std::vector<GrownStrand>{};
   }
@@ -220,7 +220,8 @@ TEST(GrownHair, What_makes_no_sense_is_refused) {
   const auto refused = [&](const std::function<void(Growth&)>& spoil, const char* word) {
     Growth g = sparse();
     spoil(g);
-    const auto out = grown(g, head.surface.positions, head.surface.triangles, head.weight);
+    const auto out = grown(g, head.surface.positions, head.surface.triangles,
+                           {head.surface.positions, head.surface.triangles, head.weight});
     ASSERT_FALSE(out) << word;
     EXPECT_EQ(out.error().kind, ErrorKind::k_usage);
     EXPECT_NE(out.error().text().find(word), std::string::npos) << out.error().text();
@@ -242,10 +243,13 @@ TEST(GrownHair, What_makes_no_sense_is_refused) {
   refused([](Growth& g) { g.part = Parting{Vec3::Zero(), Vec3::Zero()}; }, "part");
   refused([](Growth& g) { g.vertices = 1; }, "vertices");
   const std::vector<double> none(head.weight.size(), 0.0), much(head.weight.size(), 1.5);
-  EXPECT_FALSE(grown(sparse(), head.surface.positions, head.surface.triangles, none));
-  EXPECT_FALSE(grown(sparse(), head.surface.positions, head.surface.triangles, much));
-  EXPECT_FALSE(grown(sparse(), head.surface.positions, head.surface.triangles, std::span(none).first(3)));
-  EXPECT_FALSE(grown(sparse(), {}, {}, {}));
+  EXPECT_FALSE(grown(sparse(), head.surface.positions, head.surface.triangles,
+                     {head.surface.positions, head.surface.triangles, none}));
+  EXPECT_FALSE(grown(sparse(), head.surface.positions, head.surface.triangles,
+                     {head.surface.positions, head.surface.triangles, much}));
+  EXPECT_FALSE(grown(sparse(), head.surface.positions, head.surface.triangles,
+                     {head.surface.positions, head.surface.triangles, std::span(none).first(3)}));
+  EXPECT_FALSE(grown(sparse(), {}, {}, PaintedRegion()));
 }
 
 TEST(GrownHair, Is_outside_of_a_real_figure) {
@@ -259,7 +263,7 @@ TEST(GrownHair, Is_outside_of_a_real_figure) {
   for (const Vec3& p : mesh->positions) weight.push_back(p.y() > top - 0.09 ? 1.0 : 0.0);
   Growth g;
   g.density = 4000, g.length = 0.45, g.clump_size = 0.02, g.curl_radius = 0.006;
-  const auto strands = grown(g, mesh->positions, triangles, weight);
+  const auto strands = grown(g, mesh->positions, triangles, {mesh->positions, triangles, weight});
   ASSERT_TRUE(strands) << strands.error().text();
   EXPECT_GT(strands->size(), 50u);
   // Its hair is modelled in layers that leave folds narrower than two gaps.

@@ -61,10 +61,11 @@ Side side_of(const Growth& g, const Vec3& place, const Vec3& normal) {
 
 class Grower {
  public:
-  Grower(const Growth& g, std::span<const Vec3> x, std::span<const Triangle> triangles, std::vector<SurfaceRoot> roots)
+  Grower(const Growth& g, std::span<const Vec3> x, std::span<const Triangle> triangles, const PaintedRegion& region,
+         std::vector<SurfaceRoot> roots)
       : g_(g),
-        triangles_(triangles),
-        normals_(vertex_normals(x, triangles)),
+        triangles_(region.triangles),
+        normals_(vertex_normals(region.positions, region.triangles)),
         outside_(x, triangles),
         roots_(std::move(roots)),
         comb_(g.comb.normalized()) {
@@ -195,15 +196,15 @@ class Grower {
   }
 
   const Growth& g_;
-  std::span<const Triangle> triangles_;
-  std::vector<Vec3> normals_;
+  std::span<const Triangle> triangles_;  ///< of the region
+  std::vector<Vec3> normals_;            ///< of its vertices
   Outside outside_;
   std::vector<SurfaceRoot> roots_;
   Vec3 comb_;
 };
 
 /// What of it makes no sense; empty: all does.
-std::string fault_of(const Growth& g, std::span<const Vec3> x, std::span<const double> weight) {
+std::string fault_of(const Growth& g, const PaintedRegion& region) {
   const auto within = [](double v, double lo, double hi) { return v >= lo && v <= hi; };
   if (!(g.density > 0) || !std::isfinite(g.density)) return "density has to be above 0";
   if (!within(g.length, 1e-3, 10)) return "length has to be from 1 mm to 10 m";
@@ -218,19 +219,24 @@ std::string fault_of(const Growth& g, std::span<const Vec3> x, std::span<const d
   if (g.part && (!(g.part->direction.norm() > 0) || !g.part->direction.allFinite() || !g.part->point.allFinite()))
     return "part has to be a point and a direction";
   if (!within(g.vertices, 2, 10000)) return "vertices have to be from 2 to 10000";
-  if (weight.size() != x.size()) return "the region is painted on another mesh";
-  for (const double w : weight)
+  if (region.weight.size() != region.positions.size()) return "the region is painted on another mesh";
+  for (const double w : region.weight)
     if (!within(w, 0, 1)) return "the region's weights have to be from 0 to 1";
   return {};
 }
 
 }  // namespace
 
-Result<std::vector<GrownStrand>> grown(const Growth& growth, std::span<const Vec3> positions,
-                                       std::span<const Triangle> triangles, std::span<const double> weight) {
-  if (const std::string fault = fault_of(growth, positions, weight); !fault.empty()) return usage_error(fault);
-  double area = 0;
-  for (const double a : painted_areas(positions, triangles, weight)) area += a;
+double painted_area(const PaintedRegion& region) {
+  double out = 0;
+  for (const double a : painted_areas(region.positions, region.triangles, region.weight)) out += a;
+  return out;
+}
+
+Result<std::vector<GrownStrand>> grown(const Growth& growth, std::span<const Vec3> body,
+                                       std::span<const Triangle> body_triangles, const PaintedRegion& region) {
+  if (const std::string fault = fault_of(growth, region); !fault.empty()) return usage_error(fault);
+  const double area = painted_area(region);
   if (!(area > 0)) return usage_error("hair grows nowhere: no area of the region is painted");
   const double count = std::round(area * growth.density);
   if (count < 1)
@@ -239,8 +245,8 @@ Result<std::vector<GrownStrand>> grown(const Growth& growth, std::span<const Vec
   if (count > k_most_strands)
     return usage_error(fmt::format("hair would have {:.0f} strands; {:.0f} are the most", count, k_most_strands), {},
                        "lower the density");
-  return Grower(growth, positions, triangles,
-                spread_roots(static_cast<int>(count), growth.seed, positions, triangles, weight))
+  return Grower(growth, body, body_triangles, region,
+                spread_roots(static_cast<int>(count), growth.seed, region.positions, region.triangles, region.weight))
       .run();
 }
 

@@ -35,9 +35,16 @@ struct Growth {
   int vertices = 24;  ///< of a strand, at equal distances; 2 or more
 };
 
+/// Where it grows: a piece of the body, or a mesh of its own that lies on it.
+struct PaintedRegion {
+  std::span<const Vec3> positions;  ///< m
+  std::span<const Triangle> triangles;
+  std::span<const double> weight;  ///< of each vertex: painted 0 to 1
+};
+
 struct GrownStrand {
   std::vector<Vec3> line;          ///< root first [m]
-  int triangle = 0;                ///< of the scalp, on which the root is
+  int triangle = 0;                ///< of the region, on which the root is
   std::array<double, 3> weight{};  ///< barycentric, of the root
 };
 
@@ -46,12 +53,14 @@ inline constexpr double k_strand_gap = 0.002;
 /// What is more is a slip in the density.
 inline constexpr double k_most_strands = 500'000;
 
-/// `weight`: for each vertex, painted 0 to 1. The triangles are all of the body that strands have to lie outside of,
-/// facing outwards; it need not be closed. As many strands as painted area times density says, rounded, less
-/// those that would begin inside, under another layer of the body; the same on every machine and for every number of
-/// threads. In folds narrower than two gaps vertices may be nearer. Errors: values out of range, nothing painted, too
-/// many strands.
-Result<std::vector<GrownStrand>> grown(const Growth& growth, std::span<const Vec3> positions,
-                                       std::span<const Triangle> triangles, std::span<const double> weight);
+/// The body is all that strands have to lie outside of, facing outwards; it need not be closed. As many strands as
+/// painted area times density says, rounded, less those that would begin inside, under another layer of the body; the
+/// same on every machine and for every number of threads. In folds narrower than two gaps vertices may be nearer.
+/// Errors: values out of range, nothing painted, too many strands.
+Result<std::vector<GrownStrand>> grown(const Growth& growth, std::span<const Vec3> body,
+                                       std::span<const Triangle> body_triangles, const PaintedRegion& region);
+
+/// What a painted region is [m2].
+double painted_area(const PaintedRegion& region);
 
 }  // namespace ft::inline baker

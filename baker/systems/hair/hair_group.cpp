@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "baker/plan/located.h"
+#include "baker/systems/hair/hair_source.h"
 #include "baker/systems/interface/plan_common.h"
-#include "io/hair/guides.h"
 #include "io/hair/resample.h"
 
 namespace ft::inline baker {
@@ -14,35 +14,6 @@ namespace {
 
 /// Roots that are farther from the surface are a note [m].
 constexpr double k_root_off = 2e-3;
-
-/// `count` of so many, evenly.
-std::vector<std::size_t> evenly(std::size_t all, int count) {
-  const std::size_t wanted = count > 0 ? std::min(all, at(count)) : all;
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < wanted; ++k) out.push_back(k * all / wanted);
-  return out;
-}
-
-Status add_strands(const HairSpec& spec, const Trajectory& scalp, BakePlan& plan, HairSetup& setup) {
-  const std::vector<Vec3> bind = bind_pose_of(scalp);
-  std::vector<Vec3> there = bind;  // as the file has it
-  for (Vec3& p : there) p -= spec.position;
-  const auto guides = read_guides(spec.guides, spec.scale, there);
-  if (!guides) return guides.error();
-  for (const std::string& note : guides->notes) plan.notes.push_back(spec.owner() + ": " + note);
-  for (const std::size_t k : evenly(guides->strands.size(), spec.count)) {
-    HairStrand strand;
-    strand.id = k;
-    strand.positions = resampled(guides->strands[k], spec.vertices);
-    for (Vec3& p : strand.positions) p += spec.position;
-    strand.width = guides->widths.empty() ? spec.width : guides->widths[k];
-    // Held to where it leaves the band; what ends in it, whole.
-    for (std::size_t i = 0; i < strand.positions.size(); ++i)
-      if ((strand.positions[i] - spec.tie).norm() < spec.tie_radius) strand.held = static_cast<int>(i) + 1;
-    setup.strands.push_back(std::move(strand));
-  }
-  return {};
-}
 
 /// What differs from what one would think: a note each.
 void add_notes(const HairSpec& spec, std::size_t scalp, const HairGroup& group, BakePlan& plan) {
@@ -86,8 +57,10 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   setup.material.friction = spec.friction;
   setup.material.thickness = spec.thickness;
   setup.scalp = plan.primaries[primary].trajectory;
-  if (const Status added = add_strands(spec, *setup.scalp, plan, setup); !added)
-    return located(added.error(), shot, spec.owner());
+  auto source = hair_source(spec, *setup.scalp);
+  if (!source) return located(source.error(), shot, spec.owner());
+  for (const std::string& note : source->notes) plan.notes.push_back(spec.owner() + ": " + note);
+  setup.strands = std::move(source->strands);
   return setup;
 }
 

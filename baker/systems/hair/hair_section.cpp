@@ -10,13 +10,39 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
   static const ShotKey<HairSpec> keys[] = {
       {"guides", &HairSpec::guides, 0, 0, "", "", false, "curves file groom strands",
        "Guide strands, root first, on the body as garments lie on it: TressFX (`.tfx`), OBJ lines or a hair mesh "
-       "(`.obj`), Alembic curves (`.abc`)"},
+       "(`.obj`), Alembic curves (`.abc`). Or it grows from a region: the keys from `region` to `seed`"},
       {"scale", &HairSpec::scale, 1e-6, 1e6, "m", "", false, "unit", "Metres per unit of that file"},
       {"position", &HairSpec::position, -1e4, 1e4, "m", "", false, "offset translate", "Added to its places"},
       {"count", &HairSpec::count, 0, 1'000'000, "", "", false, "number guides_count",
-       "How many of its strands are solved, evenly chosen; 0: all"},
+       "How many of its strands are solved, evenly chosen, or grown; 0: all, or as `density` says"},
       {"vertices", &HairSpec::vertices, 4, 200, "", "", false, "points segments resolution",
        "Of each strand, at equal distances"},
+      {"region", &HairSpec::region, -1e4, 1e4, "m", "", false, "region_center region_centre grow_at",
+       "Middle of a ball: hair grows where the body is in it, thinner towards its rim. On the body as garments lie on "
+       "it"},
+      {"region_radius", &HairSpec::region_radius, 0, 100, "m", "", false, "grow_radius", "Of that ball"},
+      {"region_mesh", &HairSpec::region_mesh, 0, 0, "", "", false, "scalp_mesh cap",
+       "Instead of a ball: an OBJ that lies on the body, such as its faces with hair; where its vertices have colours, "
+       "hair is as dense as their red"},
+      {"density", &HairSpec::density, 1, 1e7, "1/m2", "", false, "guides_density",
+       "Guides that grow on a painted square metre"},
+      {"length", &HairSpec::length, 1e-3, 10, "m", "", false, "hair_length", "Of what grows"},
+      {"length_variation", &HairSpec::length_variation, 0, 0.95, "1", "", false, "length_random",
+       "By so much of it they are longer or shorter: 0.1 a cut, 0.9 wild"},
+      {"curl_radius", &HairSpec::curl_radius, 0, 1, "m", "", false, "curl", "0 straight, 0.005 waves, 0.015 locks"},
+      {"curl_pitch", &HairSpec::curl_pitch, 1e-3, 10, "m", "", false, "curl_length", "Length of a turn of a curl"},
+      {"clump_size", &HairSpec::clump_size, 0, 10, "m", "", false, "clumps clumping lock_size",
+       "Distance of locks on the scalp that draw together towards their tips: 0 none, 0.01 fine, 0.04 heavy"},
+      {"lift", &HairSpec::lift, 0, 1, "1", "", false, "root_lift",
+       "At the root: 0 flat on the body, 1 straight out of it"},
+      {"bend", &HairSpec::bend, 1e-3, 100, "m", "", false, "bend_length",
+       "Length over which a strand turns to the comb: 0.01 limp, 0.2 a brush"},
+      {"volume", &HairSpec::volume, 0, 1, "m", "", false, "fullness",
+       "How far above the body its uppermost strands lie"},
+      {"comb", &HairSpec::comb, -1, 1, "", "", false, "combed comb_direction", "Where strands go: a direction"},
+      {"parting_at", &HairSpec::parting_at, -1e4, 1e4, "m", "", false, "parting part", "A place on a parting"},
+      {"parting_along", &HairSpec::parting_along, -1, 1, "", "", false, "parting_direction", "Its direction"},
+      {"seed", &HairSpec::seed_number, 0, 1'000'000, "", "", false, "random_seed", "Of all that is drawn by lot"},
       {"tie", &HairSpec::tie, -1e4, 1e4, "m", "", false, "band ponytail_band",
        "Centre of a band, as of a pony-tail: strands that go through it are held from the root to where they leave it"},
       {"tie_radius", &HairSpec::tie_radius, 0, 10, "m", "", false, "band_radius", "Of that band; 0: there is none"},
@@ -42,6 +68,27 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
   return keys;
 }
 
+/// Guides from a file, or a region to grow from: one of the three.
+void judge_source(const Value& table, const HairSpec& spec, FaultList& faults) {
+  const Member *guides = table.find("guides"), *mesh = table.find("region_mesh"), *radius = table.find("region_radius"),
+               *middle = table.find("region");
+  const int sources = (guides != nullptr) + (mesh != nullptr) + (radius != nullptr || middle != nullptr);
+  if (sources != 1)
+    faults.add(table.place, spec.owner() + (sources == 0 ? ": guides are missing, or a region to grow from"
+                                                         : ": guides, region and region_mesh: it has one of them"));
+  if ((radius == nullptr) != (middle == nullptr))
+    faults.add((radius ? radius : middle)->place, spec.owner() + ": region and region_radius go together");
+  const Member *at = table.find("parting_at"), *along = table.find("parting_along");
+  if ((at == nullptr) != (along == nullptr))
+    faults.add((at ? at : along)->place, spec.owner() + ": parting_at and parting_along go together");
+  if (!guides) return;
+  for (const char* key : {"density", "length", "length_variation", "curl_radius", "curl_pitch", "clump_size", "lift",
+                          "bend", "volume", "comb", "parting_at", "seed"})
+    if (const Member* found = table.find(key))
+      faults.add(found->place,
+                 spec.owner() + ": " + key + " is of what grows from a region; its guides are from a file");
+}
+
 class HairSection final : public SectionOf<HairSpec> {
  public:
   HairSection() : SectionOf("hair", hair_keys()) {}
@@ -49,13 +96,16 @@ class HairSection final : public SectionOf<HairSpec> {
   void judge(const Value& root, SecondarySpec& spec, const Shot&, FaultList& faults) const override {
     const Value* table = section_of(root, name(), spec.name);
     if (!table) return;
-    if (!table->find("guides")) faults.add(table->place, spec.owner() + ": guides are missing");
+    judge_source(*table, static_cast<const HairSpec&>(spec), faults);
     const Member *tie = table->find("tie"), *radius = table->find("tie_radius");
     if ((tie == nullptr) != (radius == nullptr))
       faults.add((tie ? tie : radius)->place, spec.owner() + ": tie and tie_radius go together");
   }
   std::vector<std::pair<std::string, std::filesystem::path>> files(const SecondarySpec& spec) const override {
-    return {{"guides", of(spec).guides}};
+    std::vector<std::pair<std::string, std::filesystem::path>> out;
+    if (!of(spec).guides.empty()) out.emplace_back("guides", of(spec).guides);
+    if (!of(spec).region_mesh.empty()) out.emplace_back("region_mesh", of(spec).region_mesh);
+    return out;
   }
   std::string_view whom() const override { return "on which it grows"; }
   std::vector<std::string> meets(const SecondarySpec& spec) const override { return of(spec).meets; }

@@ -1,0 +1,117 @@
+#include "baker/systems/hair/hair_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "baker/core/mesh.h"
+#include "io/hair/guides.h"
+#include "io/hair/resample.h"
+#include "io/shot/mesh_file.h"
+
+namespace ft::inline baker {
+namespace {
+
+constexpr double k_rim = 0.2;  ///< of a region's radius, within which its hair becomes thin
+
+/// `count` of so many, evenly.
+std::vector<std::size_t> evenly(std::size_t all, int count) {
+  const std::size_t wanted = count > 0 ? std::min(all, at(count)) : all;
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < wanted; ++k) out.push_back(k * all / wanted);
+  return out;
+}
+
+Result<HairSource> from_file(const HairSpec& spec, std::span<const Vec3> bind) {
+  HairSource out;
+  std::vector<Vec3> there(bind.begin(), bind.end());  // as the file has it
+  for (Vec3& p : there) p -= spec.position;
+  auto guides = read_guides(spec.guides, spec.scale, there);
+  if (!guides) return guides.error();
+  out.notes = std::move(guides->notes);
+  std::vector<int> solved(guides->strands.size(), -1);
+  for (const std::size_t k : evenly(guides->strands.size(), spec.count)) {
+    solved[k] = static_cast<int>(out.strands.size());
+    HairStrand& strand = out.strands.emplace_back();
+    strand.id = k;
+    strand.positions = resampled(guides->strands[k], spec.vertices);
+    for (Vec3& p : strand.positions) p += spec.position;
+    strand.width = guides->widths.empty() ? spec.width : guides->widths[k];
+  }
+  return out;
+}
+
+/// Of each vertex, how much hair it has.
+std::vector<double> weights_in_ball(const HairSpec& spec, std::span<const Vec3> body) {
+  std::vector<double> out;
+  for (const Vec3& p : body) {
+    const double outwards = (p - spec.region).norm() / spec.region_radius;
+    out.push_back(std::clamp((1 - outwards) / k_rim, 0.0, 1.0));
+  }
+  return out;
+}
+
+/// By the red of its colours, where it has any.
+std::vector<double> painted_red(const Mesh& mesh) {
+  if (mesh.groups.empty()) return std::vector<double>(mesh.positions.size(), 1.0);
+  std::vector<double> out(mesh.positions.size(), 0.0);
+  for (const VertexGroup& group : mesh.groups)
+    if (group.name == "red")
+      for (std::size_t k = 0; k < group.vertices.size(); ++k) out[at(group.vertices[k])] = group.weights[k];
+  return out;
+}
+
+Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body, std::span<const Triangle> triangles) {
+  HairSource out;
+  Mesh own;
+  std::vector<Triangle> own_triangles;
+  std::vector<double> weight;
+  PaintedRegion region{body, triangles, {}};
+  if (spec.region_mesh.empty()) {
+    weight = weights_in_ball(spec, body);
+  } else {
+    auto mesh = read_obj(spec.region_mesh);
+    if (!mesh) return mesh.error();
+    own = std::move(*mesh);
+    for (Vec3& p : own.positions) p = spec.scale * p + spec.position;
+    own_triangles = triangulate(own);
+    weight = painted_red(own);
+    region = {own.positions, own_triangles, {}};
+  }
+  region.weight = weight;
+  Growth growth = spec;
+  growth.seed = static_cast<std::uint64_t>(spec.seed_number);
+  if (spec.parting_along != Vec3::Zero()) growth.part = Parting{spec.parting_at, spec.parting_along};
+  const double area = painted_area(region);
+  if (spec.count > 0 && area > 0) growth.density = spec.count / area;
+  auto strands = grown(growth, body, triangles, region);
+  if (!strands) return strands.error();
+  const auto wanted = static_cast<std::size_t>(std::llround(area * growth.density));
+  if (strands->size() < wanted)
+    out.notes.push_back(
+        fmt::format("{} of {} guides would begin inside of the body, under another layer of it: left out",
+                    wanted - strands->size(), wanted));
+  for (GrownStrand& grown_strand : *strands) {
+    HairStrand& strand = out.strands.emplace_back();
+    strand.id = out.strands.size() - 1;
+    strand.positions = std::move(grown_strand.line);
+    strand.width = spec.width;
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp) {
+  const std::vector<Vec3> bind = bind_pose_of(scalp);
+  auto out = spec.grows() ? from_region(spec, bind, scalp.surface().triangles) : from_file(spec, bind);
+  if (!out) return out;
+  // Held to where it leaves the band; what ends in it, whole.
+  for (HairStrand& strand : out->strands)
+    for (std::size_t i = 0; i < strand.positions.size(); ++i)
+      if ((strand.positions[i] - spec.tie).norm() < spec.tie_radius) strand.held = static_cast<int>(i) + 1;
+  return out;
+}
+
+}  // namespace ft::inline baker
