@@ -15,6 +15,9 @@ constexpr double k_slow = 2e-3;
 /// Beyond its thickness and what it goes in the step, a vertex looks so much farther for what is near [m]; and no
 /// farther than the second.
 constexpr double k_look = 2e-3, k_farthest = 0.06;
+/// Where both ends of a segment are pressed so near to a body, its middle is looked at, too: a flat ridge could be in
+/// it [m].
+constexpr double k_pressed = 5e-3;
 constexpr double k_hold = 10;     ///< of what is tied, by a strand's stiffness along [1]
 constexpr int k_most_pieces = 8;  ///< of a step that does not settle
 
@@ -23,6 +26,24 @@ Vec3 vec(const double* p) {
 }
 void put(double* p, const Vec3& v) {
   p[0] = v.x(), p[1] = v.y(), p[2] = v.z();
+}
+
+/// A plane on a body at the end of the step, and the rigid motion that took it there.
+struct PlaneAfter {
+  Vec3 normal, place, from;
+  Mat3 turn;
+};
+PlaneAfter plane_after(const HairBodies& bodies, const NearSurface& surface) {
+  const Triangle& t = bodies.triangles(surface.body)[at(surface.triangle)];
+  const auto a = bodies.before(surface.body), b = bodies.after(surface.body);
+  PlaneAfter out;
+  out.turn = triangle_frame(b[at(t[0])], b[at(t[1])], b[at(t[2])]) *
+             triangle_frame(a[at(t[0])], a[at(t[1])], a[at(t[2])]).transpose();
+  out.from = out.place = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    out.from += surface.weights[k] * a[at(t[at(k)])], out.place += surface.weights[k] * b[at(t[at(k)])];
+  out.normal = out.turn * surface.normal;
+  return out;
 }
 
 /// At a share of the way from one frame to the other, or beyond.
@@ -68,41 +89,64 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
   const std::size_t n = at(n_), s = strand_of(group, lane);
   const HairMaterial& material = setup_.material;
   const StrandNow& strand = w.strands[at(lane)];
-  const double way = bodies_.way();
+  Vec3 goes_before = Vec3::Zero();  // of the vertex before: of the first one, what its root does
+  double gap_before = 1;
   for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i) {
     const Vec3& x = strand.x[i];
     // Where it would be, going on freely with its root.
     const Vec3 goes = step.roots_after[s].carry(step.roots_now[s], x) - x + step.h * strand.v[i] -
                       (x - step.roots_before[s].carry(step.roots_now[s], x));
     const double reach = material.thickness + k_look;
-    const Vec3 grown = Vec3::Constant(std::min(reach + way + goes.norm(), k_farthest));
-    find_candidates(bodies_, {x - grown, x + grown}, w.candidates);
-    if (w.candidates.empty()) continue;
+    find_candidates(bodies_, {x, x}, std::min(reach + (goes - bodies_.common()).norm(), k_farthest), w.candidates);
     NearSurface near[k_contacts];
     const int count = find_nearest(bodies_, w.candidates, x, reach, k_contacts, near, &goes);
+    const double gap_now = count > 0 ? near[0].gap : 1.0;
+    if (segment_gaps_[s * n + i] > k_least_reach)
+      add_segment_contact(group, lane, i, goes_before, goes, std::max(gap_before, gap_now) < k_pressed, w);
+    goes_before = goes, gap_before = gap_now;
     const double gap = gaps_[s * n + i];
     const double keeps = std::clamp(0.98 * gap, k_least_reach, material.thickness);
     const double shift = std::min(0.0, gap - k_least_reach);
     for (int c = 0; c < count; ++c) {
       const NearSurface& surface = near[c];
-      const Triangle& t = bodies_.triangles(surface.body)[at(surface.triangle)];
-      const auto a = bodies_.before(surface.body), b = bodies_.after(surface.body);
-      const Mat3 turn = triangle_frame(b[at(t[0])], b[at(t[1])], b[at(t[2])]) *
-                        triangle_frame(a[at(t[0])], a[at(t[1])], a[at(t[2])]).transpose();
-      Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-      for (int k = 0; k < 3; ++k)
-        from += surface.weights[k] * a[at(t[at(k)])], to += surface.weights[k] * b[at(t[at(k)])];
-      const Vec3 normal = turn * surface.normal;
+      const PlaneAfter plane = plane_after(bodies_, surface);
       HairContact<Lanes>& contact = w.contacts[k_contacts * i + at(c)];
-      set_lane(contact.normal, lane, normal);
-      contact.offset[lane] = normal.dot(to) + shift;
+      set_lane(contact.normal, lane, plane.normal);
+      contact.offset[lane] = plane.normal.dot(plane.place) + shift;
       contact.reach[lane] = keeps;
       contact.stiffness[lane] = k_stiffness * material.thickness / keeps * rods_[group].mass[i][lane];
-      set_lane(w.moved[k_contacts * i + at(c)], lane, to + turn * (x - from) - x);
+      set_lane(w.moved[k_contacts * i + at(c)], lane, plane.place + plane.turn * (x - plane.from) - x);
       contact.friction[lane] = c == 0 ? material.friction * bodies_.friction(surface.body) : 0;
       w.around.touches = true;
     }
   }
+}
+
+/// A plane for the segment before a vertex, where it is near an edge over which it could cut.
+void HairSolver::add_segment_contact(std::size_t group, int lane, std::size_t i, const Vec3& before_goes,
+                                     const Vec3& goes, bool pressed, Work& w) const {
+  const std::size_t n = at(n_), s = strand_of(group, lane);
+  const HairMaterial& material = setup_.material;
+  const Vec3 &a = w.strands[at(lane)].x[i - 1], &b = w.strands[at(lane)].x[i];
+  const auto meet = [&](int slot, const NearSurface& surface, double share) {
+    const PlaneAfter plane = plane_after(bodies_, surface);
+    const double keeps = std::clamp(0.98 * segment_gaps_[s * n + i], k_least_reach, material.thickness);
+    SegmentContact<Lanes>& contact = w.segments[k_segment_contacts * i + at(slot)];
+    set_lane(contact.normal, lane, plane.normal);
+    contact.share[lane] = share;
+    contact.offset[lane] = plane.normal.dot(plane.place);
+    contact.reach[lane] = keeps;
+    contact.stiffness[lane] = k_stiffness * material.thickness / keeps * rods_[group].mass[i][lane];
+    const Vec3 place = a + share * (b - a);
+    set_lane(w.segments_moved[k_segment_contacts * i + at(slot)], lane,
+             plane.place + plane.turn * (place - plane.from) - place);
+    w.around.touches = true;
+  };
+  if (const auto edge = find_nearest_edge(bodies_, a, b, material.thickness + k_look, &before_goes, &goes))
+    meet(0, edge->surface, edge->share);
+  NearSurface near;
+  if (pressed && find_nearest(bodies_, w.candidates, 0.5 * (a + b), material.thickness, 1, &near, &goes) > 0)
+    meet(1, near, 0.5);
 }
 
 /// Of the strands in the work, from where they are; they are where it ends after it.
@@ -114,6 +158,7 @@ RodStepReport HairSolver::run_piece(const Step& step, const Piece& piece, std::s
   w.pose.x.resize(n), w.pose.director.resize(n - 1), w.start.x.resize(n), w.start.director.resize(n - 1);
   w.around.pull.assign(n, Lanes{}), w.around.goal.resize(n), w.tension.resize(n);
   w.around.contacts = w.contacts;
+  w.around.segments = w.segments;
   w.around.friction_speed_way = k_slow * h;
   for (int lane = 0; lane < k_lanes; ++lane) {
     const StrandNow& strand = w.strands[at(lane)];
@@ -157,6 +202,10 @@ RodStepReport HairSolver::run_piece(const Step& step, const Piece& piece, std::s
         contact.offset[lane] -= (1 - piece.to) * moved.dot(normal);
         set_lane(contact.carried, lane, x + (piece.to - piece.from) * moved);
       }
+      for (std::size_t c = k_segment_contacts * i; c < k_segment_contacts * (i + 1); ++c) {
+        SegmentContact<Lanes>& segment = w.around.segments[c];
+        segment.offset[lane] -= (1 - piece.to) * lane_of(w.segments_moved[c], lane).dot(lane_of(segment.normal, lane));
+      }
     }
     const Mat3 turn = after.turn * now.turn.transpose();
     for (std::size_t j = 0; j + 1 < n; ++j) {
@@ -185,6 +234,8 @@ void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
   load(step, g, w);
   w.contacts.assign(at(k_contacts * n_), HairContact<Lanes>());
   w.moved.assign(at(k_contacts * n_), V3<Lanes>());
+  w.segments.assign(at(k_segment_contacts * n_), SegmentContact<Lanes>());
+  w.segments_moved.assign(at(k_segment_contacts * n_), V3<Lanes>());
   w.around.touches = false;
   for (int lane = 0; lane < k_lanes; ++lane) add_contacts(step, g, lane, w);
   RodStepReport report = run_piece(step, {.h = step.h, .first = step.first}, g, w);

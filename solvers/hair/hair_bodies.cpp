@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/check/penetration.h"
+#include "collision/geometry/pair_geometry.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -25,11 +26,12 @@ Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-HairBodies::HairBodies(std::span<const HairBody> bodies) : given_(bodies), bodies_(bodies.size()) {
+HairBodies::HairBodies(std::span<const HairBody> bodies, double segment) : given_(bodies), bodies_(bodies.size()) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::vector<Vec3> bind = bind_pose_of(*given_[b].trajectory);
     bodies_[b].triangles = given_[b].trajectory->surface().triangles;
-    bodies_[b].tree = TriangleTree(bind, bodies_[b].triangles);
+    bodies_[b].tree = MovingTree(TriangleTree(bind, bodies_[b].triangles));
+    bodies_[b].edges = SharpEdges(bind, bodies_[b].triangles, segment, given_[b].sheet);
     bodies_[b].before = bodies_[b].after = bind;
     if (!given_[b].sheet) bodies_[b].surface.emplace(bind, bodies_[b].triangles, std::vector<int>(bind.size(), 0), 1);
   }
@@ -40,13 +42,20 @@ void HairBodies::start_at(double time) {
   advance();
 }
 
-void HairBodies::end_at(double time) {
+void HairBodies::end_at(double time, const Vec3& common) {
+  common_ = common;
   double squared = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     Body& body = bodies_[b];
     given_[b].trajectory->sample(time, body.after);
-    for (std::size_t v = 0; v < body.after.size(); ++v)
-      squared = std::max(squared, (body.after[v] - body.before[v]).squaredNorm());
+    ways_.resize(body.after.size());
+    for (std::size_t v = 0; v < body.after.size(); ++v) {
+      const Vec3 goes = body.after[v] - body.before[v];
+      squared = std::max(squared, goes.squaredNorm());
+      ways_[v] = (goes - common).squaredNorm();
+    }
+    body.tree.set_ways(ways_, body.triangles);
+    body.edges.tree().set_ways(ways_, body.triangles);
   }
   way_ = std::sqrt(squared);
 }
@@ -55,6 +64,7 @@ void HairBodies::advance() {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::swap(bodies_[b].before, bodies_[b].after);
     bodies_[b].tree.refit(bodies_[b].before, triangles(static_cast<int>(b)));
+    bodies_[b].edges.tree().refit(bodies_[b].before, triangles(static_cast<int>(b)));
   }
 }
 
@@ -67,13 +77,13 @@ bool HairBodies::inside(int body, const Vec3& point, const TriangleTree::Hit& hi
   normal = answer->normal;
   if (answer->distance >= 0) return false;
   return answer->distance > -k_deep || !own.surface->closed(0) ||
-         rays_say_inside(point, own.tree, own.before, own.triangles);
+         rays_say_inside(point, own.tree.tree(), own.before, own.triangles);
 }
 
-void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::pair<int, int>>& out) {
+void find_candidates(const HairBodies& bodies, const Box& box, double reach, std::vector<std::pair<int, int>>& out) {
   out.clear();
   for (int b = 0; b < bodies.count(); ++b)
-    bodies.tree(b).for_each_near(TreeBox::around(box.lo, box.hi), [&](int t) { out.emplace_back(b, t); });
+    bodies.tree(b).for_each_within(box.lo, box.hi, reach, [&](int t) { out.emplace_back(b, t); });
 }
 
 int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> candidates, const Vec3& point,
@@ -122,6 +132,48 @@ int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> 
     out[count++] = near;
   }
   return count;
+}
+
+std::optional<NearEdge> find_nearest_edge(const HairBodies& bodies, const Vec3& a, const Vec3& b, double least_reach,
+                                          const Vec3* a_goes, const Vec3* b_goes) {
+  /// Nearer to an end than this share of the segment, the end's own contacts do.
+  constexpr double k_end = 0.03;
+  const double beside = a_goes ? std::max((*a_goes - bodies.common()).norm(), (*b_goes - bodies.common()).norm()) : 0.0;
+  const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
+  std::optional<NearEdge> out;
+  double least = std::numeric_limits<double>::infinity();
+  for (int body = 0; body < bodies.count(); ++body) {
+    const auto x = bodies.before(body), after = bodies.after(body);
+    bodies.edges(body).for_each_within(low, high, least_reach + beside, [&](int t, int k) {
+      const Triangle& corner = bodies.triangles(body)[at(t)];
+      const int from = corner[at(k)], to = corner[at((k + 1) % 3)];
+      double reach = least_reach;
+      if (a_goes) {
+        const Vec3 goes = after[at(from)] - x[at(from)];
+        reach += std::max((*a_goes - goes).norm(), (*b_goes - goes).norm());
+      }
+      // The box first: most edges are far away.
+      const Vec3 lo = x[at(from)].cwiseMin(x[at(to)]), hi = x[at(from)].cwiseMax(x[at(to)]);
+      const double most = std::min(reach, least);
+      if ((lo - high).cwiseMax(low - hi).cwiseMax(0.0).squaredNorm() > most * most) return;
+      const PairGeometry pair = edge_edge_geometry(a, b, x[at(from)], x[at(to)]);
+      const double share = pair.weight[1];
+      if (!(pair.distance > 1e-7 && pair.distance < most) || share < k_end || share > 1 - k_end) return;
+      least = pair.distance;
+      NearEdge found{{body, t, Vec3::Zero(), pair.normal, pair.distance}, share};
+      found.surface.weights[k] = -pair.weight[2], found.surface.weights[(k + 1) % 3] = -pair.weight[3];
+      out = found;
+    });
+  }
+  if (!out || bodies.sheet(out->surface.body)) return out;
+  // Whether the segment has got inside there.
+  const Vec3 place = a + out->share * (b - a);
+  thread_local std::vector<std::pair<int, int>> candidates;
+  find_candidates(bodies, {place, place}, least, candidates);
+  std::erase_if(candidates, [&](const auto& c) { return c.first != out->surface.body; });
+  NearSurface near;
+  if (find_nearest(bodies, candidates, place, 1.001 * least, 1, &near) > 0 && near.gap < 0) out->surface = near;
+  return out;
 }
 
 }  // namespace ft::inline solvers

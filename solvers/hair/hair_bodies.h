@@ -8,18 +8,19 @@
 #include "collision/body/part_distance.h"
 #include "collision/geometry/triangle_tree.h"
 #include "solvers/hair/hair_setup.h"
+#include "solvers/hair/sharp_edges.h"
 
 namespace ft::inline solvers {
 
 class HairBodies {
  public:
-  /// bodies have to stay.
-  explicit HairBodies(std::span<const HairBody> bodies);
+  /// bodies have to stay. segment: length of strands' segments [m].
+  HairBodies(std::span<const HairBody> bodies, double segment);
 
   /// Where all are at a time [s], as the start of the step that comes.
   void start_at(double time);
-  /// The end of the step.
-  void end_at(double time);
+  /// The end of the step. common: the motion in it that most of what is asked for shares, as of a head [m].
+  void end_at(double time, const Vec3& common = Vec3::Zero());
   /// The end becomes the start of the next step.
   void advance();
 
@@ -30,7 +31,10 @@ class HairBodies {
   std::span<const Vec3> before(int body) const { return bodies_[at(body)].before; }
   std::span<const Vec3> after(int body) const { return bodies_[at(body)].after; }
   /// Over the triangles at the start.
-  const TriangleTree& tree(int body) const { return bodies_[at(body)].tree; }
+  const MovingTree& tree(int body) const { return bodies_[at(body)].tree; }
+  const Vec3& common() const { return common_; }
+  /// At the start.
+  const SharpEdges& edges(int body) const { return bodies_[at(body)].edges; }
   /// Whether a point, whose closest one on a body is known, is inside; and the normal there, outwards. A body's own
   /// folds, where the closest triangle tells the wrong side, are asked by rays.
   bool inside(int body, const Vec3& point, const TriangleTree::Hit& hit, Vec3& normal) const;
@@ -41,12 +45,15 @@ class HairBodies {
   struct Body {
     std::vector<Vec3> before, after;
     std::span<const Triangle> triangles;
-    TriangleTree tree;
+    MovingTree tree;
+    SharpEdges edges;
     std::optional<PartSurface> surface;  ///< as one part; of sheets, none
   };
   std::span<const HairBody> given_;
   std::vector<Body> bodies_;
+  Vec3 common_ = Vec3::Zero();
   double way_ = 0;
+  std::vector<double> ways_;  ///< scratch
 };
 
 /// A point near a body as the start of a step has it.
@@ -63,7 +70,17 @@ struct NearSurface {
 int find_nearest(const HairBodies& bodies, std::span<const std::pair<int, int>> candidates, const Vec3& point,
                  double reach, int most, NearSurface* out, const Vec3* goes = nullptr);
 
-/// Pairs of body and triangle: all whose boxes at the start meet a box, in any order.
-void find_candidates(const HairBodies& bodies, const Box& box, std::vector<std::pair<int, int>>& out);
+/// Pairs of body and triangle, in any order: all that are within reach of a box at the start, or may get there.
+void find_candidates(const HairBodies& bodies, const Box& box, double reach, std::vector<std::pair<int, int>>& out);
+
+/// Where a segment of a strand is nearest to a sharp edge of a body, between its ends.
+struct NearEdge {
+  NearSurface surface;  ///< of the place on the edge; its gap may be below 0: the segment is inside there
+  double share = 0;     ///< of the segment, from its first end
+};
+
+/// The nearest one within reach and, where the ends go somewhere in the step, what they go beside the body there.
+std::optional<NearEdge> find_nearest_edge(const HairBodies& bodies, const Vec3& a, const Vec3& b, double least_reach,
+                                          const Vec3* a_goes = nullptr, const Vec3* b_goes = nullptr);
 
 }  // namespace ft::inline solvers

@@ -47,8 +47,7 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
       if (!out.finite) continue;
       Box box;
       for (std::size_t i = 2; i < n; ++i) box.include(x[s * n + i]);
-      box.inflate(1e-3);
-      find_candidates(bodies_, box, candidates);
+      find_candidates(bodies_, box, 1e-3, candidates);
       if (candidates.empty()) continue;
       const auto depth = [&](const Vec3& p) {
         NearSurface near;
@@ -62,9 +61,12 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
           ++out.inside;
           inside[s] = 1;
           out.deepest = std::max(out.deepest, deep);
-        } else if (i > 2 && gaps_[k] > 0 && gaps_[k - 1] > 0 && depth(0.5 * (x[k] + x[k - 1])) > k_segment_inside) {
+        } else if (i > 2 && gaps_[k] > 0 && gaps_[k - 1] > 0 && segment_gaps_[k] > 0) {
+          const double middle = depth(0.5 * (x[k] + x[k - 1]));
+          if (!(middle > k_segment_inside)) continue;
           ++out.segments;
           inside[s] = 1;
+          out.deepest = std::max(out.deepest, middle);
         }
       }
     }

@@ -38,6 +38,8 @@ struct HairSolver::Work {
   RodSurroundings<Lanes> around;
   std::vector<HairContact<Lanes>> contacts;  ///< of the whole step
   std::vector<V3<Lanes>> moved;              ///< how far each of their places goes in it [m]
+  std::vector<SegmentContact<Lanes>> segments;
+  std::vector<V3<Lanes>> segments_moved;
   RodStrains<Lanes> since;
   std::vector<Lanes> tension;
   std::vector<std::pair<int, int>> candidates;

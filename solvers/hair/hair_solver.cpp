@@ -27,6 +27,22 @@ constexpr double k_root_off = 0.05;
 /// Neighbours of a stiffened strand are stiffened with it within so far of its root, fading outwards. Guessed [m].
 constexpr double k_alike = 0.02;
 
+/// What roots go in the mean [m].
+Vec3 common_way(std::span<const RootFrame> now, std::span<const RootFrame> after) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t s = 0; s < now.size(); ++s) sum += after[s].place - now[s].place;
+  return sum / static_cast<double>(now.size());
+}
+
+/// Length [m].
+double mean_segment(const HairSetup& setup) {
+  double sum = 0, count = 0;
+  for (const HairStrand& strand : setup.strands)
+    for (std::size_t i = 1; i < strand.positions.size(); ++i, ++count)
+      sum += (strand.positions[i] - strand.positions[i - 1]).norm();
+  return sum / count;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
@@ -61,7 +77,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
   return solver;
 }
 
-HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies) {
+HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies, mean_segment(setup_)) {
   n_ = static_cast<int>(setup_.strands[0].positions.size()) + 1;
   roots_ = std::make_unique<HairRoots>(*setup_.scalp, setup_.strands);
   shape_ = curves_of(setup_);
@@ -88,16 +104,20 @@ HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setu
 void HairSolver::measure_gaps() {
   const std::size_t n = at(n_), count = setup_.strands.size();
   gaps_.assign(count * n, 1.0);
+  segment_gaps_.assign(count * n, 1.0);
   const double reach = 4 * setup_.material.thickness;
   parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<int, int>> candidates;
     for (std::size_t s = begin; s < end; ++s) {
-      Box box = bounds(groom_[s]);
-      box.inflate(reach);
-      find_candidates(bodies_, box, candidates);
+      find_candidates(bodies_, bounds(groom_[s]), reach, candidates);
       for (std::size_t i = 1; i < n; ++i) {
         NearSurface near;
         if (find_nearest(bodies_, candidates, groom_[s][i], reach, 1, &near) > 0) gaps_[s * n + i] = near.gap;
+        if (i < 2) continue;
+        if (const auto edge = find_nearest_edge(bodies_, groom_[s][i - 1], groom_[s][i], reach))
+          segment_gaps_[s * n + i] = edge->surface.gap;
+        if (find_nearest(bodies_, candidates, 0.5 * (groom_[s][i - 1] + groom_[s][i]), reach, 1, &near) > 0)
+          segment_gaps_[s * n + i] = std::min(segment_gaps_[s * n + i], near.gap);
       }
     }
   });
@@ -139,7 +159,10 @@ CombedInside HairSolver::combed_inside() const {
   for (std::size_t s = 0; s < setup_.strands.size(); ++s)
     for (std::size_t i = at(setup_.strands[s].held) + 1; i < at(n_); ++i) {
       const double gap = gaps_[s * at(n_) + i];
-      if (gap >= 0) continue;
+      if (gap >= 0) {
+        out.segments += segment_gaps_[s * at(n_) + i] < 0 ? 1 : 0;
+        continue;
+      }
       ++out.vertices;
       out.deepest = std::max(out.deepest, -gap);
     }
@@ -275,8 +298,8 @@ FrameReport HairSolver::advance_frame(State& state) {
   std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0);
   for (int k = 0; k < steps; ++k) {
     const double end = k + 1 == steps ? t1 : t0 + h * (k + 1);
-    bodies_.end_at(end);
     roots_at(end, after);
+    bodies_.end_at(end, common_way(now, after));
     Step step;
     step.h = h;
     step.first = k == 0 && !goes_on;

@@ -2,10 +2,10 @@
 // in a scalp. One-way: nobody feels them.
 //
 // A frame is a number of equal steps, so many that no body goes farther than some millimetres in one. In a step, what
-// is near each vertex at its start becomes up to three planes of the body as it is at its end (hair_contact.h); four
-// strands at a time are then solved by Newton's method (rod_step.h). BDF2, which keeps swings; a step that differs from
-// the one before it begins anew with implicit Euler. What does not settle is done again in 2, 4 or 8 pieces. The groom
-// is the equilibrium: rest_shape.h.
+// is near each vertex at its start becomes up to three planes of the body as it is at its end, and what is near each
+// segment to two (rod_step.h); four strands at a time are then solved by Newton's method (rod_step.h). BDF2, which
+// keeps swings; a step that differs from the one before it begins anew with implicit Euler. What does not settle is
+// done again in 2, 4 or 8 pieces. The groom is the equilibrium: rest_shape.h.
 //
 // Drag is towards the motion of the root, as the difference formula of the step has it at the step's end, so that hair
 // that falls together with its head is not braked; and towards the air by the square of the speed.
@@ -24,10 +24,10 @@ namespace ft::inline solvers {
 
 struct StrandNow;
 
-/// Vertices that are inside of what they meet as they were combed, and may stay as deep.
+/// What is inside of what it meets as it was combed, and may stay as deep.
 struct CombedInside {
-  int vertices = 0;
-  double deepest = 0;  ///< m
+  int vertices = 0, segments = 0;  ///< segments: their middles, of those whose ends are outside
+  double deepest = 0;              ///< m
 };
 
 /// Blocks of its states, of all strands in the setup's order, with the ghost vertex first: "x" and "v" now, "x_before"
@@ -72,6 +72,8 @@ class HairSolver final : public Solver {
   void load(const Step& step, std::size_t group, Work& work) const;
   void store(const Step& step, std::size_t group, int lane, const StrandNow& now) const;
   void add_contacts(const Step& step, std::size_t group, int lane, Work& work) const;
+  void add_segment_contact(std::size_t group, int lane, std::size_t vertex, const Vec3& before_goes, const Vec3& goes,
+                           bool pressed, Work& work) const;
   RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
   void certify(const State& state, FrameReport& report) const;
 
@@ -83,6 +85,7 @@ class HairSolver final : public Solver {
   std::vector<std::vector<Vec3>> groom_;  ///< of each strand, with its ghost, in the bind pose [m]
   std::vector<Vec3> directors_;           ///< of all strands' edges, in the bind pose
   std::vector<double> gaps_;              ///< of each vertex as combed, to what it meets [m]
+  std::vector<double> segment_gaps_;  ///< of the segment before each vertex, to sharp edges of it, or of its middle [m]
   std::vector<double> lengths_, stiffened_;
   SystemShape shape_;
 };

@@ -39,10 +39,36 @@ void contact_force(const T& gap, const T& reach, const T& stiffness, T& force, T
   energy = choose(away, T{}, energy);
 }
 
+template <class T>
+T RodStep<T>::contacts_of_segments(const RodSurroundings<T>& around, const RodPose<T>& pose, bool derivatives) {
+  T sum{};
+  for (std::size_t c = 2 * k_segment_contacts; c < around.segments.size(); ++c) {
+    const SegmentContact<T>& k = around.segments[c];
+    const std::size_t i = c / k_segment_contacts;
+    if (!(largest_lane(k.reach) > 0)) continue;
+    T force, slope, energy;
+    const T gap = dot(k.normal, pose.x[i - 1] + k.share * (pose.x[i] - pose.x[i - 1])) - k.offset;
+    contact_force(gap, k.reach, k.stiffness, force, slope, energy);
+    sum += energy;
+    if (!derivatives) continue;
+    const T share[2] = {T(1.0 - k.share), k.share}, n3[3] = {k.normal.x, k.normal.y, k.normal.z};
+    const std::size_t row = 4 * i - 4;
+    for (std::size_t p = 0; p < 2; ++p)
+      for (std::size_t a = 0; a < 3; ++a) {
+        gradient_[row + 4 * p + a] -= share[p] * force * n3[a];
+        for (std::size_t q = 0; q <= p; ++q)
+          for (std::size_t b = 0; b < (p == q ? a + 1 : 3); ++b)
+            hessian_(static_cast<int>(row + 4 * p + a), static_cast<int>(row + 4 * q + b)) +=
+                slope * share[p] * share[q] * n3[a] * n3[b];
+      }
+  }
+  return sum;
+}
+
 /// Adds pulls and contacts to the gradient and the Hessian; returns their energy.
 template <class T>
 T RodStep<T>::surroundings(const RodSurroundings<T>& around, const RodPose<T>& pose, bool derivatives) {
-  T sum{};
+  T sum = around.touches ? contacts_of_segments(around, pose, derivatives) : T{};
   const std::size_t n = pose.x.size();
   for (std::size_t i = 2; i < n; ++i) {
     const V3<T> off = pose.x[i] - around.goal[i];

@@ -22,22 +22,31 @@ struct HairContact {
   T friction{};   ///< Coulomb [1]
   T drag{};       ///< scratch: friction's stiffness across, frozen [N/m]
 };
+/// The same for a point of a segment, without friction.
+template <class T>
+struct SegmentContact {
+  V3<T> normal;
+  T share{};  ///< where on the segment, from its first end [1]
+  T offset{}, reach{}, stiffness{};
+};
 /// Force along the normal [N], its slope, positive [N/m], and its energy [J], at a gap d below the reach r: k (r - d)
 /// down to r/2, k r^2 / (4 d) down to r/8, so that what presses harder is held nearer but out, and straight on from
 /// there, so that what is inside is pushed out.
 template <class T>
 void contact_force(const T& gap, const T& reach, const T& stiffness, T& force, T& slope, T& energy);
 
-inline constexpr int k_contacts = 3;  ///< of a vertex, at most
+inline constexpr int k_contacts = 3;          ///< of a vertex, at most
+inline constexpr int k_segment_contacts = 2;  ///< of a segment
 
 /// What is around four strands in a step.
 template <class T>
 struct RodSurroundings {
-  std::vector<T> pull;                   ///< of inertia, drag and gravity together: pull/2 |x - goal|^2 [N/m]
-  std::vector<V3<T>> goal;               ///< m
-  std::vector<HairContact<T>> contacts;  ///< k_contacts for each vertex; empty: none
-  bool touches = false;                  ///< whether any is there
-  double friction_speed_way = 0;         ///< way in the step below which friction is viscous [m]
+  std::vector<T> pull;                      ///< of inertia, drag and gravity together: pull/2 |x - goal|^2 [N/m]
+  std::vector<V3<T>> goal;                  ///< m
+  std::vector<HairContact<T>> contacts;     ///< k_contacts for each vertex; empty: none
+  std::vector<SegmentContact<T>> segments;  ///< k_segment_contacts for each vertex: of the segment before it
+  bool touches = false;                     ///< whether any is there
+  double friction_speed_way = 0;            ///< way in the step below which friction is viscous [m]
 };
 
 struct RodStepReport {
@@ -57,6 +66,7 @@ class RodStep {
   int most_iterations = 40;
 
  private:
+  T contacts_of_segments(const RodSurroundings<T>& around, const RodPose<T>& pose, bool derivatives);
   T surroundings(const RodSurroundings<T>& around, const RodPose<T>& pose, bool derivatives);
   void freeze_friction(RodSurroundings<T>& around, const RodPose<T>& pose) const;
   void assemble(const Rod<T>& rod, const RodSurroundings<T>& around, const RodStrains<T>& since, double damping,

@@ -29,6 +29,8 @@ constexpr double k_layer_rise = 0.06;  ///< after which length a strand is in it
 constexpr double k_part_reach = 0.05;  ///< how far from a parting it is felt [m]
 constexpr double k_part_pull = 2.5;    ///< of a parting at its line, beside the comb [1]
 constexpr double k_jitter = 0.12;      ///< by which directions at the root differ [1]
+constexpr double k_chord_gap = 3e-4;   ///< of middles of segments to the body [m]
+constexpr int k_rounds = 6;            ///< of pushing them out
 constexpr double k_clump_pull = 0.8;   ///< of the way to its lock's middle, at the tip [1]
 
 /// Numbers of a strand: its own, whatever others do.
@@ -176,8 +178,25 @@ class Grower {
     }
     line = resampled(cut_to(line, length), g_.vertices);
     // Chords of coarse strands cut through what the fine ones go round.
-    for (std::size_t s = 1; s < line.size(); ++s) line[s] = outside_.out(line[s], k_strand_gap).place;
+    push_out(line);
+    for (int round = 0; round < k_rounds && push_chords_out(line); ++round) push_out(line);
     return line;
+  }
+
+  void push_out(std::vector<Vec3>& line) const {
+    for (std::size_t s = 1; s < line.size(); ++s) line[s] = outside_.out(line[s], k_strand_gap).place;
+  }
+  /// Whether any had to be.
+  bool push_chords_out(std::vector<Vec3>& line) const {
+    bool cuts = false;
+    for (std::size_t s = 1; s < line.size(); ++s) {
+      const Vec3 middle = 0.5 * (line[s - 1] + line[s]), off = outside_.out(middle, k_chord_gap).place - middle;
+      if (off.isZero(0)) continue;
+      cuts = true;
+      line[s] += off;
+      if (s > 1) line[s - 1] += off;
+    }
+    return cuts;
   }
 
   /// A helix about the line. The strands of a lock wind together.

@@ -33,9 +33,11 @@ void add_notes(const HairSpec& spec, std::size_t scalp, const HairGroup& group, 
         fmt::format("{} of {} strands could not stand as they are combed, or grow beside one that could not: they are "
                     "stiffer, up to {:.2g} times",
                     stiffer, stiff.size(), *std::max_element(stiff.begin(), stiff.end())));
-  if (const CombedInside inside = solver.combed_inside(); inside.vertices > 0)
-    note(fmt::format("{} vertices are combed up to {:.1f} mm inside of what it meets, and may stay as deep",
-                     inside.vertices, 1e3 * inside.deepest));
+  if (const CombedInside inside = solver.combed_inside(); inside.vertices + inside.segments > 0)
+    note(fmt::format(
+        "{} vertices are combed up to {:.1f} mm inside of what it meets, and {} segments between vertices cut "
+        "through it: they may stay so",
+        inside.vertices, 1e3 * inside.deepest, inside.segments));
   if (solver.farthest_root() > k_root_off)
     note(
         fmt::format("roots are up to {:.1f} mm off the surface, and keep that distance", 1e3 * solver.farthest_root()));
