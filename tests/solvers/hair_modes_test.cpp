@@ -1,5 +1,6 @@
 // How fast strands swing, through the solver: a clamped beam and a heavy chain in their first modes, against their
 // closed forms. Amplitudes are small, nothing is lost to drag or damping, and nothing is met.
+#include "baker/core/parallel.h"
 #include "baker/core/state_points.h"
 #include "tests/solvers/hair_scenes.h"
 #include "tests/solvers/rods.h"
@@ -26,6 +27,7 @@ HairSetup straight_down(double length, int vertices, double fps) {
 /// `speed` at the tip [m/s]. Returns by how many oscillations a second the strand's part in that mode swings, in the
 /// mean of so many of them [Hz].
 double frequency(const HairSetup& setup, const std::function<double(double)>& mode, double speed, int oscillations) {
+  const ThreadLimit limit(1);  // one strand is no work for two
   const auto solver = solver_of(setup);
   EXPECT_EQ(solver->stiffened()[0], 1);
   State state = solver->initial_state();
