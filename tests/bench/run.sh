@@ -4,26 +4,28 @@
 #   tests/bench/run.sh torture NAME|all [--frames N] [--obj FOLDER]
 #   tests/bench/run.sh size [--frames N] [CELLS ...]
 #   tests/bench/run.sh rumba_dress [--keep FOLDER] [-- BAKE ARGUMENTS]
+#   tests/bench/run.sh hair [--threads N] [--keep FOLDER] [-- BAKE ARGUMENTS]
 #   tests/bench/run.sh jumps SHOT.toml [POSES A SECOND] [MILLIMETRES]
 # SCENE     S1 (a square of N x N vertices on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
 # torture   the scenes of tests/support/torture, without a peer, each for at most FOLLOWTHROUGH_TORTURE_SECONDS (600)
 # size      what S1 costs as N grows, without a peer: 50, 100, 200 and 400
 # rumba_dress  samples/sewn_dress, sewn and danced, without a peer; then the dress in its authors' fabric beside their drape
+# hair      200 strands of 32 vertices on a head that stands still for two seconds, then turns to and fro; three times in turn
 # jumps     where the feasible collider of a shot moves by more than 4 mm against the drawn body within 2 ms
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
 # Every clip of every character: tests/bench/sweep.sh.
-# Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH). The last line is "RESULT scene=.. n=.. ...".
+# Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH), but for hair. The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
   size | jumps) shift ;;
   torture) [ $# -ge 2 ] || { usage >&2; exit 2; }; shift ;;
-  S1 | S2 | rumba_dress) shift ;;
+  S1 | S2 | rumba_dress | hair) shift ;;
   *) usage >&2; exit 2 ;;
 esac
 
@@ -67,12 +69,13 @@ done
 bench=${FOLLOWTHROUGH_BENCH:-$root/../shared/bench}
 tools=(followthrough case_tool)
 [ "$scene" != rumba_dress ] || tools+=(test_baker)
-[ -f "$bench/judge.cpp" ] || fail "the scenes and the judge are not at $bench; set FOLLOWTHROUGH_BENCH"
+[ "$scene" != hair ] || tools=(followthrough hair_tool)
+[ "$scene" = hair ] || [ -f "$bench/judge.cpp" ] || fail "the scenes and the judge are not at $bench; set FOLLOWTHROUGH_BENCH"
 # shellcheck disable=SC2086
 install_packages $packages_build $packages_tests $packages_bench
 build release "${tools[@]}"
 bin=$root/build/release/bin
-if [ ! -x "$bin/judge" ] || [ "$bench/judge.cpp" -nt "$bin/judge" ]; then
+if [ "$scene" != hair ] && { [ ! -x "$bin/judge" ] || [ "$bench/judge.cpp" -nt "$bin/judge" ]; }; then
   g++ -O2 -o "$bin/judge" "$bench/judge.cpp"
 fi
 if [ -n "$keep" ]; then
@@ -104,6 +107,25 @@ if [ "$scene" = rumba_dress ]; then
   "$bin/test_baker" --gtest_filter='SewnDress.*' | grep -E '^[a-z_0-9]+ [0-9.-]+$|Failure|FAILED|PASSED|SKIPPED' || failed=1
   "$bin/case_tool" result-alone "$scene" 15656 "$work/bake/report.json" "$our_cpu" "$work/judge_feasible.txt" "$work/check.json"
   exit $failed
+fi
+
+if [ "$scene" = hair ]; then
+  "$bin/hair_tool" scene "$work/scene"
+  rounds=()
+  for k in 1 2 3; do
+    round=$work/round$k
+    rounds+=("$round")
+    rm -rf "$round"
+    mkdir -p "$round"
+    say "Round $k of 3: Blender's hair dynamics, and ours"
+    blender -b --factory-startup -P "$root/tests/bench/hair_peer.py" -- "$work/scene" "$round" >"$round/peer.log" 2>&1 || true
+    grep RESULT "$round/peer.log" || { tail -20 "$round/peer.log" >&2; fail "Blender gave no result (see above)"; }
+    bake "$work/scene/shot.toml"
+    mv "$work/bake" "$round/bake"
+    echo "$our_cpu" >"$round/cpu.txt"
+  done
+  "$bin/hair_tool" result "${rounds[@]}"
+  exit
 fi
 
 case $scene in
