@@ -80,6 +80,20 @@ bool HairBodies::inside(int body, const Vec3& point, const TriangleTree::Hit& hi
          rays_say_inside(point, own.tree.tree(), own.before, own.triangles);
 }
 
+double HairBodies::depth(const Vec3& point, double look) const {
+  double out = -look;
+  for (int b = 0; b < count(); ++b) {
+    TriangleTree::Hit hit;
+    hit.closest.squared_distance = look * look;
+    tree(b).tree().closest(point, before(b), triangles(b), hit);
+    if (hit.triangle < 0) continue;
+    Vec3 normal;
+    const double distance = std::sqrt(hit.closest.squared_distance);
+    out = std::max(out, inside(b, point, hit, normal) ? distance : -distance);
+  }
+  return out;
+}
+
 void find_candidates(const HairBodies& bodies, const Box& box, double reach, std::vector<std::pair<int, int>>& out) {
   out.clear();
   for (int b = 0; b < bodies.count(); ++b)

@@ -38,6 +38,8 @@ class HairBodies {
   /// Whether a point, whose closest one on a body is known, is inside; and the normal there, outwards. A body's own
   /// folds, where the closest triangle tells the wrong side, are asked by rays.
   bool inside(int body, const Vec3& point, const TriangleTree::Hit& hit, Vec3& normal) const;
+  /// How far a point is inside of the body that it is deepest in, at the start; below 0: it is outside of all [m].
+  double depth(const Vec3& point, double look) const;
   /// The farthest that a vertex of any body goes in the step [m].
   double way() const { return way_; }
 

@@ -34,7 +34,6 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
   std::vector<int> inside(count, 0);
   const Tally sum = parallel_sum(count, 16, Tally(), [&](std::size_t begin, std::size_t end) {
     Tally out;
-    std::vector<std::pair<int, int>> candidates;
     for (std::size_t s = begin; s < end; ++s) {
       double length = 0;
       for (std::size_t i = 1; i < n; ++i) {
@@ -45,14 +44,7 @@ void HairSolver::certify(const State& state, FrameReport& report) const {
       }
       off[s] = std::abs(length / lengths_[s] - 1);
       if (!out.finite) continue;
-      Box box;
-      for (std::size_t i = 2; i < n; ++i) box.include(x[s * n + i]);
-      find_candidates(bodies_, box, 1e-3, candidates);
-      if (candidates.empty()) continue;
-      const auto depth = [&](const Vec3& p) {
-        NearSurface near;
-        return find_nearest(bodies_, candidates, p, k_look, 1, &near) > 0 ? -near.gap : -k_look;
-      };
+      const auto depth = [&](const Vec3& p) { return bodies_.depth(p, k_look); };
       for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i) {
         const std::size_t k = s * n + i;
         const double combed = std::max(0.0, -gaps_[k] + k_least_reach);
