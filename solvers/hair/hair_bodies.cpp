@@ -80,18 +80,34 @@ bool HairBodies::inside(int body, const Vec3& point, const TriangleTree::Hit& hi
          rays_say_inside(point, own.tree.tree(), own.before, own.triangles);
 }
 
-double HairBodies::depth(const Vec3& point, double look) const {
-  double out = -look;
+bool HairBodies::rays_inside(const Vec3& point) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+    return body.surface && body.surface->closed(0) &&
+           rays_say_inside(point, body.tree.tree(), body.before, body.triangles);
+  });
+}
+
+std::optional<HairBodies::Nearest> HairBodies::nearest(const Vec3& point, double look) const {
+  std::optional<Nearest> out;
   for (int b = 0; b < count(); ++b) {
     TriangleTree::Hit hit;
     hit.closest.squared_distance = look * look;
     tree(b).tree().closest(point, before(b), triangles(b), hit);
     if (hit.triangle < 0) continue;
-    Vec3 normal;
+    Nearest near;
     const double distance = std::sqrt(hit.closest.squared_distance);
-    out = std::max(out, inside(b, point, hit, normal) ? distance : -distance);
+    const bool is_inside = inside(b, point, hit, near.normal);
+    near.gap = is_inside ? -distance : distance;
+    near.place = hit.closest.point;
+    if (distance > 1e-7) near.normal = (is_inside ? -1 : 1) / distance * (point - near.place);
+    if (!out || near.gap < out->gap) out = near;
   }
   return out;
+}
+
+double HairBodies::depth(const Vec3& point, double look) const {
+  const auto near = nearest(point, look);
+  return near ? -near->gap : -look;
 }
 
 void find_candidates(const HairBodies& bodies, const Box& box, double reach, std::vector<std::pair<int, int>>& out) {

@@ -38,7 +38,16 @@ class HairBodies {
   /// Whether a point, whose closest one on a body is known, is inside; and the normal there, outwards. A body's own
   /// folds, where the closest triangle tells the wrong side, are asked by rays.
   bool inside(int body, const Vec3& point, const TriangleTree::Hit& hit, Vec3& normal) const;
-  /// How far a point is inside of the body that it is deepest in, at the start; below 0: it is outside of all [m].
+  /// By rays alone: also where a body is inside of itself, as an arm in a trunk, and the nearest surface says nothing.
+  bool rays_inside(const Vec3& point) const;
+  struct Nearest {
+    Vec3 place = Vec3::Zero(), normal = Vec3::UnitY();  ///< of the body there, outwards
+    double gap = 0;                                     ///< below 0: inside [m]
+  };
+  /// Of all bodies at the start what is nearest to a point within a distance, or what the point is deepest in.
+  std::optional<Nearest> nearest(const Vec3& point, double look) const;
+  /// How far a point is inside of the body that it is deepest in, at the start; below 0: it is
+  /// outside of all, and how far, at most `look` [m].
   double depth(const Vec3& point, double look) const;
   /// The farthest that a vertex of any body goes in the step [m].
   double way() const { return way_; }

@@ -7,12 +7,11 @@
 
 namespace ft::inline solvers {
 
-HairRoots::HairRoots(const Trajectory& scalp, std::span<const HairStrand> strands) {
+HairRoots::HairRoots(const Trajectory& scalp, std::span<const Vec3> roots) {
   const std::vector<Vec3> bind = bind_pose_of(scalp);
   const auto& triangles = scalp.surface().triangles;
   const TriangleTree tree(bind, triangles);
-  for (const HairStrand& strand : strands) {
-    const Vec3& root = strand.positions.front();
+  for (const Vec3& root : roots) {
     TriangleTree::Hit hit;
     tree.closest(root, bind, triangles, hit);
     const Triangle& t = triangles[at(hit.triangle)];

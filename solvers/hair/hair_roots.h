@@ -19,7 +19,8 @@ struct RootFrame {
 
 class HairRoots {
  public:
-  HairRoots(const Trajectory& scalp, std::span<const HairStrand> strands);
+  /// roots: in the bind pose [m].
+  HairRoots(const Trajectory& scalp, std::span<const Vec3> roots);
   /// Of all roots, for a pose of the scalp's vertices.
   void frames(std::span<const Vec3> scalp, std::vector<RootFrame>& out) const;
   /// In the bind pose.

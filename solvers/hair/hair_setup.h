@@ -1,6 +1,7 @@
 // What a shot says of its hair. See hair_solver.h for what the solver does.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,6 +37,14 @@ struct HairStrand {
   int held = 1;                 ///< so many vertices from the root on stay where they are on the root's frame: tied
 };
 
+/// A strand that is not solved but goes with guides.
+struct BetweenStrand {
+  std::vector<Vec3> positions;            ///< root first, in the scalp's bind pose [m]; as many as the guides have
+  std::array<int, 3> guides{-1, -1, -1};  ///< into HairSetup::strands, the nearest first; -1: none
+  std::array<double, 3> share{0, 0, 0};   ///< at the root; their sum is 1
+  double width = 80e-6;                   ///< m
+};
+
 /// What strands meet. Sheets have no inside: a strand stays on the side where it is.
 struct HairBody {
   std::string name;
@@ -54,6 +63,7 @@ struct HairSetup {
   std::shared_ptr<const Wind> wind;       ///< null: still air
   HairMaterial material;
   std::vector<HairStrand> strands;
+  std::vector<BetweenStrand> between;       ///< a second system, "NAME_strands", where there are any
   std::shared_ptr<const Trajectory> scalp;  ///< on which the roots are: the nearest point of its bind pose
   std::vector<HairBody> bodies;             ///< met; the scalp is one of them if it is
   int least_steps = 4;                      ///< of a frame
@@ -67,5 +77,7 @@ inline constexpr const char* k_held = "followthrough_held";
 /// widths
 /// (`groom_...`, as Unreal's import reads them).
 SystemShape curves_of(const HairSetup& setup);
+/// The same of those between them. Their ids are their numbers.
+SystemShape curves_between(const HairSetup& setup);
 
 }  // namespace ft::inline solvers

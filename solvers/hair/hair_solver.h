@@ -19,6 +19,7 @@
 #include "solvers/hair/hair_roots.h"
 #include "solvers/hair/hair_setup.h"
 #include "solvers/hair/rod_step.h"
+#include "solvers/hair/strands_between.h"
 
 namespace ft::inline solvers {
 
@@ -50,8 +51,9 @@ class HairSolver final : public Solver {
   double farthest_root() const { return roots_->farthest(); }
   CombedInside combed_inside() const;
 
-  int system_count() const override { return 1; }
-  const SystemShape* system_shape(int) const override { return &shape_; }
+  /// The guides, and what is between them if there is anything.
+  int system_count() const override { return between_ ? 2 : 1; }
+  const SystemShape* system_shape(int system) const override { return system == 0 ? &shape_ : &between_shape_; }
   void system_frame(const State& state, int system, FrameData& frame) const override;
   std::span<const Triangle> collider_triangles() const override { return {}; }
   void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
@@ -75,6 +77,7 @@ class HairSolver final : public Solver {
   void add_segment_contact(std::size_t group, int lane, std::size_t vertex, const Vec3& before_goes, const Vec3& goes,
                            bool pressed, Work& work) const;
   RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
+  void place_between(const State& state, FrameData& frame) const;
   void certify(const State& state, FrameReport& report) const;
 
   HairSetup setup_;
@@ -87,7 +90,8 @@ class HairSolver final : public Solver {
   std::vector<double> gaps_;              ///< of each vertex as combed, to what it meets [m]
   std::vector<double> segment_gaps_;  ///< of the segment before each vertex, to sharp edges of it, or of its middle [m]
   std::vector<double> lengths_, stiffened_;
-  SystemShape shape_;
+  SystemShape shape_, between_shape_;
+  std::unique_ptr<StrandsBetween> between_;
 };
 
 }  // namespace ft::inline solvers

@@ -73,6 +73,27 @@ TEST_F(HairBakeTest, Threads_and_interruptions_change_no_byte) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one/tuft.abc"));
 }
 
+TEST_F(HairBakeTest, What_grows_from_a_region_and_strands_between_its_guides_have_the_same_bytes_and_are_outside) {
+  write_shot(
+      "[hair.tuft]\non = \"ball\"\nregion = [0, 0.15, 0]\nregion_radius = 0.12\ncount = 40\nlength = 0.12\n"
+      "length_variation = 0.2\nclump_size = 0.03\nstrands = 300\nvertices = 12\n");
+  ASSERT_EQ(run("one").exit_code, 0);
+  ASSERT_EQ(run("two", 2).exit_code, 0);
+  EXPECT_EQ(products("two"), products("one"));
+  EXPECT_EQ(run("again", 1, 4).exit_code, 130);
+  ASSERT_EQ(run("again", 2, 0, true).exit_code, 0);
+  EXPECT_EQ(products("again"), products("one"));
+  const auto manifest = read_manifest(folder_ / "one");
+  ASSERT_TRUE(manifest) << manifest.error().text();
+  EXPECT_TRUE(std::ranges::any_of(manifest->systems, [](const auto& s) { return s.name == "tuft_strands"; }));
+  const auto judged = judge_caches(folder_ / "one");
+  ASSERT_TRUE(judged) << judged.error().text();
+  for (const FrameReport& frame : judged->frames) {
+    EXPECT_EQ(frame.inside_body, 0) << frame.frame;
+    EXPECT_LT(frame.strain_p99, 0.02) << frame.frame;
+  }
+}
+
 TEST_F(HairBakeTest, Strands_follow_their_roots_and_check_finds_them_outside_until_a_body_is_moved_into_them) {
   write_shot();
   ASSERT_EQ(run("out").exit_code, 0);
@@ -129,6 +150,16 @@ TEST_F(HairBakeTest, What_makes_no_sense_is_refused_with_its_place) {
                                      {"guides = \"empty.obj\"\n", "empty.obj"},
                                      {"guides = \"tuft.obj\"\nvertices = 2\n", "vertices"},
                                      {"guides = \"tuft.obj\"\nscale = 0\n", "scale"}}) {
+    const std::string said = refusal(std::string("[hair.tuft]\non = \"ball\"\n") + lines);
+    EXPECT_NE(said.find(words), std::string::npos) << lines << said;
+  }
+  for (const auto& [lines, words] :
+       {std::pair("region = [0, 0.15, 0]\n", "go together"),
+        {"guides = \"tuft.obj\"\nregion = [0, 0, 0]\nregion_radius = 0.1\n", "it has one of them"},
+        {"guides = \"tuft.obj\"\ncurl_radius = 0.01\n", "grows from a region"},
+        {"region = [0, 5, 0]\nregion_radius = 0.1\n", "no area of the region"},
+        {"region = [0, 0.15, 0]\nregion_radius = 0.1\nparting_at = [0, 0, 0]\n", "parting_along"},
+        {"region_mesh = \"tuft.obj\"\n", "tuft.obj"}}) {
     const std::string said = refusal(std::string("[hair.tuft]\non = \"ball\"\n") + lines);
     EXPECT_NE(said.find(words), std::string::npos) << lines << said;
   }

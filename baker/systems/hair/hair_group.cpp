@@ -6,6 +6,7 @@
 
 #include "baker/plan/located.h"
 #include "baker/systems/hair/hair_source.h"
+#include "baker/systems/hair/strands.h"
 #include "baker/systems/interface/plan_common.h"
 #include "io/hair/resample.h"
 
@@ -63,6 +64,10 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   if (!source) return located(source.error(), shot, spec.owner());
   for (const std::string& note : source->notes) plan.notes.push_back(spec.owner() + ": " + note);
   setup.strands = std::move(source->strands);
+  if (spec.strands > 0)
+    setup.between = strands_between(
+        {spec.strands, spec.clumping, spec.length_variation, spec.width, static_cast<std::uint64_t>(spec.seed_number)},
+        setup.strands, *setup.scalp);
   return setup;
 }
 
@@ -79,10 +84,13 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
   }
   for (const HairStrand& strand : setup->strands)
     for (const Vec3& p : strand.positions) group->around.include(setup->scalp->bind_to_start() * p);
-  SystemOutput output;
-  output.primary = primary;
-  output.shape = std::make_shared<const SystemShape>(curves_of(*setup));
-  group->outputs.push_back(std::move(output));
+  const auto add_output = [&](SystemShape shape) {
+    SystemOutput& output = group->outputs.emplace_back();
+    output.primary = primary;
+    output.shape = std::make_shared<const SystemShape>(std::move(shape));
+  };
+  add_output(curves_of(*setup));
+  if (!setup->between.empty()) add_output(curves_between(*setup));
   auto solver = HairSolver::make(std::move(*setup));
   if (!solver) return located(solver.error(), shot, spec.owner());
   group->solver = std::move(*solver);

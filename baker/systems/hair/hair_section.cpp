@@ -28,7 +28,7 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
        "Guides that grow on a painted square metre"},
       {"length", &HairSpec::length, 1e-3, 10, "m", "", false, "hair_length", "Of what grows"},
       {"length_variation", &HairSpec::length_variation, 0, 0.95, "1", "", false, "length_random",
-       "By so much of it they are longer or shorter: 0.1 a cut, 0.9 wild"},
+       "By so much of it what grows is longer or shorter, and strands between guides are shorter: 0.1 a cut, 0.9 wild"},
       {"curl_radius", &HairSpec::curl_radius, 0, 1, "m", "", false, "curl", "0 straight, 0.005 waves, 0.015 locks"},
       {"curl_pitch", &HairSpec::curl_pitch, 1e-3, 10, "m", "", false, "curl_length", "Length of a turn of a curl"},
       {"clump_size", &HairSpec::clump_size, 0, 10, "m", "", false, "clumps clumping lock_size",
@@ -43,6 +43,10 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
       {"parting_at", &HairSpec::parting_at, -1e4, 1e4, "m", "", false, "parting part", "A place on a parting"},
       {"parting_along", &HairSpec::parting_along, -1, 1, "", "", false, "parting_direction", "Its direction"},
       {"seed", &HairSpec::seed_number, 0, 1'000'000, "", "", false, "random_seed", "Of all that is drawn by lot"},
+      {"strands", &HairSpec::strands, 0, 1'000'000, "", "", false, "children interpolated render_strands",
+       "How many more go between the guides, as `NAME_strands`: 20000 for a picture"},
+      {"clumping", &HairSpec::clumping, 0, 1, "1", "", false, "clump",
+       "Of those: 0 evenly spread, 1 together with their guide at the tip"},
       {"tie", &HairSpec::tie, -1e4, 1e4, "m", "", false, "band ponytail_band",
        "Centre of a band, as of a pony-tail: strands that go through it are held from the root to where they leave it"},
       {"tie_radius", &HairSpec::tie_radius, 0, 10, "m", "", false, "band_radius", "Of that band; 0: there is none"},
@@ -82,8 +86,8 @@ void judge_source(const Value& table, const HairSpec& spec, FaultList& faults) {
   if ((at == nullptr) != (along == nullptr))
     faults.add((at ? at : along)->place, spec.owner() + ": parting_at and parting_along go together");
   if (!guides) return;
-  for (const char* key : {"density", "length", "length_variation", "curl_radius", "curl_pitch", "clump_size", "lift",
-                          "bend", "volume", "comb", "parting_at", "seed"})
+  for (const char* key : {"density", "length", "curl_radius", "curl_pitch", "clump_size", "lift", "bend", "volume",
+                          "comb", "parting_at", "seed"})
     if (const Member* found = table.find(key))
       faults.add(found->place,
                  spec.owner() + ": " + key + " is of what grows from a region; its guides are from a file");

@@ -76,6 +76,8 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
     own = std::move(*mesh);
     for (Vec3& p : own.positions) p = spec.scale * p + spec.position;
     own_triangles = triangulate(own);
+    if (own_triangles.empty())
+      return input_error("it has no faces to grow hair on", spec.region_mesh.filename().string());
     weight = painted_red(own);
     region = {own.positions, own_triangles, {}};
   }

@@ -22,6 +22,8 @@ struct HairSpec final : SecondarySpec, Growth {  // Growth: of what grows from a
   Vec3 parting_at = Vec3::Zero();     ///< a place on a parting line, and
   Vec3 parting_along = Vec3::Zero();  ///< its direction; zero: none
   int seed_number = 1;
+  int strands = 0;          ///< between the guides; 0: none
+  double clumping = 0.5;    ///< of those
   Vec3 tie = Vec3::Zero();  ///< centre of a band, on the body as garments lie on it [m]
   double tie_radius = 0;    ///< strands are held from the root to where they leave it; 0: no band [m]
   double width = 1e-4;      ///< diameter of a strand as drawn [m]
