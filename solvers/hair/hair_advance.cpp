@@ -96,6 +96,7 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
     // Where it would be, going on freely with its root.
     const Vec3 goes = step.roots_after[s].carry(step.roots_now[s], x) - x + step.h * strand.v[i] -
                       (x - step.roots_before[s].carry(step.roots_now[s], x));
+    const double gap = gaps_[s * n + i];
     const double reach = material.thickness + k_look;
     find_candidates(bodies_, {x, x}, std::min(reach + (goes - bodies_.common()).norm(), k_farthest), w.candidates);
     NearSurface near[k_contacts];
@@ -104,7 +105,6 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
     if (segment_gaps_[s * n + i] > k_least_reach)
       add_segment_contact(group, lane, i, goes_before, goes, std::max(gap_before, gap_now) < k_pressed, w);
     goes_before = goes, gap_before = gap_now;
-    const double gap = gaps_[s * n + i];
     const double keeps = std::clamp(0.98 * gap, k_least_reach, material.thickness);
     const double shift = std::min(0.0, gap - k_least_reach);
     for (int c = 0; c < count; ++c) {
@@ -180,6 +180,12 @@ RodStepReport HairSolver::run_piece(const Step& step, const Piece& piece, std::s
       const double inertia = mass / (implicit * implicit), slow = mass * material.drag / implicit;
       double pull = inertia + slow;
       Vec3 goal = inertia * free + slow * still;
+      if (i > 0 && !step.push.empty()) {
+        const std::size_t own = s * (n - 1) + i - 1;
+        const double along = mass * material.mutual_drag / implicit;
+        pull += along;
+        goal += along * (path + implicit * step.flow[own]) + mass * step.push[own];
+      }
       const Vec3 air = step.air ? step.air->velocity(x) : Vec3::Zero();
       const double blown = mass * material.air_drag * (air - v).norm() / implicit;
       pull += blown;

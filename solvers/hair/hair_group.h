@@ -11,6 +11,7 @@ struct HairSolver::Step {
   bool first = false;  ///< implicit Euler: there is no step of this length before
   std::span<const RootFrame> roots_before, roots_now, roots_after;  ///< a step before its start; its start; its end
   const AirNow* air = nullptr;
+  std::span<const Vec3> push, flow;  ///< of the crowd, for each vertex without ghosts [m/s2, m/s]; empty: none
   // Blocks of the state.
   double *x = nullptr, *x_before = nullptr, *v = nullptr, *v_before = nullptr, *m = nullptr, *tension = nullptr;
   int* iterations = nullptr;  ///< of each group

@@ -18,6 +18,9 @@ constexpr double k_root_off = 0.05;
 /// Neighbours of a stiffened strand are stiffened with it within so far of its root, fading outwards. Guessed [m].
 constexpr double k_alike = 0.02;
 
+/// Of the grid on which strands feel one another, by the distance of their roots [1].
+constexpr double k_crowd_cell = 1.5;
+
 /// Length [m].
 double mean_segment(const HairSetup& setup) {
   double sum = 0, count = 0;
@@ -40,6 +43,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
     return refuse("a material's numbers must be positive");
   if (!(m.damping >= 0 && m.drag >= 0 && m.air_drag >= 0 && m.friction >= 0))
     return refuse("a material's losses must not be negative");
+  if (!(m.pressure >= 0 && m.mutual_drag >= 0)) return refuse("pressure and mutual drag must not be negative");
   if (!setup.scalp) return refuse("has no scalp");
   if (setup.strands.empty()) return refuse("has no strand");
   for (std::size_t s = 0; s < setup.strands.size(); ++s) {
@@ -84,6 +88,7 @@ HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setu
   }
   measure_gaps();
   make_groups();
+  make_crowd();
   if (setup_.between.empty()) return;
   between_shape_ = curves_between(setup_);
   std::vector<Vec3> x, d;
@@ -125,6 +130,32 @@ void HairSolver::measure_gaps() {
     for (const Penetration& p : penetrations(all, bodies_.before(b), bodies_.triangles(b), 0))
       gaps_[at(p.vertex)] = std::min(gaps_[at(p.vertex)], -p.depth);
   }
+}
+
+/// A cell holds some strands.
+void HairSolver::make_crowd() {
+  const HairMaterial& m = setup_.material;
+  if ((m.pressure == 0 && m.mutual_drag == 0) || setup_.strands.size() < 2) return;
+  std::vector<Vec3> x;
+  std::vector<double> mass;
+  std::vector<double> nearest;
+  const auto bind = roots_->bind();
+  for (std::size_t s = 0; s < groom_.size(); ++s) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < groom_.size(); ++k)
+      if (k != s) least = std::min(least, (bind[k].place - bind[s].place).norm());
+    nearest.push_back(least);
+    for (std::size_t i = 1; i < at(n_); ++i) {
+      x.push_back(groom_[s][i]);
+      mass.push_back(rods_[s / k_lanes].mass[i][static_cast<int>(s % k_lanes)]);
+    }
+  }
+  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2), nearest.end());
+  CrowdSettings settings;
+  settings.pressure = m.pressure;
+  settings.drag = m.mutual_drag;
+  settings.cell = std::max({settings.cell, k_crowd_cell * nearest[nearest.size() / 2], 1.5 * mean_segment(setup_)});
+  crowd_.emplace(settings, x, mass);
 }
 
 std::size_t HairSolver::strand_of(std::size_t group, int lane) const {

@@ -10,6 +10,7 @@
 
 #include "baker/core/output_frame.h"
 #include "baker/core/parallel.h"
+#include "baker/core/rigid.h"
 #include "baker/core/state_points.h"
 #include "solvers/hair/hair_group.h"
 
@@ -83,6 +84,27 @@ void HairSolver::system_frame(const State& state, int system, FrameData& frame) 
     }
 }
 
+/// Velocities are those that the step ends with if nothing changes, so that what falls together is not braked.
+void HairSolver::feel_crowd(const State& state, double h, std::span<const RootFrame> roots, std::vector<Vec3>& push,
+                            std::vector<Vec3>& flow) {
+  if (!crowd_) return;
+  std::vector<Vec3> combed, now;
+  for (std::size_t s = 0; s < roots.size(); ++s)
+    combed.push_back(roots_->bind()[s].place), now.push_back(roots[s].place);
+  const Eigen::Isometry3d to_world = rigid_fit(combed, now), to_groom = to_world.inverse();
+  const auto all_x = as_points(*state.find("x")), all_v = as_points(*state.find("v")),
+             before = as_points(*state.find("v_before"));
+  std::vector<Vec3> x, v;
+  for (std::size_t k = 0; k < all_x.size(); ++k) {
+    if (k % at(n_) == 0) continue;  // a ghost
+    x.push_back(to_groom * all_x[k]);
+    v.push_back(to_groom.linear() * (2 * all_v[k] - before[k]));
+  }
+  crowd_->feel(x, v, h, push, flow);
+  for (Vec3& p : push) p = to_world.linear() * p;
+  for (Vec3& u : flow) u = to_world.linear() * u;
+}
+
 FrameReport HairSolver::advance_frame(State& state) {
   const auto clock = std::chrono::steady_clock::now();
   FrameReport report;
@@ -106,6 +128,7 @@ FrameReport HairSolver::advance_frame(State& state) {
   const double h = (t1 - t0) / steps;
   const bool goes_on = std::abs(state.find("step")->at(0) - h) < 1e-9 * h;
   roots_at(t0 - h, before);
+  std::vector<Vec3> push, flow;
   std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0);
   for (int k = 0; k < steps; ++k) {
     const double end = k + 1 == steps ? t1 : t0 + h * (k + 1);
@@ -118,6 +141,8 @@ FrameReport HairSolver::advance_frame(State& state) {
     std::unique_ptr<AirNow> air;
     if (setup_.wind && !setup_.wind->is_still()) air = setup_.wind->at_time(end);
     step.air = air.get();
+    feel_crowd(state, h, now, push, flow);
+    step.push = push, step.flow = flow;
     step.x = state.block("x").data(), step.x_before = state.block("x_before").data();
     step.v = state.block("v").data(), step.v_before = state.block("v_before").data();
     step.m = state.block("m").data(), step.tension = state.block("tension").data();

@@ -1,11 +1,13 @@
-// Hair and whatever grows: strands as discrete elastic rods (rod.h), each for itself among the scene's bodies, rooted
-// in a scalp. One-way: nobody feels them.
+// Hair and whatever grows: strands as discrete elastic rods (rod.h) among the scene's bodies, rooted in a scalp.
+// One-way: nobody feels them.
 //
 // A frame is a number of equal steps, so many that no body goes farther than some millimetres in one. In a step, what
 // is near each vertex at its start becomes up to three planes of the body as it is at its end, and what is near each
 // segment to two (rod_step.h); four strands at a time are then solved by Newton's method (rod_step.h). BDF2, which
 // keeps swings; a step that differs from the one before it begins anew with implicit Euler. What does not settle is
 // done again in 2, 4 or 8 pieces. The groom is the equilibrium: rest_shape.h.
+//
+// Strands feel one another as a crowd, as it is at the start of a step (hair_crowd.h).
 //
 // Drag is towards the motion of the root, as the difference formula of the step has it at the step's end, so that hair
 // that falls together with its head is not braked; and towards the air by the square of the speed.
@@ -16,6 +18,7 @@
 #include "baker/core/output_shape.h"
 #include "solvers/base/solver.h"
 #include "solvers/hair/hair_bodies.h"
+#include "solvers/hair/hair_crowd.h"
 #include "solvers/hair/hair_roots.h"
 #include "solvers/hair/hair_setup.h"
 #include "solvers/hair/rod_step.h"
@@ -68,6 +71,9 @@ class HairSolver final : public Solver {
   explicit HairSolver(HairSetup setup);
   void measure_gaps();
   void make_groups();
+  void make_crowd();
+  void feel_crowd(const State& state, double h, std::span<const RootFrame> roots, std::vector<Vec3>& push,
+                  std::vector<Vec3>& flow);
   void stiffen_alike(std::vector<double>& factors) const;
   std::size_t strand_of(std::size_t group, int lane) const;
   void advance_group(const Step& step, std::size_t group, Work& work) const;
@@ -84,6 +90,7 @@ class HairSolver final : public Solver {
   int n_ = 0;  ///< vertices of a strand, with its ghost
   std::unique_ptr<HairRoots> roots_;
   HairBodies bodies_;                     ///< scratch of a frame
+  std::optional<HairCrowd> crowd_;        ///< none: strands do not feel one another
   std::vector<Rod<Lanes>> rods_;          ///< of four strands each, the last ones padded
   std::vector<std::vector<Vec3>> groom_;  ///< of each strand, with its ghost, in the bind pose [m]
   std::vector<Vec3> directors_;           ///< of all strands' edges, in the bind pose

@@ -176,6 +176,38 @@ TEST(Hair, One_thread_and_two_and_a_restored_state_have_the_same_bytes) {
   }
 }
 
+/// Of each vertex, how many are within 20 mm of it.
+std::vector<int> neighbours(const std::vector<Vec3f>& x) {
+  std::vector<int> out(x.size(), 0);
+  for (std::size_t a = 0; a < x.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if ((x[a] - x[b]).squaredNorm() < 0.02F * 0.02F) ++out[a], ++out[b];
+  return out;
+}
+
+TEST(Hair, What_is_denser_than_combed_pushes_apart) {
+  double crowded[2] = {0, 0};
+  for (const bool pushes : {false, true}) {
+    // The head leans to its side: all hangs down from there. Its scalp would lean into shoulders.
+    HairSetup setup = head_of_hair(400, 0.2, 16, turn(Vec3(0, 0, 1), 1.4, 0.25, 2));
+    setup.bodies.resize(1);
+    setup.material.pressure = pushes ? 0.6 : 0;
+    const auto solver = solver_of(setup);
+    State state = solver->initial_state();
+    const std::vector<int> combed = neighbours(strands_of(*solver, state));
+    for (int f = 0; f < 36; ++f) {
+      const FrameReport report = solver->advance_frame(state);
+      EXPECT_EQ(report.inside_body, 0) << f;
+      if (f % 6 != 5) continue;
+      const std::vector<int> now = neighbours(strands_of(*solver, state));
+      for (std::size_t k = 0; k < now.size(); ++k) crowded[pushes] += now[k] > 1.5 * (combed[k] + 2) ? 1 : 0;
+    }
+  }
+  printf("vertices that are half as dense again as combed: %.0f, pushing %.0f\n", crowded[0], crowded[1]);
+  EXPECT_GT(crowded[0], 100);
+  EXPECT_LT(crowded[1], 0.7 * crowded[0]);
+}
+
 TEST(Hair, Cost_of_500_strands_of_32_slow) {
   const auto solver = solver_of(head_of_hair(500, 0.25, 32, shake(1, 2)));
   State state = solver->initial_state();

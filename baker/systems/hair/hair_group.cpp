@@ -58,6 +58,8 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   setup.material.drag = spec.drag;
   setup.material.air_drag = spec.air_drag;
   setup.material.friction = spec.friction;
+  setup.material.pressure = spec.pressure;
+  setup.material.mutual_drag = spec.mutual_drag;
   setup.material.thickness = spec.thickness;
   setup.scalp = plan.primaries[primary].trajectory;
   auto source = hair_source(spec, *setup.scalp);
@@ -113,7 +115,7 @@ std::vector<std::string> HairGroup::lines(const BakePlan& plan) const {
   }
   return {
       fmt::format("hair \"{}\" on \"{}\": {} strands of {} vertices, {:.0f} mm long in the mean and {:.0f} at most; "
-                  "it meets {}; strands do not meet one another",
+                  "it meets {}; strands feel one another as a crowd, not strand by strand",
                   outputs[0].name(), plan.primaries[primary].name, curves.curve_count(),
                   curves.vertices_per_curve.at(0), 1e3 * length, 1e3 * longest, met_names(plan))};
 }
