@@ -46,6 +46,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
   if (!(m.pressure >= 0 && m.mutual_drag >= 0)) return refuse("pressure and mutual drag must not be negative");
   if (!setup.scalp) return refuse("has no scalp");
   if (setup.strands.empty()) return refuse("has no strand");
+  if (setup.riders.size() != setup.ridden.positions.size()) return refuse("its mesh and its riders do not go together");
   for (std::size_t s = 0; s < setup.strands.size(); ++s) {
     const std::vector<Vec3>& x = setup.strands[s].positions;
     if (x.size() < 3 || x.size() != setup.strands[0].positions.size())
@@ -89,16 +90,19 @@ HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setu
   measure_gaps();
   make_groups();
   make_crowd();
-  if (setup_.between.empty()) return;
-  between_shape_ = curves_between(setup_);
   std::vector<Vec3> x, d;
   for (std::size_t s = 0; s < groom_.size(); ++s) {
     x.insert(x.end(), groom_[s].begin() + 1, groom_[s].end());
     add_directors(std::span(directors_).subspan(s * at(n_ - 1), at(n_ - 1)), d);
   }
-  between_ =
-      std::make_unique<StrandsBetween>(setup_.between, vertices(), setup_.scalp, GuidesNow{x, x, d}, setup_.bodies);
-  setup_.between.clear();  // as large as a frame
+  const GuidesNow groom{x, x, d};
+  if (!setup_.between.empty()) {
+    between_shape_ = curves_between(setup_);
+    between_ = std::make_unique<StrandsBetween>(setup_.between, vertices(), setup_.scalp, groom, setup_.bodies);
+    setup_.between.clear();  // as large as a frame
+  }
+  if (!setup_.ridden.positions.empty())
+    ridden_ = std::make_unique<RiddenMesh>(setup_.ridden, setup_.riders, vertices(), groom, roots_->bind());
 }
 
 /// How near each vertex was combed; bodies_ stands in its bind pose.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/mesh.h"
 #include "baker/core/output_shape.h"
 #include "baker/core/trajectory.h"
 #include "baker/core/types.h"
@@ -47,6 +48,12 @@ struct BetweenStrand {
   double width = 80e-6;                   ///< m
 };
 
+/// Where a vertex of a hair mesh is along a strand of HairSetup::strands.
+struct MeshRider {
+  int strand = -1;   ///< -1: none; it stays beside the nearest root
+  double along = 0;  ///< 0 at the root, 1 at the tip
+};
+
 /// What strands meet. Sheets have no inside: a strand stays on the side where it is.
 struct HairBody {
   std::string name;
@@ -66,6 +73,8 @@ struct HairSetup {
   HairMaterial material;
   std::vector<HairStrand> strands;
   std::vector<BetweenStrand> between;       ///< a second system, "NAME_strands", where there are any
+  Mesh ridden;                              ///< a system more, of its own name, if it has vertices: in the bind pose
+  std::vector<MeshRider> riders;            ///< for each of its vertices
   std::shared_ptr<const Trajectory> scalp;  ///< on which the roots are: the nearest point of its bind pose
   std::vector<HairBody> bodies;             ///< met; the scalp is one of them if it is
   int least_steps = 4;                      ///< of a frame

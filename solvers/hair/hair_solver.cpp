@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "baker/core/check.h"
 #include "baker/core/output_frame.h"
 #include "baker/core/parallel.h"
 #include "baker/core/rigid.h"
@@ -60,22 +61,39 @@ State HairSolver::initial_state() const {
   return state;
 }
 
-void HairSolver::place_between(const State& state, FrameData& frame) const {
-  const auto all_x = as_points(*state.find("x")), all_v = as_points(*state.find("v")),
-             all_m = as_points(*state.find("m"));
-  std::vector<Vec3> x, v, d;
-  for (std::size_t s = 0; s < setup_.strands.size(); ++s) {
-    const auto own = [&](auto all) { return all.subspan(s * at(n_) + 1, at(n_) - 1); };
-    x.insert(x.end(), own(all_x).begin(), own(all_x).end());
-    v.insert(v.end(), own(all_v).begin(), own(all_v).end());
-    add_directors(all_m.subspan(s * at(n_ - 1), at(n_ - 1)), d);
+namespace {
+
+/// All guides of a state without their ghosts.
+struct GuidesOfState {
+  std::vector<Vec3> x, v, director;
+  GuidesOfState(const State& state, std::size_t n) {
+    const auto all_x = as_points(*state.find("x")), all_v = as_points(*state.find("v")),
+               all_m = as_points(*state.find("m"));
+    for (std::size_t s = 0; s < all_x.size() / n; ++s) {
+      const auto own = [&](auto all) { return all.subspan(s * n + 1, n - 1); };
+      x.insert(x.end(), own(all_x).begin(), own(all_x).end());
+      v.insert(v.end(), own(all_v).begin(), own(all_v).end());
+      add_directors(all_m.subspan(s * (n - 1), n - 1), director);
+    }
   }
-  between_->place({x, v, d}, state.time, frame.positions, frame.velocities);
+  GuidesNow now() const { return {x, v, director}; }
+};
+
+}  // namespace
+
+void HairSolver::system_positions(const State& state, int system, std::span<Vec3> positions) const {
+  CHECK(is_ridden(system));
+  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
+  setup_.scalp->sample(state.time, scalp);
+  std::vector<RootFrame> roots;
+  roots_->frames(scalp, roots);
+  ridden_->place(GuidesOfState(state, at(n_)).now(), roots, positions);
 }
 
 void HairSolver::system_frame(const State& state, int system, FrameData& frame) const {
   frame = {};
-  if (system == 1) return place_between(state, frame);
+  if (system == 1)
+    return between_->place(GuidesOfState(state, at(n_)).now(), state.time, frame.positions, frame.velocities);
   const auto x = as_points(*state.find("x")), v = as_points(*state.find("v"));
   for (std::size_t s = 0; s < setup_.strands.size(); ++s)
     for (std::size_t i = 1; i < at(n_); ++i) {

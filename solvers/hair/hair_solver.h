@@ -21,6 +21,7 @@
 #include "solvers/hair/hair_crowd.h"
 #include "solvers/hair/hair_roots.h"
 #include "solvers/hair/hair_setup.h"
+#include "solvers/hair/ridden_mesh.h"
 #include "solvers/hair/rod_step.h"
 #include "solvers/hair/strands_between.h"
 
@@ -54,9 +55,13 @@ class HairSolver final : public Solver {
   double farthest_root() const { return roots_->farthest(); }
   CombedInside combed_inside() const;
 
-  /// The guides, and what is between them if there is anything.
-  int system_count() const override { return between_ ? 2 : 1; }
-  const SystemShape* system_shape(int system) const override { return system == 0 ? &shape_ : &between_shape_; }
+  /// The guides; what is between them and a mesh that rides on them, if there are such.
+  int system_count() const override { return 1 + (between_ ? 1 : 0) + (ridden_ ? 1 : 0); }
+  const SystemShape* system_shape(int system) const override {
+    return system == 0 ? &shape_ : is_ridden(system) ? nullptr : &between_shape_;
+  }
+  const Mesh& system_mesh(int) const override { return setup_.ridden; }
+  void system_positions(const State& state, int system, std::span<Vec3> positions) const override;
   void system_frame(const State& state, int system, FrameData& frame) const override;
   std::span<const Triangle> collider_triangles() const override { return {}; }
   void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }
@@ -83,7 +88,7 @@ class HairSolver final : public Solver {
   void add_segment_contact(std::size_t group, int lane, std::size_t vertex, const Vec3& before_goes, const Vec3& goes,
                            bool pressed, Work& work) const;
   RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
-  void place_between(const State& state, FrameData& frame) const;
+  bool is_ridden(int system) const { return ridden_ && system == system_count() - 1; }
   void certify(const State& state, FrameReport& report) const;
 
   HairSetup setup_;
@@ -99,6 +104,7 @@ class HairSolver final : public Solver {
   std::vector<double> lengths_, stiffened_;
   SystemShape shape_, between_shape_;
   std::unique_ptr<StrandsBetween> between_;
+  std::unique_ptr<RiddenMesh> ridden_;
 };
 
 }  // namespace ft::inline solvers

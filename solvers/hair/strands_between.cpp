@@ -33,9 +33,10 @@ double share_of_nearest(std::size_t i, std::size_t n) {
   return smooth_step(static_cast<double>(i) / (k_alone * static_cast<double>(n - 1)));
 }
 
-/// A frame at each vertex: along the strand, and the director.
-void frames_of(const GuidesNow& guides, std::size_t n, std::vector<Mat3>& out) {
-  out.resize(guides.x.size());
+}  // namespace
+
+std::vector<Mat3> frames_of(const GuidesNow& guides, std::size_t n) {
+  std::vector<Mat3> out(guides.x.size());
   parallel_for(guides.x.size() / n, 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin * n; k < end * n; ++k) {
       const std::size_t i = k % n, before = i > 0 ? k - 1 : k, after = i + 1 < n ? k + 1 : k;
@@ -45,16 +46,14 @@ void frames_of(const GuidesNow& guides, std::size_t n, std::vector<Mat3>& out) {
       out[k].col(0) = t, out[k].col(1) = d, out[k].col(2) = t.cross(d);
     }
   });
+  return out;
 }
-
-}  // namespace
 
 StrandsBetween::StrandsBetween(std::span<const BetweenStrand> strands, int vertices,
                                std::shared_ptr<const Trajectory> scalp, const GuidesNow& groom,
                                std::span<const HairBody> bodies)
     : n_(at(vertices)), scalp_(std::move(scalp)), roots_(*scalp_, roots_of(strands)), bodies_(bodies, 0.01) {
-  std::vector<Mat3> frames;
-  frames_of(groom, n_, frames);
+  const std::vector<Mat3> frames = frames_of(groom, n_);
   const std::vector<Plane> planes = planes_near(groom);
   const std::size_t count = strands.size() * n_;
   offsets_.resize(count), lengths_.resize(count), keeps_.resize(count);
@@ -111,8 +110,7 @@ void StrandsBetween::place(const GuidesNow& guides, double time, std::vector<Vec
   scalp_->sample(time, skin);
   std::vector<RootFrame> roots;
   roots_.frames(skin, roots);
-  std::vector<Mat3> frames;
-  frames_of(guides, n_, frames);
+  const std::vector<Mat3> frames = frames_of(guides, n_);
   const std::vector<Plane> planes = planes_near(guides);
   x.resize(offsets_.size()), v.resize(offsets_.size());
   parallel_for(strands_.size(), 32, [&](std::size_t begin, std::size_t end) {

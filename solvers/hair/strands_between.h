@@ -20,6 +20,9 @@ struct GuidesNow {
   std::span<const Vec3> director;  ///< of the edge that starts at a vertex; of the last one the edge before
 };
 
+/// A frame at each vertex: along the strand, and the director.
+std::vector<Mat3> frames_of(const GuidesNow& guides, std::size_t vertices);
+
 class StrandsBetween {
  public:
   /// scalp: on which their roots are. groom: the guides as they were combed, in the bind pose. bodies have to stay.

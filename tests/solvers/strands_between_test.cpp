@@ -118,6 +118,47 @@ TEST(StrandsBetween, Follow_their_roots_keep_their_length_stay_outside_and_do_no
   EXPECT_LT(jumps / all, 0.001);
 }
 
+TEST(RiddenMesh, Is_as_combed_to_begin_with_goes_with_its_guide_and_its_cap_with_the_head) {
+  const Placing way = shake(1);
+  HairSetup setup = head_of_hair(20, 0.2, k_vertices, way);
+  // A card along each strand, and a cap over the crown.
+  for (int s = 0; s < 20; ++s)
+    for (int i = 0; i < 12; ++i) {
+      const double along = i / 11.0;
+      const Vec3& p = setup.strands[at(s)].positions[at(2 * i)];
+      for (const double side : {-0.004, 0.004}) {
+        setup.ridden.positions.push_back(p + Vec3(side, 0, side));
+        setup.riders.push_back({s, along});
+      }
+    }
+  const std::size_t cap = setup.ridden.positions.size();
+  for (int k = 0; k < 8; ++k) {
+    setup.ridden.positions.emplace_back(0.03 * std::cos(k), 0.1, 0.03 * std::sin(k));
+    setup.riders.push_back({-1, 0});
+  }
+  const auto solver = solver_of(setup);
+  ASSERT_EQ(solver->system_count(), 2);
+  ASSERT_EQ(solver->system_shape(1), nullptr);
+  State state = solver->initial_state();
+  std::vector<Vec3> now(setup.ridden.positions.size());
+  solver->system_positions(state, 1, now);
+  for (std::size_t v = 0; v < now.size(); ++v) EXPECT_LT((now[v] - setup.ridden.positions[v]).norm(), 1e-9) << v;
+  double moved = 0;
+  for (int f = 0; f < 12; ++f) {
+    solver->advance_frame(state);
+    solver->system_positions(state, 1, now);
+    const std::vector<Vec3f> strands = strands_of(*solver, state);
+    for (std::size_t v = 0; v < cap; ++v) {
+      const std::size_t own = v / 24 * k_vertices + std::min<std::size_t>(v % 24 / 2 * 2, k_vertices - 1);
+      EXPECT_LT((now[v] - strands[own].cast<double>()).norm(), 0.02) << f << " " << v;
+      moved = std::max(moved, (now[v] - way(state.time) * setup.ridden.positions[v]).norm());
+    }
+    for (std::size_t v = cap; v < now.size(); ++v)
+      EXPECT_LT((now[v] - way(state.time) * setup.ridden.positions[v]).norm(), 1e-9);
+  }
+  EXPECT_GT(moved, 0.03) << "cards swing";
+}
+
 TEST(StrandsBetween, Cost_of_20000_strands_of_32_slow) {
   const auto solver = solver_of(head_with_strands(500, 20000, 32, shake(1)));
   State state = solver->initial_state();

@@ -66,6 +66,9 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   if (!source) return located(source.error(), shot, spec.owner());
   for (const std::string& note : source->notes) plan.notes.push_back(spec.owner() + ": " + note);
   setup.strands = std::move(source->strands);
+  setup.ridden = std::move(source->ridden);
+  setup.ridden.name = spec.name + "_mesh";
+  setup.riders = std::move(source->riders);
   if (spec.strands > 0)
     setup.between = strands_between(
         {spec.strands, spec.clumping, spec.length_variation, spec.width, static_cast<std::uint64_t>(spec.seed_number)},
@@ -93,6 +96,11 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
   };
   add_output(curves_of(*setup));
   if (!setup->between.empty()) add_output(curves_between(*setup));
+  if (!setup->ridden.positions.empty()) {
+    SystemOutput& output = group->outputs.emplace_back();
+    output.primary = primary;
+    output.mesh = std::make_shared<const Mesh>(setup->ridden);
+  }
   auto solver = HairSolver::make(std::move(*setup));
   if (!solver) return located(solver.error(), shot, spec.owner());
   group->solver = std::move(*solver);

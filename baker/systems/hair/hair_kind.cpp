@@ -24,7 +24,8 @@ class HairKind final : public SystemKind {
   Result<std::vector<std::unique_ptr<JudgedGroup>>> judge(const CachedBake& bake) const override {
     std::vector<std::unique_ptr<JudgedGroup>> out;
     for (const ManifestSystem& system : bake.manifest.systems) {
-      if (system.role != name() || !bake.has_cache(system)) continue;
+      // A mesh that rides on its strands is where they are.
+      if (system.role != name() || system.shape != OutputShape::k_curves || !bake.has_cache(system)) continue;
       auto one = judged_hair(bake, system);
       if (!one) return one.error();
       out.push_back(std::move(*one));

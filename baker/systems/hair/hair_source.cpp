@@ -23,6 +23,19 @@ std::vector<std::size_t> evenly(std::size_t all, int count) {
   return out;
 }
 
+/// The solved one among guides that is most like a guide.
+int nearest_solved(const GuideSet& guides, std::span<const int> solved, std::size_t guide) {
+  if (solved[guide] >= 0) return solved[guide];
+  const auto off = [&](std::size_t k) {
+    return (guides.strands[k].front() - guides.strands[guide].front()).norm() +
+           (guides.strands[k].back() - guides.strands[guide].back()).norm();
+  };
+  std::size_t best = solved.size();
+  for (std::size_t k = 0; k < solved.size(); ++k)
+    if (solved[k] >= 0 && (best == solved.size() || off(k) < off(best))) best = k;
+  return solved[best];
+}
+
 Result<HairSource> from_file(const HairSpec& spec, std::span<const Vec3> bind) {
   HairSource out;
   std::vector<Vec3> there(bind.begin(), bind.end());  // as the file has it
@@ -39,6 +52,13 @@ Result<HairSource> from_file(const HairSpec& spec, std::span<const Vec3> bind) {
     for (Vec3& p : strand.positions) p += spec.position;
     strand.width = guides->widths.empty() ? spec.width : guides->widths[k];
   }
+  if (guides->ridden.positions.empty()) return out;
+  out.ridden = std::move(guides->ridden);
+  for (Vec3& p : out.ridden.positions) p += spec.position;
+  // Caps and the like lie on the head.
+  for (const Rider& rider : guides->riders)
+    out.riders.push_back(
+        {rider.strand < 0 || !rider.of_strand ? -1 : nearest_solved(*guides, solved, at(rider.strand)), rider.along});
   return out;
 }
 

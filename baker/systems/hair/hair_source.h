@@ -4,7 +4,6 @@
 #include "baker/core/mesh.h"
 #include "baker/core/trajectory.h"
 #include "baker/systems/hair/hair_spec.h"
-#include "io/hair/hair_mesh.h"
 #include "solvers/hair/hair_setup.h"
 
 namespace ft::inline baker {
@@ -12,8 +11,8 @@ namespace ft::inline baker {
 struct HairSource {
   std::vector<HairStrand> strands;  ///< of those the ones that are solved
   std::vector<std::string> notes;
-  Mesh ridden;                ///< a hair mesh whose middle lines the strands are [m]; else empty
-  std::vector<Rider> riders;  ///< of its vertices, by `strands`
+  Mesh ridden;                    ///< a hair mesh whose middle lines the strands are [m]; else empty
+  std::vector<MeshRider> riders;  ///< of its vertices, by `strands`
 };
 
 /// On the scalp's bind pose. Errors: of the file, of the region.
