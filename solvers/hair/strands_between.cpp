@@ -19,9 +19,6 @@ constexpr int k_rounds = 3;  ///< of pushing out and giving the length back
 constexpr double k_parted = 0.01;
 constexpr double k_gap = 3e-4;   ///< to which strands are pushed out of bodies [m]
 constexpr double k_look = 0.06;  ///< how far from a guide a body is looked for [m]
-/// A body that is nearer to a guide's vertex than a strand's vertex beside it: bent towards the strand by less than
-/// this radius, it could be nearer to that than its plane at the guide says [m].
-constexpr double k_hollow = 0.012;
 
 std::vector<Vec3> roots_of(std::span<const BetweenStrand> strands) {
   std::vector<Vec3> out;
@@ -86,15 +83,10 @@ std::vector<StrandsBetween::Plane> StrandsBetween::planes_near(const GuidesNow& 
   return out;
 }
 
-/// Whether it was inside. Only what the guide's plane does not clear is asked for what it is near to.
+/// Whether it was inside. Where its guide is so far from all bodies that it cannot be, nothing is asked.
 bool StrandsBetween::push_out(const Plane& of_guide, const Vec3& guide, double keeps, Vec3& p) const {
   const double aside = (p - guide).norm();
-  if (of_guide.gap >= 1) {
-    if (aside < k_look - k_gap) return false;
-  } else if (of_guide.gap - aside > keeps ||
-             (p - of_guide.place).dot(of_guide.normal) > keeps + aside * aside / (2 * k_hollow)) {
-    return false;
-  }
+  if (of_guide.gap >= 1 ? aside < k_look - k_gap : of_guide.gap - aside > keeps) return false;
   // No farther than the place that is known.
   const double look = of_guide.gap < 1 ? std::min(k_look, 1.0001 * (p - of_guide.place).norm() + 1e-6) : k_look;
   const auto near = bodies_.nearest(p, look);
