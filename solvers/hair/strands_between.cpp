@@ -14,7 +14,8 @@ namespace {
 constexpr double k_alone = 0.4;
 /// Of what a strand has got away from where its guides have it, by lengths and by bodies, each segment goes back [1].
 constexpr double k_back = 0.2;
-constexpr int k_rounds = 3;  ///< of pushing out and giving the length back
+constexpr double k_aside = 0.01;  ///< farther than this from its guide a strand is looked at with care [m]
+constexpr int k_rounds = 3;       ///< of pushing out and giving the length back
 /// Guides that part: where one would have a strand so far from where the nearest has it, it counts by a half [m].
 constexpr double k_parted = 0.01;
 constexpr double k_gap = 3e-4;   ///< to which strands are pushed out of bodies [m]
@@ -134,11 +135,18 @@ void StrandsBetween::place(const GuidesNow& guides, double time, std::vector<Vec
           };
           p = reached(free - before_free + k_back * (before_free - before));
           const std::size_t nearest = at(strand.guides[0]) * n_ + i;
-          // In the end rather outside than of its length, or where its guide is.
+          // In the end rather outside than of its length.
           bool pushed = false;
           for (int round = 0; push_out(planes[nearest], guides.x[nearest], keeps_[to], p) && round < k_rounds; ++round)
             p = reached(p - before), pushed = true;
-          if (pushed && keeps_[to] > 0 && bodies_.rays_inside(p)) p = guides.x[nearest];
+          // Where a body is inside of itself, as an arm in a trunk, the nearest surface says nothing: nearer to the
+          // guide.
+          const Vec3 off = p - guides.x[nearest];
+          const double aside = off.norm();
+          if (keeps_[to] > 0 && (pushed || aside > k_aside) && planes[nearest].gap < aside && bodies_.rays_inside(p)) {
+            p = guides.x[nearest] + std::min(1.0, k_aside / aside) * off;
+            if (bodies_.rays_inside(p)) p = guides.x[nearest];
+          }
         }
         before = p, before_free = free;
         x[to] = p.cast<float>();
