@@ -77,6 +77,7 @@ struct HairSetup {
   std::vector<MeshRider> riders;            ///< for each of its vertices
   std::shared_ptr<const Trajectory> scalp;  ///< on which the roots are: the nearest point of its bind pose
   std::vector<HairBody> bodies;             ///< met; the scalp is one of them if it is
+  std::vector<int> teleports;               ///< frames into which the scalp jumps: strands are carried along
   int least_steps = 4;                      ///< of a frame
   int most_steps = 32;
 };

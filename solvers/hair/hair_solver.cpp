@@ -123,6 +123,26 @@ void HairSolver::feel_crowd(const State& state, double h, std::span<const RootFr
   for (Vec3& u : flow) u = to_world.linear() * u;
 }
 
+bool HairSolver::jumps_into(int frame) const {
+  return std::ranges::find(setup_.teleports, frame) != setup_.teleports.end();
+}
+
+void HairSolver::carry(State& state, std::span<const RootFrame> now, std::span<const RootFrame> after) const {
+  const auto each = [&](const char* block, std::size_t per_strand, const auto& carried) {
+    std::vector<double>& values = state.block(block);
+    for (std::size_t k = 0; k < values.size() / 3; ++k) {
+      const std::size_t s = k / per_strand;
+      const Vec3 v = carried(s, Vec3(values[3 * k], values[3 * k + 1], values[3 * k + 2]));
+      for (std::size_t a = 0; a < 3; ++a) values[3 * k + a] = v[static_cast<int>(a)];
+    }
+  };
+  const auto place = [&](std::size_t s, const Vec3& p) { return after[s].carry(now[s], p); };
+  const auto turn = [&](std::size_t s, const Vec3& v) { return Vec3(after[s].turn * (now[s].turn.transpose() * v)); };
+  for (const char* block : {"x", "x_before"}) each(block, at(n_), place);
+  for (const char* block : {"v", "v_before"}) each(block, at(n_), turn);
+  each("m", at(n_) - 1, turn);
+}
+
 FrameReport HairSolver::advance_frame(State& state) {
   const auto clock = std::chrono::steady_clock::now();
   FrameReport report;
@@ -139,13 +159,27 @@ FrameReport HairSolver::advance_frame(State& state) {
   };
   std::vector<RootFrame> before, now, after;
   roots_at(t0, now), roots_at(t1, after);
+  if (jumps_into(report.frame)) {
+    carry(state, now, after);
+    bodies_.advance();
+    state.block("step")[0] = 0;
+    state.frame = report.frame;
+    state.time = t1;
+    report.substeps = 1;
+    certify(state, report);
+    report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    return report;
+  }
   double way = bodies_.way();
   for (std::size_t s = 0; s < now.size(); ++s) way = std::max(way, (after[s].place - now[s].place).norm());
   const int wanted = static_cast<int>(std::min(std::ceil(way / k_way), 1e6));
   const int steps = std::clamp(wanted, setup_.least_steps, setup_.most_steps);
   const double h = (t1 - t0) / steps;
   const bool goes_on = std::abs(state.find("step")->at(0) - h) < 1e-9 * h;
-  roots_at(t0 - h, before);
+  if (jumps_into(state.frame))
+    before = now;
+  else
+    roots_at(t0 - h, before);
   std::vector<Vec3> push, flow;
   std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0);
   for (int k = 0; k < steps; ++k) {

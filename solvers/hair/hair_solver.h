@@ -9,6 +9,8 @@
 //
 // Strands feel one another as a crowd, as it is at the start of a step (hair_crowd.h).
 //
+// Where the scalp jumps (HairSetup::teleports) there is no step: each strand goes with its root as it is.
+//
 // Drag is towards the motion of the root, as the difference formula of the step has it at the step's end, so that hair
 // that falls together with its head is not braked; and towards the air by the square of the speed.
 #pragma once
@@ -89,6 +91,8 @@ class HairSolver final : public Solver {
                            bool pressed, Work& work) const;
   RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
   bool is_ridden(int system) const { return ridden_ && system == system_count() - 1; }
+  bool jumps_into(int frame) const;
+  void carry(State& state, std::span<const RootFrame> now, std::span<const RootFrame> after) const;
   void certify(const State& state, FrameReport& report) const;
 
   HairSetup setup_;

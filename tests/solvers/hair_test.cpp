@@ -153,6 +153,24 @@ TEST(Hair, What_falls_together_with_its_head_is_not_braked) {
   EXPECT_LT(farthest(ends[0], ends[1]), 0.003);
 }
 
+TEST(Hair, Strands_are_carried_where_their_scalp_jumps) {
+  const Placing jump = [](double t) {
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    if (t > 0.4) out = Eigen::Translation3d(2, 0, 1) * Eigen::AngleAxisd(1.5, Vec3::UnitY());
+    return out;
+  };
+  HairSetup setup = head_of_hair(20, 0.2, 16, jump);
+  setup.bodies.resize(1);
+  setup.teleports = {11};  // of 24 frames a second, from 1 on: the first behind 0.4 s
+  const auto solver = solver_of(setup);
+  State state = solver->initial_state();
+  const std::vector<Vec3f> start = strands_of(*solver, state);
+  for (int f = 0; f < 24; ++f) EXPECT_TRUE(solver->advance_frame(state).finite);
+  std::vector<Vec3f> wanted;
+  for (const Vec3f& p : start) wanted.push_back((jump(1) * p.cast<double>()).cast<float>());
+  EXPECT_LT(farthest(wanted, strands_of(*solver, state)), 1e-4);
+}
+
 TEST(Hair, One_thread_and_two_and_a_restored_state_have_the_same_bytes) {
   std::vector<Hash128> one, two;
   Bytes saved;

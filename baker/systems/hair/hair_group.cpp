@@ -17,9 +17,8 @@ namespace {
 constexpr double k_root_off = 2e-3;
 
 /// What differs from what one would think: a note each.
-void add_notes(const HairSpec& spec, std::size_t scalp, const HairGroup& group, BakePlan& plan) {
+void add_notes(const HairSpec& spec, const HairGroup& group, BakePlan& plan) {
   const auto note = [&](const std::string& text) { plan.notes.push_back(spec.owner() + ": " + text); };
-  const PrimaryPlan& primary = plan.primaries[scalp];
   const HairSolver& solver = *group.solver;
   for (const std::size_t p : group.meets)
     if (has_sheets(plan.primaries[p].trajectory->surface().parts))
@@ -42,8 +41,6 @@ void add_notes(const HairSpec& spec, std::size_t scalp, const HairGroup& group, 
   if (solver.farthest_root() > k_root_off)
     note(
         fmt::format("roots are up to {:.1f} mm off the surface, and keep that distance", 1e3 * solver.farthest_root()));
-  for (const Teleport& jump : primary.scan.teleports)
-    note(fmt::format("\"{}\" jumps into frame {}: strands are dragged along", primary.name, jump.frame));
 }
 
 }  // namespace
@@ -62,6 +59,7 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   setup.material.mutual_drag = spec.mutual_drag;
   setup.material.thickness = spec.thickness;
   setup.scalp = plan.primaries[primary].trajectory;
+  for (const Teleport& jump : plan.primaries[primary].scan.teleports) setup.teleports.push_back(jump.frame);
   auto source = hair_source(spec, *setup.scalp);
   if (!source) return located(source.error(), shot, spec.owner());
   for (const std::string& note : source->notes) plan.notes.push_back(spec.owner() + ": " + note);
@@ -104,7 +102,7 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
   auto solver = HairSolver::make(std::move(*setup));
   if (!solver) return located(solver.error(), shot, spec.owner());
   group->solver = std::move(*solver);
-  add_notes(spec, primary, *group, plan);
+  add_notes(spec, *group, plan);
   return group;
 }
 

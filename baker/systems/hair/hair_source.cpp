@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <numbers>
 
 #include "baker/core/mesh.h"
 #include "io/hair/guides.h"
@@ -14,6 +15,18 @@ namespace ft::inline baker {
 namespace {
 
 constexpr double k_rim = 0.2;  ///< of a region's radius, within which its hair becomes thin
+
+constexpr double k_sharp = 1;  ///< turn at a vertex beyond which a curve is no curve any more [rad]
+
+/// Largest turn from a segment to the next [rad].
+double sharpest(std::span<const Vec3> line) {
+  double out = 0;
+  for (std::size_t i = 2; i < line.size(); ++i) {
+    const Vec3 a = line[i - 1] - line[i - 2], b = line[i] - line[i - 1];
+    out = std::max(out, std::atan2(a.cross(b).norm(), a.dot(b)));
+  }
+  return out;
+}
 
 /// `count` of so many, evenly.
 std::vector<std::size_t> evenly(std::size_t all, int count) {
@@ -129,6 +142,13 @@ Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp) {
   const std::vector<Vec3> bind = bind_pose_of(scalp);
   auto out = spec.grows() ? from_region(spec, bind, scalp.surface().triangles) : from_file(spec, bind);
   if (!out) return out;
+  const auto bent =
+      std::ranges::count_if(out->strands, [](const HairStrand& s) { return sharpest(s.positions) > k_sharp; });
+  if (bent > 0)
+    out->notes.push_back(
+        fmt::format("{} of {} strands turn by more than {:.0f} degrees at a vertex: their curls are tighter "
+                    "than {} vertices can hold; more vertices keep them",
+                    bent, out->strands.size(), k_sharp * 180 / std::numbers::pi, spec.vertices));
   // Held to where it leaves the band; what ends in it, whole.
   for (HairStrand& strand : out->strands)
     for (std::size_t i = 0; i < strand.positions.size(); ++i)
