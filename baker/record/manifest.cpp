@@ -219,7 +219,13 @@ std::vector<std::string> stale_reasons(const Manifest& before, const Manifest& n
   }
   for (const ManifestInput& i : before.inputs)
     if (input(now, i.role) == now.inputs.end()) out.push_back(i.role + " (" + i.name + ") is gone");
-  for (std::string& change : changed_settings(before.settings, now.settings)) out.push_back(std::move(change));
+  // Enough to see what it is about.
+  constexpr std::size_t k_most_settings = 10;
+  std::vector<std::string> settings = changed_settings(before.settings, now.settings);
+  const std::size_t more = settings.size() - std::min(settings.size(), k_most_settings);
+  settings.resize(settings.size() - more);
+  out.insert(out.end(), settings.begin(), settings.end());
+  if (more > 0) out.push_back(fmt::format("{} more settings", more));
   // The lists explain; the fingerprint decides.
   if (out.empty() && before.fingerprint != now.fingerprint) out.push_back("its inputs changed");
   return out;

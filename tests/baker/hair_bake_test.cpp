@@ -157,7 +157,7 @@ TEST_F(HairBakeTest, What_makes_no_sense_is_refused_with_its_place) {
        {std::pair("region = [0, 0.15, 0]\n", "go together"),
         {"guides = \"tuft.obj\"\nregion = [0, 0, 0]\nregion_radius = 0.1\n", "it has one of them"},
         {"guides = \"tuft.obj\"\ncurl_radius = 0.01\n", "grows from a region"},
-        {"region = [0, 5, 0]\nregion_radius = 0.1\n", "no area of the region"},
+        {"region = [0, 5, 0]\nregion_radius = 0.1\n", "the nearest vertex of the body is"},
         {"region = [0, 0.15, 0]\nregion_radius = 0.1\nparting_at = [0, 0, 0]\n", "parting_along"},
         {"region_mesh = \"tuft.obj\"\n", "tuft.obj"}}) {
     const std::string said = refusal(std::string("[hair.tuft]\non = \"ball\"\n") + lines);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "baker/core/mesh.h"
@@ -120,6 +121,15 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
   if (spec.parting_along != Vec3::Zero()) growth.part = Parting{spec.parting_at, spec.parting_along};
   const double area = painted_area(region);
   if (spec.count > 0 && area > 0) growth.density = spec.count / area;
+  if (!(area > 0) && spec.region_mesh.empty()) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : body) least = std::min(least, (p - spec.region).norm());
+    return usage_error(
+        fmt::format("hair grows nowhere: the nearest vertex of the body is {:.3g} m from the middle of the region, "
+                    "whose radius is {:.3g} m",
+                    least, spec.region_radius),
+        {}, "region is a place on the body as garments lie on it, in its bind pose");
+  }
   auto strands = grown(growth, body, triangles, region);
   if (!strands) return strands.error();
   const auto wanted = static_cast<std::size_t>(std::llround(area * growth.density));
