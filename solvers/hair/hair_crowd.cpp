@@ -11,6 +11,7 @@ namespace ft::inline solvers {
 namespace {
 
 constexpr double k_most_cells = 1 << 20;
+constexpr double k_most_denser = 2;  ///< what is denser still pushes no harder: steps are explicit [1]
 
 /// Weights of the eight cells around a spot: bit k of c says the upper one along axis k.
 double weight_of(const Vec3& share, int c) {
@@ -25,6 +26,11 @@ HairCrowd::HairCrowd(const CrowdSettings& settings, std::span<const Vec3> groom,
     : settings_(settings), mass_(mass.begin(), mass.end()) {
   splat(groom, groom);
   for (const Spot& spot : spots_) combed_.push_back(mass_around(spot));
+  // A thin tip may lie among others: no place is too dense that is as dense as the groom is in the middle.
+  std::vector<double> sorted = combed_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  for (double& m : combed_) m = std::max(m, *middle);
 }
 
 std::size_t HairCrowd::cell_of(const Spot& spot, int corner) const {
@@ -76,7 +82,7 @@ void HairCrowd::feel(std::span<const Vec3> x, std::span<const Vec3> v, double h,
   // Cells that have become larger hold as much more.
   const double larger = std::pow(cell_ / settings_.cell, 3);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double denser = mass_around(spots_[i]) / (larger * combed_[i]) - 1 - settings_.spare;
+    const double denser = std::min(mass_around(spots_[i]) / (larger * combed_[i]) - 1 - settings_.spare, k_most_denser);
     if (!(denser > 0)) continue;
     for (int c = 0; c < 8; ++c)
       cells_[cell_of(spots_[i], c)].pressed += weight_of(spots_[i].share, c) * mass_[i] * settings_.pressure * denser;

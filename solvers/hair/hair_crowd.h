@@ -14,8 +14,8 @@ namespace ft::inline solvers {
 
 struct CrowdSettings {
   double cell = 0.015;    ///< m; grows with the distance of strands, and where they fly far apart
-  double pressure = 0.6;  ///< per share that is too dense: the square of a speed [m2/s2]; 0 none
-  double spare = 0.2;     ///< share by which it may be denser [1]
+  double pressure = 1.5;  ///< per share that is too dense: the square of a speed [m2/s2]; 0 none
+  double spare = 0.5;     ///< share by which it may be denser [1]
   double drag = 6;        ///< towards the mean motion [1/s]; 0 none
 };
 
@@ -45,7 +45,7 @@ class HairCrowd {
   void splat(std::span<const Vec3> x, std::span<const Vec3> v);
 
   CrowdSettings settings_;
-  std::vector<double> mass_, combed_;  ///< of each point; mass of a cell about it in the groom [kg]
+  std::vector<double> mass_, combed_;  ///< of each point; mass of a cell about it that it may have: the groom's [kg]
   // Scratch of a step.
   double cell_ = 0;
   std::array<std::size_t, 3> stride_{};

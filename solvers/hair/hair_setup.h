@@ -28,7 +28,7 @@ struct HairMaterial {
   double drag = 4;          ///< towards the motion of the root: friction among hairs [1/s]; 0 swings for ever
   double air_drag = 0.5;    ///< towards the air, by speed [1/m]: of hair that others shelter; 25 a hair alone
   double friction = 0.3;    ///< Coulomb, on what it lies on [1]
-  double pressure = 0.6;    ///< of strands that are denser than combed on one another (hair_crowd.h) [m2/s2]; 0 none
+  double pressure = 1.5;    ///< of strands that are denser than combed on one another (hair_crowd.h) [m2/s2]; 0 none
   double mutual_drag = 6;   ///< towards the mean motion of what is around [1/s]; 0 none
   double thickness = 3e-3;  ///< of a strand as others meet it: it stays so far away, if it was combed so [m]
 };

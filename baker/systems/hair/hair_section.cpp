@@ -62,7 +62,7 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
        "By the air, for a metre of way: 0.5 among others, 25 a hair alone"},
       {"friction", &HairSpec::friction, 0, 2, "1", "", false, "mu", "Coulomb coefficient on what it lies on"},
       {"pressure", &HairSpec::pressure, 0, 100, "m2/s2", "", false, "repulsion volume_pressure",
-       "With which strands that are denser than combed push apart: 0 not at all, 3 springy"},
+       "With which strands push apart that are denser by half than combed: 0 not at all, 3 springy"},
       {"mutual_drag", &HairSpec::mutual_drag, 0, 1000, "1/s", "", false, "cohesion_drag",
        "Slows what moves otherwise than the strands around it: 0 each for itself, 20 one mass"},
       {"thickness", &HairSpec::thickness, 2e-4, 0.1, "m", "", false, "offset_distance contact_distance",

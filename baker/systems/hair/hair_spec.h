@@ -33,7 +33,7 @@ struct HairSpec final : SecondarySpec, Growth {  // Growth: of what grows from a
   double drag = 4;          ///< 1/s
   double air_drag = 0.5;    ///< 1/m
   double friction = 0.3;    ///< Coulomb [1]
-  double pressure = 0.6;    ///< m2/s2
+  double pressure = 1.5;    ///< m2/s2
   double mutual_drag = 6;   ///< 1/s
   double thickness = 3e-3;  ///< m
   std::vector<std::string> meets{"*"};
