@@ -86,20 +86,17 @@ Status plan_primaries_once(BakePlan& plan, const Importer& importer, const std::
 Status plan_primaries(BakePlan& plan, const Importer& importer, const std::filesystem::path& import_cache) {
   if (const Status planned = plan_primaries_once(plan, importer, import_cache); !planned) return planned.error();
   Shot& shot = plan.inputs.shot;
-  std::vector<std::string> lines;
-  int calm = shot.preroll;
-  for (const PrimaryPlan& primary : plan.primaries) {
-    if (primary.prop) continue;
-    if (const auto hasty = hasty_preroll(shot, *primary.trajectory)) {
-      lines.push_back(hasty->text(primary.name, shot.preroll_given));
-      calm = std::max(calm, hasty->calm);
-    }
-  }
-  if (calm > shot.preroll && !shot.preroll_given) {
-    shot.preroll = calm;
+  std::vector<std::pair<std::string, HastyPreroll>> hasty;
+  for (const PrimaryPlan& primary : plan.primaries)
+    if (const auto found = primary.prop ? std::nullopt : hasty_preroll(shot, *primary.trajectory))
+      hasty.emplace_back(primary.name, *found);
+  std::optional<int> taken;
+  if (!hasty.empty() && !shot.preroll_given) {
+    for (const auto& [name, found] : hasty) taken = std::max(taken.value_or(0), found.calm);
+    shot.preroll = *taken;
     if (const Status planned = plan_primaries_once(plan, importer, import_cache); !planned) return planned.error();
   }
-  std::ranges::move(lines, std::back_inserter(plan.notes));
+  for (const auto& [name, found] : hasty) plan.notes.push_back(found.text(name, taken));
   return {};
 }
 

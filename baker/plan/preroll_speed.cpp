@@ -27,19 +27,18 @@ double fastest(const Shot& shot, const Trajectory& trajectory, int first, int la
 
 }  // namespace
 
-std::string HastyPreroll::text(const std::string& primary, bool is_kept) const {
+std::string HastyPreroll::text(const std::string& primary, std::optional<int> taken) const {
   const std::string gets_there = fmt::format(
       "primary \"{}\": goes from its bind pose to the first frame at up to {:.2g} m/s, where the shot has {:.2g} m/s "
       "at "
       "most",
       primary, there, here);
-  return is_kept
-             ? fmt::format("{}: frames of the pre-roll may cost many times those of the shot; preroll = {} is calmer",
-                           gets_there, calm)
-             : fmt::format(
-                   "{}, in the pre-roll of a shot that names none: it has {} frames instead (preroll under "
-                   "[shot] sets it)",
-                   gets_there, calm);
+  if (taken)
+    return fmt::format(
+        "{}, in the pre-roll of a shot that names none: it has {} frames instead (preroll under [shot] sets it)",
+        gets_there, *taken);
+  return fmt::format("{}: frames of the pre-roll may cost many times those of the shot; preroll = {} is calmer",
+                     gets_there, calm);
 }
 
 std::optional<HastyPreroll> hasty_preroll(const Shot& shot, const Trajectory& trajectory) {

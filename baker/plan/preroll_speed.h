@@ -15,8 +15,8 @@ struct HastyPreroll {
   double there = 0, here = 0;  ///< fastest vertex of the pre-roll and of the shot [m/s]
   int calm = 0;                ///< how long a pre-roll would do [frames]
 
-  /// A note; whether the shot names its pre-roll, and keeps it.
-  std::string text(const std::string& primary, bool is_kept) const;
+  /// A note. taken: the pre-roll that the shot gets instead [frames]; none: it names its own, and keeps it.
+  std::string text(const std::string& primary, std::optional<int> taken) const;
 };
 
 std::optional<HastyPreroll> hasty_preroll(const Shot& shot, const Trajectory& trajectory);
