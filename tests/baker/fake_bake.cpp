@@ -185,6 +185,17 @@ BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& 
   return bake(options, {none, make_group_solver}, progress);
 }
 
+void expect_threads_and_interruptions_change_no_byte(const std::filesystem::path& folder, int interrupted_after) {
+  const FakeScene any;
+  const auto products = [&](const char* name) { return any.products(folder / name); };
+  ASSERT_EQ(bake_shot_in(folder, "one").exit_code, 0);
+  ASSERT_EQ(bake_shot_in(folder, "two", 2).exit_code, 0);
+  EXPECT_EQ(products("two"), products("one"));
+  EXPECT_EQ(bake_shot_in(folder, "again", 1, interrupted_after).exit_code, 130);
+  ASSERT_EQ(bake_shot_in(folder, "again", 2, 0, true).exit_code, 0);
+  EXPECT_EQ(products("again"), products("one"));
+}
+
 std::filesystem::path ShapesBakeTest::bake_with(const std::string& name,
                                                 const std::vector<std::string>& overrides) const {
   BakeOptions options = scene_.options();

@@ -85,6 +85,8 @@ class RecordedProgress : public Progress {
 /// SIGINT.
 BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& name, int threads = 1,
                         int interrupted_after = 0, bool resume = false);
+/// Bakes it into folder/one with one thread, and beside that with two and with an interruption after so many frames.
+void expect_threads_and_interruptions_change_no_byte(const std::filesystem::path& folder, int interrupted_after);
 
 /// A bake of a scene in which systems of other shapes than meshes are written and judged.
 class ShapesBakeTest : public testing::Test {

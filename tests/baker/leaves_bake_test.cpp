@@ -32,21 +32,13 @@ class LeavesBakeTest : public testing::Test {
   BakeResult run(const std::string& name, int threads = 1, int interrupted_after = 0, bool resume = false) const {
     return bake_shot_in(folder_.path(), name, threads, interrupted_after, resume);
   }
-  std::map<std::string, std::string> products(const std::string& name) const {
-    return FakeScene().products(folder_ / name);
-  }
 
   ScratchFolder folder_;
 };
 
 TEST_F(LeavesBakeTest, Threads_and_interruptions_change_no_byte) {
   write_shot();
-  ASSERT_EQ(run("one").exit_code, 0);
-  ASSERT_EQ(run("two", 2).exit_code, 0);
-  EXPECT_EQ(products("two"), products("one"));
-  EXPECT_EQ(run("again", 1, 7).exit_code, 130);
-  ASSERT_EQ(run("again", 2, 0, true).exit_code, 0);
-  EXPECT_EQ(products("again"), products("one"));
+  expect_threads_and_interruptions_change_no_byte(folder_.path(), 7);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one/oak.abc"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one/oak.pc2")) << "PC2 cannot hold instances";
   for (const char* file : {"one/oak_near.abc", "one/oak_near.pc2"})
