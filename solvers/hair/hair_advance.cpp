@@ -89,9 +89,11 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
   const std::size_t n = at(n_), s = strand_of(group, lane);
   const HairMaterial& material = setup_.material;
   const StrandNow& strand = w.strands[at(lane)];
-  Vec3 goes_before = Vec3::Zero();  // of the vertex before: of the first one, what its root does
+  const std::size_t first = at(std::max(2, setup_.strands[s].held + 1));
+  // Of the vertex before; the last held one goes with its root.
+  Vec3 goes_before = step.roots_after[s].carry(step.roots_now[s], strand.x[first - 1]) - strand.x[first - 1];
   double gap_before = 1;
-  for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i) {
+  for (std::size_t i = first; i < n; ++i) {
     const Vec3& x = strand.x[i];
     // Where it would be, going on freely with its root.
     const Vec3 goes = step.roots_after[s].carry(step.roots_now[s], x) - x + step.h * strand.v[i] -

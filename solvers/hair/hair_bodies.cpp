@@ -31,7 +31,7 @@ HairBodies::HairBodies(std::span<const HairBody> bodies, double segment) : given
     const std::vector<Vec3> bind = bind_pose_of(*given_[b].trajectory);
     bodies_[b].triangles = given_[b].trajectory->surface().triangles;
     bodies_[b].tree = MovingTree(TriangleTree(bind, bodies_[b].triangles));
-    bodies_[b].edges = SharpEdges(bind, bodies_[b].triangles, segment, given_[b].sheet);
+    if (segment > 0) bodies_[b].edges = SharpEdges(bind, bodies_[b].triangles, segment, given_[b].sheet);
     bodies_[b].before = bodies_[b].after = bind;
     if (!given_[b].sheet) bodies_[b].surface.emplace(bind, bodies_[b].triangles, std::vector<int>(bind.size(), 0), 1);
   }

@@ -14,8 +14,8 @@ namespace ft::inline solvers {
 
 class HairBodies {
  public:
-  /// bodies have to stay. segment: length of strands' segments [m].
-  HairBodies(std::span<const HairBody> bodies, double segment);
+  /// bodies have to stay. segment: length of strands' segments [m]; 0: edges() are not asked for.
+  explicit HairBodies(std::span<const HairBody> bodies, double segment = 0);
 
   /// Where all are at a time [s], as the start of the step that comes.
   void start_at(double time);
@@ -32,6 +32,7 @@ class HairBodies {
   std::span<const Vec3> after(int body) const { return bodies_[at(body)].after; }
   /// Over the triangles at the start.
   const MovingTree& tree(int body) const { return bodies_[at(body)].tree; }
+  /// The motion that end_at() was given [m].
   const Vec3& common() const { return common_; }
   /// At the start.
   const SharpEdges& edges(int body) const { return bodies_[at(body)].edges; }
@@ -46,8 +47,8 @@ class HairBodies {
   };
   /// Of all bodies at the start what is nearest to a point within a distance, or what the point is deepest in.
   std::optional<Nearest> nearest(const Vec3& point, double look) const;
-  /// How far a point is inside of the body that it is deepest in, at the start; below 0: it is
-  /// outside of all, and how far, at most `look` [m].
+  /// How far a point is inside of the body that it is deepest in, at the start; below 0: how far
+  /// it is outside of all, at most `look` [m].
   double depth(const Vec3& point, double look) const;
   /// The farthest that a vertex of any body goes in the step [m].
   double way() const { return way_; }

@@ -10,8 +10,8 @@
 namespace ft::inline solvers {
 namespace {
 
-constexpr double k_most_cells = 1 << 20;
-constexpr double k_most_denser = 2;  ///< what is denser still pushes no harder: steps are explicit [1]
+constexpr double k_most_cells = 1 << 20;  ///< of the grid: some 40 MB
+constexpr double k_most_denser = 2;       ///< what is denser still pushes no harder: steps are explicit [1]
 
 /// Weights of the eight cells around a spot: bit k of c says the upper one along axis k.
 double weight_of(const Vec3& share, int c) {
@@ -24,7 +24,7 @@ double weight_of(const Vec3& share, int c) {
 
 HairCrowd::HairCrowd(const CrowdSettings& settings, std::span<const Vec3> groom, std::span<const double> mass)
     : settings_(settings), mass_(mass.begin(), mass.end()) {
-  splat(groom, groom);
+  splat(groom, groom);  // it does not move: velocities are not asked for
   for (const Spot& spot : spots_) combed_.push_back(mass_around(spot));
   // A thin tip may lie among others: no place is too dense that is as dense as the groom is in the middle.
   std::vector<double> sorted = combed_;

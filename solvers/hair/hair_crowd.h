@@ -16,7 +16,6 @@ struct CrowdSettings {
   double cell = 0.015;    ///< m; grows with the distance of strands, and where they fly far apart
   double pressure = 1.5;  ///< per share that is too dense: the square of a speed [m2/s2]; 0 none
   double spare = 0.5;     ///< share by which it may be denser [1]
-  double drag = 6;        ///< towards the mean motion [1/s]; 0 none
 };
 
 class HairCrowd {
@@ -24,7 +23,6 @@ class HairCrowd {
   /// groom: all points as combed [m]; mass: of each [kg].
   HairCrowd(const CrowdSettings& settings, std::span<const Vec3> groom, std::span<const double> mass);
 
-  const CrowdSettings& settings() const { return settings_; }
   /// At all points in the frame that the groom turns with, so that it meets the grid as it was combed:
   /// positions and velocities along its axes, as many as in the groom. Accelerations by density [m/s2], at most a
   /// quarter of a cell in a step of h [s], and the mean motion there by `v` [m/s].

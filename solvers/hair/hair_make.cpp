@@ -20,6 +20,7 @@ constexpr double k_alike = 0.02;
 
 /// Of the grid on which strands feel one another, by the distance of their roots [1].
 constexpr double k_crowd_cell = 1.5;
+constexpr std::size_t k_asked = 500;  ///< strands that are asked for that distance, of all
 
 /// Length [m].
 double mean_segment(const HairSetup& setup) {
@@ -46,7 +47,9 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
   if (!(m.pressure >= 0 && m.mutual_drag >= 0)) return refuse("pressure and mutual drag must not be negative");
   if (!setup.scalp) return refuse("has no scalp");
   if (setup.strands.empty()) return refuse("has no strand");
-  if (setup.riders.size() != setup.ridden.positions.size()) return refuse("its mesh and its riders do not go together");
+  if (setup.riders.size() != setup.ridden.positions.size())
+    return refuse(
+        fmt::format("its mesh has {} vertices, and {} riders", setup.ridden.positions.size(), setup.riders.size()));
   for (std::size_t s = 0; s < setup.strands.size(); ++s) {
     const std::vector<Vec3>& x = setup.strands[s].positions;
     if (x.size() < 3 || x.size() != setup.strands[0].positions.size())
@@ -136,7 +139,7 @@ void HairSolver::measure_gaps() {
   }
 }
 
-/// A cell holds some strands.
+/// Some hundred strands say how far apart roots are in the middle; a cell holds some of them.
 void HairSolver::make_crowd() {
   const HairMaterial& m = setup_.material;
   if ((m.pressure == 0 && m.mutual_drag == 0) || setup_.strands.size() < 2) return;
@@ -144,11 +147,14 @@ void HairSolver::make_crowd() {
   std::vector<double> mass;
   std::vector<double> nearest;
   const auto bind = roots_->bind();
-  for (std::size_t s = 0; s < groom_.size(); ++s) {
+  const std::size_t every = (groom_.size() + k_asked - 1) / k_asked;
+  for (std::size_t s = 0; s < groom_.size(); s += every) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < groom_.size(); ++k)
       if (k != s) least = std::min(least, (bind[k].place - bind[s].place).norm());
     nearest.push_back(least);
+  }
+  for (std::size_t s = 0; s < groom_.size(); ++s) {
     for (std::size_t i = 1; i < at(n_); ++i) {
       x.push_back(groom_[s][i]);
       mass.push_back(rods_[s / k_lanes].mass[i][static_cast<int>(s % k_lanes)]);
@@ -157,7 +163,6 @@ void HairSolver::make_crowd() {
   std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2), nearest.end());
   CrowdSettings settings;
   settings.pressure = m.pressure;
-  settings.drag = m.mutual_drag;
   settings.cell = std::max({settings.cell, k_crowd_cell * nearest[nearest.size() / 2], 1.5 * mean_segment(setup_)});
   crowd_.emplace(settings, x, mass);
 }

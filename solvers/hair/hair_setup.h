@@ -85,9 +85,8 @@ struct HairSetup {
 /// Attribute of caches: HairStrand::held of each strand.
 inline constexpr const char* k_held = "followthrough_held";
 
-/// What caches know of the setup's strands: vertices, widths, ids, and what grooming tools ask for: version, ids,
-/// widths
-/// (`groom_...`, as Unreal's import reads them).
+/// What caches know of the setup's strands: vertices, widths, ids, and what grooming tools ask for (`groom_...`, as
+/// Unreal's import reads them).
 SystemShape curves_of(const HairSetup& setup);
 /// The same of those between them. Their ids are their numbers.
 SystemShape curves_between(const HairSetup& setup);

@@ -29,16 +29,37 @@ Vec3 common_way(std::span<const RootFrame> now, std::span<const RootFrame> after
   return sum / static_cast<double>(now.size());
 }
 
+/// All guides of a state without their ghosts.
+struct GuidesOfState {
+  std::vector<Vec3> x, v, director;
+  GuidesOfState(const State& state, std::size_t n) {
+    const auto all_x = as_points(*state.find("x")), all_v = as_points(*state.find("v")),
+               all_m = as_points(*state.find("m"));
+    for (std::size_t s = 0; s < all_x.size() / n; ++s) {
+      const auto own = [&](auto all) { return all.subspan(s * n + 1, n - 1); };
+      x.insert(x.end(), own(all_x).begin(), own(all_x).end());
+      v.insert(v.end(), own(all_v).begin(), own(all_v).end());
+      add_directors(all_m.subspan(s * (n - 1), n - 1), director);
+    }
+  }
+  GuidesNow now() const { return {x, v, director}; }
+};
+
 }  // namespace
+
+std::vector<RootFrame> HairSolver::roots_at(double time) const {
+  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
+  setup_.scalp->sample(time, scalp);
+  std::vector<RootFrame> out;
+  roots_->frames(scalp, out);
+  return out;
+}
 
 State HairSolver::initial_state() const {
   State state;
   state.frame = setup_.first_frame - setup_.preroll_frames;
   state.time = -setup_.preroll_frames / setup_.fps;
-  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
-  setup_.scalp->sample(state.time, scalp);
-  std::vector<RootFrame> now;
-  roots_->frames(scalp, now);
+  const std::vector<RootFrame> now = roots_at(state.time);
   std::vector<double> x, m;
   for (std::size_t s = 0; s < setup_.strands.size(); ++s) {
     for (const Vec3& p : groom_[s]) {
@@ -61,33 +82,9 @@ State HairSolver::initial_state() const {
   return state;
 }
 
-namespace {
-
-/// All guides of a state without their ghosts.
-struct GuidesOfState {
-  std::vector<Vec3> x, v, director;
-  GuidesOfState(const State& state, std::size_t n) {
-    const auto all_x = as_points(*state.find("x")), all_v = as_points(*state.find("v")),
-               all_m = as_points(*state.find("m"));
-    for (std::size_t s = 0; s < all_x.size() / n; ++s) {
-      const auto own = [&](auto all) { return all.subspan(s * n + 1, n - 1); };
-      x.insert(x.end(), own(all_x).begin(), own(all_x).end());
-      v.insert(v.end(), own(all_v).begin(), own(all_v).end());
-      add_directors(all_m.subspan(s * (n - 1), n - 1), director);
-    }
-  }
-  GuidesNow now() const { return {x, v, director}; }
-};
-
-}  // namespace
-
 void HairSolver::system_positions(const State& state, int system, std::span<Vec3> positions) const {
   CHECK(is_ridden(system));
-  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
-  setup_.scalp->sample(state.time, scalp);
-  std::vector<RootFrame> roots;
-  roots_->frames(scalp, roots);
-  ridden_->place(GuidesOfState(state, at(n_)).now(), roots, positions);
+  ridden_->place(GuidesOfState(state, at(n_)).now(), roots_at(state.time), positions);
 }
 
 void HairSolver::system_frame(const State& state, int system, FrameData& frame) const {
@@ -152,13 +149,7 @@ FrameReport HairSolver::advance_frame(State& state) {
                t1 = (report.frame - setup_.first_frame) / setup_.fps;
   bodies_.start_at(t0);
   bodies_.end_at(t1);
-  std::vector<Vec3> scalp(at(setup_.scalp->surface().vertex_count()));
-  const auto roots_at = [&](double time, std::vector<RootFrame>& out) {
-    setup_.scalp->sample(time, scalp);
-    roots_->frames(scalp, out);
-  };
-  std::vector<RootFrame> before, now, after;
-  roots_at(t0, now), roots_at(t1, after);
+  std::vector<RootFrame> before, now = roots_at(t0), after = roots_at(t1);
   if (jumps_into(report.frame)) {
     carry(state, now, after);
     bodies_.advance();
@@ -166,6 +157,7 @@ FrameReport HairSolver::advance_frame(State& state) {
     state.frame = report.frame;
     state.time = t1;
     report.substeps = 1;
+    for (const char* own : {"hair_steps", "hair_iterations", "hair_unsettled"}) report.own[own] = 0;
     certify(state, report);
     report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return report;
@@ -176,15 +168,12 @@ FrameReport HairSolver::advance_frame(State& state) {
   const int steps = std::clamp(wanted, setup_.least_steps, setup_.most_steps);
   const double h = (t1 - t0) / steps;
   const bool goes_on = std::abs(state.find("step")->at(0) - h) < 1e-9 * h;
-  if (jumps_into(state.frame))
-    before = now;
-  else
-    roots_at(t0 - h, before);
+  before = jumps_into(state.frame) ? now : roots_at(t0 - h);
   std::vector<Vec3> push, flow;
   std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0);
   for (int k = 0; k < steps; ++k) {
     const double end = k + 1 == steps ? t1 : t0 + h * (k + 1);
-    roots_at(end, after);
+    after = roots_at(end);
     bodies_.end_at(end, common_way(now, after));
     Step step;
     step.h = h;

@@ -40,9 +40,9 @@ struct CombedInside {
 /// Blocks of its states, of all strands in the setup's order, with the ghost vertex first: "x" and "v" now, "x_before"
 /// and "v_before" a step before [m, m/s], "m" directors, "tension" [N], "step" the last step's length [s].
 ///
-/// A report's `own`: hair_steps of the frame, hair_iterations in the mean of steps and groups, hair_unsettled groups of
-/// steps, hair_longest and hair_p99, of |length / rest length - 1| of strands. inside_body counts vertices that are
-/// inside of a body by more than they were combed, crossings_body those and segments whose middles are.
+/// A report's `own`: hair_steps of the frame, 0 where its scalp jumps, hair_iterations in the mean of steps and groups,
+/// hair_unsettled strands in steps. Its strains are |length / rest length - 1| of strands. inside_body counts vertices
+/// that are inside of a body by more than they were combed, crossings_body those and segments whose middles are.
 class HairSolver final : public Solver {
  public:
   /// Refuses, by a usage error, what makes no sense: strands of different numbers of vertices or of no length, roots
@@ -78,6 +78,7 @@ class HairSolver final : public Solver {
   explicit HairSolver(HairSetup setup);
   void measure_gaps();
   void make_groups();
+  std::vector<RootFrame> roots_at(double time) const;
   void make_crowd();
   void feel_crowd(const State& state, double h, std::span<const RootFrame> roots, std::vector<Vec3>& push,
                   std::vector<Vec3>& flow);

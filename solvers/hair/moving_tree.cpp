@@ -1,6 +1,7 @@
 #include "solvers/hair/moving_tree.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ft::inline solvers {
 

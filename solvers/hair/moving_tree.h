@@ -2,7 +2,7 @@
 // motion: so what a point can meet in the step is looked for no farther than that.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <span>
 #include <vector>
 

@@ -50,7 +50,7 @@ std::vector<Mat3> frames_of(const GuidesNow& guides, std::size_t n) {
 StrandsBetween::StrandsBetween(std::span<const BetweenStrand> strands, int vertices,
                                std::shared_ptr<const Trajectory> scalp, const GuidesNow& groom,
                                std::span<const HairBody> bodies)
-    : n_(at(vertices)), scalp_(std::move(scalp)), roots_(*scalp_, roots_of(strands)), bodies_(bodies, 0.01) {
+    : n_(at(vertices)), scalp_(std::move(scalp)), roots_(*scalp_, roots_of(strands)), bodies_(bodies) {
   const std::vector<Mat3> frames = frames_of(groom, n_);
   const std::vector<Plane> planes = planes_near(groom);
   const std::size_t count = strands.size() * n_;

@@ -46,7 +46,7 @@ TEST(Hair, What_is_outside_of_a_sharp_tip_is_outside_however_its_triangles_lie_a
     cone.triangles.push_back({1, next, now});
   }
   const std::vector<HairBody> bodies{{"cone", rigid_body(cone, Vec3::Zero())}};
-  const HairBodies all(bodies, 0.01);
+  const HairBodies all(bodies);
   std::vector<std::pair<int, int>> candidates;
   find_candidates(all, {Vec3::Constant(-1), Vec3::Constant(1)}, 0, candidates);
   ASSERT_EQ(candidates.size(), cone.triangles.size());

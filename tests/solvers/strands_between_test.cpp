@@ -21,7 +21,7 @@ Placing shake(double times_a_second) {
   };
 }
 
-/// Guides, and between each three that were combed one after the other around the crown some strands.
+/// Guides, and between each of them and the two that are nearest to it some strands.
 HairSetup head_with_strands(int guides, int strands, int vertices, const Placing& way) {
   HairSetup setup = head_of_hair(guides, 0.2, vertices, way);
   std::vector<std::pair<double, int>> near;

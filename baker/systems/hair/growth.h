@@ -20,7 +20,7 @@ struct Parting {
 };
 
 struct Growth {
-  double density = 40000;         ///< roots per area where painted fully [1/m2]; guides 1e4..1e5, beyond is for renders
+  double density = 8000;          ///< roots per area where painted fully [1/m2]; guides 3e3..2e4, beyond is for renders
   double length = 0.4;            ///< along the strand [m]; 0.05 short, 0.6 to the waist
   double length_variation = 0.1;  ///< evenly up and down, of the length [1]; 0 all the same, 0.9 a wild cut
   double curl_radius = 0;         ///< of the helix [m]; 0 straight, 0.005 waves, 0.015 locks
@@ -29,7 +29,7 @@ struct Growth {
   double lift = 0.4;              ///< at the root: 0 flat along the scalp, 1 along the normal
   double bend = 0.03;             ///< length over which a strand turns to the comb [m]; 0.01 limp, 0.2 a brush
   double volume = 0.012;          ///< how far above the body the uppermost strands lie [m]; 0 all at the gap
-  Vec3 comb = -Vec3::UnitY();     ///< where strands go in the end; any length but 0. Down: as they hang
+  Vec3 comb = Vec3(0, -1, 0);     ///< where strands go in the end; any length but 0. Down: as they hang
   std::optional<Parting> part;    ///< none: they lie as the comb says
   std::uint64_t seed = 1;
   int vertices = 24;  ///< of a strand, at equal distances; 2 or more

@@ -92,6 +92,7 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
     output.primary = primary;
     output.shape = std::make_shared<const SystemShape>(std::move(shape));
   };
+  group->is_crowd = (spec.pressure > 0 || spec.mutual_drag > 0) && setup->strands.size() > 1;
   add_output(curves_of(*setup));
   if (!setup->between.empty()) add_output(curves_between(*setup));
   if (!setup->ridden.positions.empty()) {
@@ -119,11 +120,20 @@ std::vector<std::string> HairGroup::lines(const BakePlan& plan) const {
     length += own / curves.curve_count();
     longest = std::max(longest, own);
   }
-  return {
-      fmt::format("hair \"{}\" on \"{}\": {} strands of {} vertices, {:.0f} mm long in the mean and {:.0f} at most; "
-                  "it meets {}; strands feel one another as a crowd, not strand by strand",
-                  outputs[0].name(), plan.primaries[primary].name, curves.curve_count(),
-                  curves.vertices_per_curve.at(0), 1e3 * length, 1e3 * longest, met_names(plan))};
+  std::vector<std::string> out{fmt::format(
+      "hair \"{}\" on \"{}\": {} strands of {} vertices, {:.0f} mm long in the mean and {:.0f} at most; it meets {}; "
+      "strands {}",
+      outputs[0].name(), plan.primaries[primary].name, curves.curve_count(), curves.vertices_per_curve.at(0),
+      1e3 * length, 1e3 * longest, met_names(plan),
+      is_crowd ? "feel one another as a crowd, not strand by strand" : "do not feel one another")};
+  for (std::size_t k = 1; k < outputs.size(); ++k)
+    out.push_back(outputs[k].shape
+                      ? fmt::format("  \"{}\": {} strands between them, which go with their guides and are not solved; "
+                                    "their velocities are those of the guides",
+                                    outputs[k].name(), outputs[k].shape->curves.curve_count())
+                      : fmt::format("  \"{}\": {} vertices, which ride on the strands", outputs[k].name(),
+                                    outputs[k].mesh->positions.size()));
+  return out;
 }
 
 }  // namespace ft::inline baker

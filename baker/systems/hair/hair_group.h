@@ -13,6 +13,7 @@ class HairGroup final : public DrawnGroup {
   using DrawnGroup::DrawnGroup;
 
   std::unique_ptr<HairSolver> solver;  ///< until make_solver()
+  bool is_crowd = true;                ///< whether strands feel one another
 
   std::string_view role() const override { return "hair"; }
   Result<std::unique_ptr<Solver>> make_solver() override;

@@ -11,7 +11,8 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
       {"guides", &HairSpec::guides, 0, 0, "", "", false, "curves file groom strands",
        "Guide strands, root first, on the body as garments lie on it: TressFX (`.tfx`), OBJ lines or a hair mesh "
        "(`.obj`), Alembic curves (`.abc`). Or it grows from a region: the keys from `region` to `seed`"},
-      {"scale", &HairSpec::scale, 1e-6, 1e6, "m", "", false, "unit", "Metres per unit of that file"},
+      {"scale", &HairSpec::scale, 1e-6, 1e6, "m", "", false, "unit",
+       "Metres per unit of that file, or of `region_mesh`"},
       {"position", &HairSpec::position, -1e4, 1e4, "m", "", false, "offset translate", "Added to its places"},
       {"count", &HairSpec::count, 0, 1'000'000, "", "", false, "number guides_count",
        "How many of its strands are solved, evenly chosen, or grown; 0: all, or as `density` says"},
@@ -89,6 +90,8 @@ void judge_source(const Value& table, const HairSpec& spec, FaultList& faults) {
   const Member *at = table.find("parting_at"), *along = table.find("parting_along");
   if ((at == nullptr) != (along == nullptr))
     faults.add((at ? at : along)->place, spec.owner() + ": parting_at and parting_along go together");
+  if (const Member* clumping = table.find("clumping"); clumping && spec.strands == 0)
+    faults.add(clumping->place, spec.owner() + ": clumping is of strands between guides, and strands is 0");
   if (!guides) return;
   for (const char* key : {"density", "length", "curl_radius", "curl_pitch", "clump_size", "lift", "bend", "volume",
                           "comb", "parting_at", "seed"})

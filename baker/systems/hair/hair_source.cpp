@@ -121,6 +121,9 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
   if (spec.parting_along != Vec3::Zero()) growth.part = Parting{spec.parting_at, spec.parting_along};
   const double area = painted_area(region);
   if (spec.count > 0 && area > 0) growth.density = spec.count / area;
+  if (!(area > 0) && !spec.region_mesh.empty())
+    return usage_error("hair grows nowhere: no vertex has any red", spec.region_mesh.filename().string(),
+                       "hair is as dense as the red of its vertices' colours; without colours it is everywhere");
   if (!(area > 0) && spec.region_mesh.empty()) {
     double least = std::numeric_limits<double>::infinity();
     for (const Vec3& p : body) least = std::min(least, (p - spec.region).norm());

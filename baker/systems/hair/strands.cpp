@@ -68,7 +68,7 @@ BetweenStrand root_of(const StrandsAsked& asked, const Neighbours& neighbours, s
   if (!around.empty()) {
     guide[1] =
         around[std::min(around.size() - 1, static_cast<std::size_t>(lot(0) * static_cast<double>(around.size())))];
-    // The third is next to both.
+    // The third is a neighbour of both, on either side of them by lot.
     double least = std::numeric_limits<double>::infinity();
     for (const std::size_t k : around) {
       if (k == guide[1] || !neighbours.are(guide[1], k)) continue;
@@ -76,7 +76,8 @@ BetweenStrand root_of(const StrandsAsked& asked, const Neighbours& neighbours, s
       if (off < least) least = off, guide[2] = k;
     }
   }
-  // The third of the triangle next to its first corner, so that all of it is filled once by its three corners.
+  // In the part of the triangle that is nearest to its first corner; each of its corners is the first for as many
+  // strands, so that all of it is filled.
   const double root = std::sqrt(lot(1)), along = lot(2);
   std::array<double, 3> share{1 - root, root * (1 - along), root * along};
   std::ranges::sort(share, std::greater<>());
