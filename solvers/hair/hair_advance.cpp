@@ -15,9 +15,6 @@ constexpr double k_slow = 2e-3;
 /// Beyond its thickness and what it goes in the step, a vertex looks so much farther for what is near [m]; and no
 /// farther than the second.
 constexpr double k_look = 2e-3, k_farthest = 0.06;
-/// Where both ends of a segment are pressed so near to a body, its middle is looked at, too: a flat ridge could be in
-/// it [m].
-constexpr double k_pressed = 5e-3;
 constexpr double k_hold = 10;     ///< of what is tied, by a strand's stiffness along [1]
 constexpr int k_most_pieces = 8;  ///< of a step that does not settle
 
@@ -105,7 +102,7 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
     const int count = find_nearest(bodies_, w.candidates, x, reach, k_contacts, near, &goes);
     const double gap_now = count > 0 ? near[0].gap : 1.0;
     if (segment_gaps_[s * n + i] > k_least_reach)
-      add_segment_contact(group, lane, i, goes_before, goes, std::max(gap_before, gap_now) < k_pressed, w);
+      add_segment_contact(group, lane, i, goes_before, goes, std::max(gap_before, gap_now) < reach, w);
     goes_before = goes, gap_before = gap_now;
     const double keeps = std::clamp(0.98 * gap, k_least_reach, material.thickness);
     const double shift = std::min(0.0, gap - k_least_reach);
@@ -124,9 +121,10 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
   }
 }
 
-/// A plane for the segment before a vertex, where it is near an edge over which it could cut.
+/// A plane for the segment before a vertex, where it is near an edge over which it could cut; and where both its ends
+/// lie on a body, one for its middle: a flat ridge could be in it.
 void HairSolver::add_segment_contact(std::size_t group, int lane, std::size_t i, const Vec3& before_goes,
-                                     const Vec3& goes, bool pressed, Work& w) const {
+                                     const Vec3& goes, bool lies, Work& w) const {
   const std::size_t n = at(n_), s = strand_of(group, lane);
   const HairMaterial& material = setup_.material;
   const Vec3 &a = w.strands[at(lane)].x[i - 1], &b = w.strands[at(lane)].x[i];
@@ -147,7 +145,7 @@ void HairSolver::add_segment_contact(std::size_t group, int lane, std::size_t i,
   if (const auto edge = find_nearest_edge(bodies_, a, b, material.thickness + k_look, &before_goes, &goes))
     meet(0, edge->surface, edge->share);
   NearSurface near;
-  if (pressed && find_nearest(bodies_, w.candidates, 0.5 * (a + b), material.thickness, 1, &near, &goes) > 0)
+  if (lies && find_nearest(bodies_, w.candidates, 0.5 * (a + b), material.thickness, 1, &near, &goes) > 0)
     meet(1, near, 0.5);
 }
 

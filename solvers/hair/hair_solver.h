@@ -89,7 +89,7 @@ class HairSolver final : public Solver {
   void store(const Step& step, std::size_t group, int lane, const StrandNow& now) const;
   void add_contacts(const Step& step, std::size_t group, int lane, Work& work) const;
   void add_segment_contact(std::size_t group, int lane, std::size_t vertex, const Vec3& before_goes, const Vec3& goes,
-                           bool pressed, Work& work) const;
+                           bool lies, Work& work) const;
   RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
   bool is_ridden(int system) const { return ridden_ && system == system_count() - 1; }
   bool jumps_into(int frame) const;
