@@ -159,8 +159,8 @@ Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp) {
       std::ranges::count_if(out->strands, [](const HairStrand& s) { return sharpest(s.positions) > k_sharp; });
   if (bent > 0)
     out->notes.push_back(
-        fmt::format("{} of {} strands turn by more than {:.0f} degrees at a vertex: their curls are tighter "
-                    "than {} vertices can hold; more vertices keep them",
+        fmt::format("{} of {} strands turn by more than {:.0f} degrees at a vertex, in tight curls or at "
+                    "corners: {} vertices round them off; more vertices keep them",
                     bent, out->strands.size(), k_sharp * 180 / std::numbers::pi, spec.vertices));
   // Held to where it leaves the band; what ends in it, whole.
   for (HairStrand& strand : out->strands)
