@@ -115,6 +115,10 @@ int run(const CheckArguments& a) {
         "absent: in %d frames a cloth does not meet all of the feasible collider, at most %d of its vertices are "
         "left out\n",
         totals.absent_frames, totals.absent_vertices);
+  if (totals.crossings_absent > 0)
+    std::printf(
+        "absent: %d crossings are with what is left out, or lie where a body overlaps itself, and do not count\n",
+        totals.crossings_absent);
   std::printf(
       "%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, "
       "worst p99 strain %.2f %%%s\n",

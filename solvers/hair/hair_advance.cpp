@@ -8,8 +8,9 @@ namespace ft::inline solvers {
 namespace {
 
 /// Contact stiffness by mass: k = 20 m / (2/3 h)^2 at h = 1/96 s, whatever the step is: it must not move a groom. What
-/// was combed nearer than its thickness is met as firmly within what it keeps.
-constexpr double k_stiffness = 20 * (1.5 * 96) * (1.5 * 96);
+/// was combed nearer than its thickness is met as firmly within what it keeps; but nearer than k_firm [m] a contact
+/// becomes stiffer only where something presses through it (RodStep).
+constexpr double k_stiffness = 20 * (1.5 * 96) * (1.5 * 96), k_firm = 2e-4;
 /// Friction is viscous below this speed [m/s].
 constexpr double k_slow = 2e-3;
 /// Beyond its thickness and what it goes in the step, a vertex looks so much farther for what is near [m]; and no
@@ -113,7 +114,7 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
       set_lane(contact.normal, lane, plane.normal);
       contact.offset[lane] = plane.normal.dot(plane.place) + shift;
       contact.reach[lane] = keeps;
-      contact.stiffness[lane] = k_stiffness * material.thickness / keeps * rods_[group].mass[i][lane];
+      contact.stiffness[lane] = k_stiffness * material.thickness / std::max(keeps, k_firm) * rods_[group].mass[i][lane];
       set_lane(w.moved[k_contacts * i + at(c)], lane, plane.place + plane.turn * (x - plane.from) - x);
       contact.friction[lane] = c == 0 ? material.friction * bodies_.friction(surface.body) : 0;
       w.around.touches = true;
@@ -136,7 +137,7 @@ void HairSolver::add_segment_contact(std::size_t group, int lane, std::size_t i,
     contact.share[lane] = share;
     contact.offset[lane] = plane.normal.dot(plane.place);
     contact.reach[lane] = keeps;
-    contact.stiffness[lane] = k_stiffness * material.thickness / keeps * rods_[group].mass[i][lane];
+    contact.stiffness[lane] = k_stiffness * material.thickness / std::max(keeps, k_firm) * rods_[group].mass[i][lane];
     const Vec3 place = a + share * (b - a);
     set_lane(w.segments_moved[k_segment_contacts * i + at(slot)], lane,
              plane.place + plane.turn * (place - plane.from) - place);

@@ -11,7 +11,8 @@ namespace {
 
 /// Cosine of the angle between directions that are told apart.
 constexpr double k_apart = 0.77;
-/// What is said to be deeper inside than this is asked by rays, too [m].
+/// What is said to be deeper inside than this is asked by rays, too; and what is outside of a triangle by less, and
+/// behind another that is farther by less [m].
 constexpr double k_deep = 1e-3;
 
 /// Of a point of the plane of a triangle.
@@ -75,9 +76,24 @@ bool HairBodies::inside(int body, const Vec3& point, const TriangleTree::Hit& hi
   const auto answer = own.surface->judge(point, hit, {&one, 1}, own.before);
   if (!answer) return false;
   normal = answer->normal;
-  if (answer->distance >= 0) return false;
-  return answer->distance > -k_deep || !own.surface->closed(0) ||
-         rays_say_inside(point, own.tree.tree(), own.before, own.triangles);
+  const auto by_rays = [&] { return rays_say_inside(point, own.tree.tree(), own.before, own.triangles); };
+  if (answer->distance >= 0)
+    return answer->distance < k_deep && own.surface->closed(0) &&
+           is_behind_any(own, point, answer->distance + k_deep) && by_rays();
+  return answer->distance > -k_deep || !own.surface->closed(0) || by_rays();
+}
+
+/// Whether a point is behind a triangle within a distance: where skin is folded over, the nearest one may face inwards.
+bool HairBodies::is_behind_any(const Body& body, const Vec3& point, double distance) {
+  bool out = false;
+  body.tree.tree().for_each_near(TreeBox::around(point.array() - distance, point.array() + distance), [&](int t) {
+    if (out) return;
+    const Triangle& corner = body.triangles[at(t)];
+    const Vec3 &a = body.before[at(corner[0])], &b = body.before[at(corner[1])], &c = body.before[at(corner[2])];
+    if ((b - a).cross(c - a).dot(point - a) >= 0) return;
+    out = closest_on_triangle(point, a, b, c).squared_distance < distance * distance;
+  });
+  return out;
 }
 
 bool HairBodies::rays_inside(const Vec3& point) const {

@@ -61,6 +61,8 @@ class HairBodies {
     SharpEdges edges;
     std::optional<PartSurface> surface;  ///< as one part; of sheets, none
   };
+  static bool is_behind_any(const Body& body, const Vec3& point, double distance);
+
   std::span<const HairBody> given_;
   std::vector<Body> bodies_;
   Vec3 common_ = Vec3::Zero();

@@ -48,7 +48,7 @@ struct HairSolver::Work {
 };
 
 /// Gap that a vertex keeps where it was combed nearer than that, or inside [m].
-inline constexpr double k_least_reach = 2e-4;
+inline constexpr double k_least_reach = 2e-5;
 
 /// Of a strand's edges without the ghost's, the last one twice: one for each vertex.
 inline void add_directors(std::span<const Vec3> of_edges, std::vector<Vec3>& out) {

@@ -44,6 +44,7 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
     return refuse("a material's numbers must be positive");
   if (!(m.damping >= 0 && m.drag >= 0 && m.air_drag >= 0 && m.friction >= 0))
     return refuse("a material's losses must not be negative");
+  if (!(setup.hairs >= 0)) return refuse("it stands for a number of hairs that is not negative");
   if (!(m.pressure >= 0 && m.mutual_drag >= 0)) return refuse("pressure and mutual drag must not be negative");
   if (!setup.scalp) return refuse("has no scalp");
   if (setup.strands.empty()) return refuse("has no strand");
@@ -71,6 +72,8 @@ Result<std::unique_ptr<HairSolver>> HairSolver::make(HairSetup setup) {
 
 HairSolver::HairSolver(HairSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies, mean_segment(setup_)) {
   n_ = static_cast<int>(setup_.strands[0].positions.size()) + 1;
+  const double counted = static_cast<double>(setup_.between.empty() ? setup_.strands.size() : setup_.between.size());
+  hairs_ = (setup_.hairs > 0 ? setup_.hairs : counted) / static_cast<double>(setup_.strands.size());
   std::vector<Vec3> roots;
   for (const HairStrand& strand : setup_.strands) roots.push_back(strand.positions.front());
   roots_ = std::make_unique<HairRoots>(*setup_.scalp, roots);

@@ -71,6 +71,7 @@ struct HairSetup {
   std::optional<Vec3> combed_gravity;     ///< under which the groom stands still, where it is not gravity [m/s2]
   std::shared_ptr<const Wind> wind;       ///< null: still air
   HairMaterial material;
+  double hairs = 0;  ///< that all strands together stand for, in forces; 0: one each, those between them if there are
   std::vector<HairStrand> strands;
   std::vector<BetweenStrand> between;       ///< a second system, "NAME_strands", where there are any
   Mesh ridden;                              ///< a system more, of its own name, if it has vertices: in the bind pose

@@ -157,12 +157,14 @@ FrameReport HairSolver::advance_frame(State& state) {
     state.frame = report.frame;
     state.time = t1;
     report.substeps = 1;
+    add_force({}, 0, t1, report);
     for (const char* own : {"hair_steps", "hair_iterations", "hair_unsettled"}) report.own[own] = 0;
     certify(state, report);
     report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return report;
   }
   double way = bodies_.way();
+  std::vector<Wrench> impulses;
   for (std::size_t s = 0; s < now.size(); ++s) way = std::max(way, (after[s].place - now[s].place).norm());
   const int wanted = static_cast<int>(std::min(std::ceil(way / k_way), 1e6));
   const int steps = std::clamp(wanted, setup_.least_steps, setup_.most_steps);
@@ -192,6 +194,7 @@ FrameReport HairSolver::advance_frame(State& state) {
       thread_local Work work;
       for (std::size_t g = begin; g < finish; ++g) advance_group(step, g, work);
     });
+    impulses.push_back(impulse_on_scalp(state, h, air.get()));
     bodies_.advance();
     std::swap(before, now);
     std::swap(now, after);
@@ -200,6 +203,7 @@ FrameReport HairSolver::advance_frame(State& state) {
   state.frame = report.frame;
   state.time = t1;
   report.substeps = steps;
+  add_force(impulses, h, t1, report);
   double sum = 0, rest = 0;
   for (std::size_t g = 0; g < rods_.size(); ++g) sum += iterations[g], rest += unsettled[g];
   report.newton_iterations = static_cast<int>(sum);

@@ -42,7 +42,8 @@ struct CombedInside {
 ///
 /// A report's `own`: hair_steps of the frame, 0 where its scalp jumps, hair_iterations in the mean of steps and groups,
 /// hair_unsettled strands in steps. Its strains are |length / rest length - 1| of strands. inside_body counts vertices
-/// that are inside of a body by more than they were combed, crossings_body those and segments whose middles are.
+/// that are inside of a body by more than they were combed, crossings_body those and segments whose middles are. Its
+/// force is on the body that the roots are on, all that is no gravity and no air: what strands lie on elsewhere, too.
 class HairSolver final : public Solver {
  public:
   /// Refuses, by a usage error, what makes no sense: strands of different numbers of vertices or of no length, roots
@@ -55,6 +56,8 @@ class HairSolver final : public Solver {
   std::span<const double> stiffened() const { return stiffened_; }
   /// From the scalp [m].
   double farthest_root() const { return roots_->farthest(); }
+  /// Of all hairs that the strands stand for [kg].
+  double mass() const;
   CombedInside combed_inside() const;
 
   /// The guides; what is between them and a mesh that rides on them, if there are such.
@@ -95,6 +98,8 @@ class HairSolver final : public Solver {
   bool jumps_into(int frame) const;
   void carry(State& state, std::span<const RootFrame> now, std::span<const RootFrame> after) const;
   void certify(const State& state, FrameReport& report) const;
+  Wrench impulse_on_scalp(const State& state, double h, const AirNow* air) const;
+  void add_force(std::span<const Wrench> impulses, double h, double time, FrameReport& report) const;
 
   HairSetup setup_;
   int n_ = 0;  ///< vertices of a strand, with its ghost
@@ -107,6 +112,7 @@ class HairSolver final : public Solver {
   std::vector<double> gaps_;              ///< of each vertex as combed, to what it meets [m]
   std::vector<double> segment_gaps_;  ///< of the segment before each vertex, to sharp edges of it, or of its middle [m]
   std::vector<double> lengths_, stiffened_;
+  double hairs_ = 1;  ///< that a strand stands for
   SystemShape shape_, between_shape_;
   std::unique_ptr<StrandsBetween> between_;
   std::unique_ptr<RiddenMesh> ridden_;

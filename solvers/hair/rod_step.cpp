@@ -8,6 +8,9 @@ namespace {
 /// From this iteration on steps are searched along, and friction stands still after the first few.
 constexpr int k_search_from = 4, k_gauss_newton_from = 14, k_friction_until = 2;
 constexpr int k_halvings = 8;
+/// By how much a contact becomes stiffer that did not keep a vertex out, and the strain along that its push at the
+/// surface may give a strand [1].
+constexpr double k_stiffer = 4, k_push_strain = 1e-3;
 
 template <class T>
 bool any(const T& mask) {
@@ -114,6 +117,34 @@ void RodStep<T>::freeze_friction(RodSurroundings<T>& around, const RodPose<T>& p
     }
 }
 
+/// Of the lanes `who`: those in which a contact has become stiffer.
+template <class T>
+T RodStep<T>::stiffen_pierced(const Rod<T>& rod, RodSurroundings<T>& around, const RodPose<T>& pose,
+                              const T& who) const {
+  const T zero{}, one = all_lanes<T>(1);
+  T any_stiffer{};
+  const auto stiffen = [&](const T& gap, const T& reach, T& stiffness) {
+    const T most = k_push_strain * rod.stretch / (4.0 * larger(reach, all_lanes<T>(1e-12)));
+    const T pierced = choose(gap < zero, one, zero) * choose(reach > zero, one, zero) *
+                      choose(k_stiffer * stiffness < most, one, zero) * who;
+    stiffness = stiffness * (one + (k_stiffer - 1) * pierced);
+    any_stiffer = larger(any_stiffer, pierced);
+  };
+  for (std::size_t i = 2; i < pose.x.size(); ++i) {
+    for (std::size_t c = k_contacts * i; c < k_contacts * (i + 1); ++c) {
+      HairContact<T>& k = around.contacts[c];
+      if (!(largest_lane(k.reach) > 0)) break;
+      stiffen(T(dot(k.normal, pose.x[i]) - k.offset), k.reach, k.stiffness);
+    }
+    for (std::size_t c = k_segment_contacts * i; c < k_segment_contacts * (i + 1); ++c) {
+      SegmentContact<T>& k = around.segments[c];
+      if (!(largest_lane(k.reach) > 0)) continue;
+      stiffen(T(dot(k.normal, pose.x[i - 1] + k.share * (pose.x[i] - pose.x[i - 1])) - k.offset), k.reach, k.stiffness);
+    }
+  }
+  return any_stiffer;
+}
+
 template <class T>
 void RodStep<T>::assemble(const Rod<T>& rod, const RodSurroundings<T>& around, const RodStrains<T>& since,
                           double damping, const std::vector<T>& tension, const RodPose<T>& pose, const T& full) {
@@ -181,7 +212,9 @@ RodStepReport RodStep<T>::run(const Rod<T>& rod, RodSurroundings<T>& around, con
     }
     move_pose(step_, share, pose, trial_);
     std::swap(pose, trial_);
-    active = active * (1.0 - settles);
+    T stiffer{};
+    if (around.touches && any(T(settles * active))) stiffer = stiffen_pierced(rod, around, pose, T(settles * active));
+    active = active * (1.0 - settles * (1.0 - stiffer));
   }
   for (int lane = 0; lane < k_lanes; ++lane) {
     if constexpr (std::is_same_v<T, double>)

@@ -31,7 +31,8 @@ struct SegmentContact {
 };
 /// Force along the normal [N], its slope, positive [N/m], and its energy [J], at a gap d below the reach r: k (r - d)
 /// down to r/2, k r^2 / (4 d) down to r/8, so that what presses harder is held nearer but out, and straight on from
-/// there, so that what is inside is pushed out.
+/// there, so that what is inside is pushed out. At the surface it is 4 k r; a contact that this does not hold becomes
+/// stiffer during the step, as long as it would not stretch the strand.
 template <class T>
 void contact_force(const T& gap, const T& reach, const T& stiffness, T& force, T& slope, T& energy);
 
@@ -69,6 +70,7 @@ class RodStep {
   T contacts_of_segments(const RodSurroundings<T>& around, const RodPose<T>& pose, bool derivatives);
   T surroundings(const RodSurroundings<T>& around, const RodPose<T>& pose, bool derivatives);
   void freeze_friction(RodSurroundings<T>& around, const RodPose<T>& pose) const;
+  T stiffen_pierced(const Rod<T>& rod, RodSurroundings<T>& around, const RodPose<T>& pose, const T& who) const;
   void assemble(const Rod<T>& rod, const RodSurroundings<T>& around, const RodStrains<T>& since, double damping,
                 const std::vector<T>& tension, const RodPose<T>& pose, const T& full);
 

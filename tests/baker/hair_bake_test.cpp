@@ -129,6 +129,23 @@ TEST_F(HairBakeTest, A_share_of_the_guides_is_chosen_evenly_and_material_comes_f
   EXPECT_NEAR((setup.strands[0].positions[0] - Vec3(-0.01, top + 0.001, -0.01)).norm(), 0, 1e-5);
 }
 
+TEST_F(HairBakeTest, Strands_are_left_out_by_their_numbers) {
+  write_shot(std::string(k_hair) + "leave_out = \"0, 2-7\"\n");
+  ShotFaults faults;
+  auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
+  ASSERT_TRUE(inputs) << inputs.error().text();
+  auto made = make_plan(std::move(*inputs), no_files(), {});
+  ASSERT_TRUE(made) << made.error().text();
+  const auto setup = hair_setup(made->shot(), dynamic_cast<const HairSpec&>(*made->shot().secondaries.at(0)), 0, *made);
+  ASSERT_TRUE(setup) << setup.error().text();
+  ASSERT_EQ(setup->strands.size(), 2u);
+  EXPECT_EQ(setup->strands[0].id, 1u);
+  EXPECT_EQ(setup->strands[1].id, 8u);
+  EXPECT_NE(refusal(std::string(k_hair) + "leave_out = \"9\"\n").find("the file has 9, from 0"), std::string::npos);
+  EXPECT_NE(refusal(std::string(k_hair) + "leave_out = \"0-8\"\n").find("all of its 9"), std::string::npos);
+  EXPECT_NE(refusal(std::string(k_hair) + "leave_out = \"a\"\n").find("leave_out"), std::string::npos);
+}
+
 TEST_F(HairBakeTest, What_makes_no_sense_is_refused_with_its_place) {
   std::ofstream(folder_ / "empty.obj") << "v 0 0 0\n";
   std::ofstream(folder_ / "far.obj") << "v 5 0 0\nv 5 0.1 0\nv 5 0.2 0\nl 1 2 3\n";

@@ -153,6 +153,34 @@ TEST(Hair, What_falls_together_with_its_head_is_not_braked) {
   EXPECT_LT(farthest(ends[0], ends[1]), 0.003);
 }
 
+TEST(Hair, The_body_carries_the_weight_of_its_hair_and_what_it_takes_to_move_it) {
+  const double lift = 3;  // m/s2
+  const Placing rise = [&](double t) {
+    return Eigen::Isometry3d(Eigen::Translation3d(0, 0.5 * lift * std::max(0.0, t) * std::max(0.0, t), 0));
+  };
+  for (const bool rises : {false, true}) {
+    HairSetup setup = head_of_hair(20, 0.05, 12, rises ? rise : Placing());
+    setup.hairs = 1e5;
+    setup.material.air_drag = 0;
+    setup.material.stiffness = 1000;  // a brush, which goes with its head at once
+    const auto solver = solver_of(std::move(setup));
+    const double length = 0.05, one = 1320 * std::numbers::pi * 40e-6 * 40e-6 * length;
+    EXPECT_NEAR(solver->mass(), 1e5 * one, 0.06 * 1e5 * one);  // half a segment is the root's
+    State state = solver->initial_state();
+    Wrench mean;
+    double frames = 0;
+    for (int f = 0; f < 48; ++f) {
+      const FrameReport report = solver->advance_frame(state);
+      ASSERT_EQ(report.forces.size(), 1u);
+      if (f >= 24) mean += report.forces[0].mean, ++frames;
+    }
+    const double expected = solver->mass() * (k_gravity + (rises ? lift : 0));
+    printf("%.5f N, expected %.5f\n", -mean.force.y() / frames, expected);
+    EXPECT_NEAR(-mean.force.y() / frames, expected, 0.005 * expected);
+    EXPECT_LT(std::hypot(mean.force.x(), mean.force.z()) / frames, 0.005 * expected);
+  }
+}
+
 TEST(Hair, Strands_are_carried_where_their_scalp_jumps) {
   const Placing jump = [](double t) {
     Eigen::Isometry3d out = Eigen::Isometry3d::Identity();

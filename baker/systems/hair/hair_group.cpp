@@ -58,6 +58,7 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   setup.material.pressure = spec.pressure;
   setup.material.mutual_drag = spec.mutual_drag;
   setup.material.thickness = spec.thickness;
+  setup.hairs = spec.hairs;
   setup.scalp = plan.primaries[primary].trajectory;
   for (const Teleport& jump : plan.primaries[primary].scan.teleports) setup.teleports.push_back(jump.frame);
   auto source = hair_source(spec, *setup.scalp);
@@ -103,6 +104,7 @@ Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& s
   auto solver = HairSolver::make(std::move(*setup));
   if (!solver) return located(solver.error(), shot, spec.owner());
   group->solver = std::move(*solver);
+  group->mass = group->solver->mass();
   add_notes(spec, *group, plan);
   return group;
 }
@@ -126,6 +128,7 @@ std::vector<std::string> HairGroup::lines(const BakePlan& plan) const {
       outputs[0].name(), plan.primaries[primary].name, curves.curve_count(), curves.vertices_per_curve.at(0),
       1e3 * length, 1e3 * longest, met_names(plan),
       is_crowd ? "feel one another as a crowd, not strand by strand" : "do not feel one another")};
+  out.push_back(fmt::format("  its forces are those of {:.3g} kg: key \"hairs\"", mass));
   for (std::size_t k = 1; k < outputs.size(); ++k)
     out.push_back(outputs[k].shape
                       ? fmt::format("  \"{}\": {} strands between them, which go with their guides and are not solved; "

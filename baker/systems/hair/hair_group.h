@@ -14,6 +14,7 @@ class HairGroup final : public DrawnGroup {
 
   std::unique_ptr<HairSolver> solver;  ///< until make_solver()
   bool is_crowd = true;                ///< whether strands feel one another
+  double mass = 0;                     ///< kg
 
   std::string_view role() const override { return "hair"; }
   Result<std::unique_ptr<Solver>> make_solver() override;

@@ -2,6 +2,7 @@
 
 #include "baker/systems/interface/section_of.h"
 #include "io/shot/choice_keys.h"
+#include "io/shot/ranges.h"
 
 namespace ft::inline baker {
 namespace {
@@ -16,6 +17,9 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
       {"position", &HairSpec::position, -1e4, 1e4, "m", "", false, "offset translate", "Added to its places"},
       {"count", &HairSpec::count, 0, 1'000'000, "", "", false, "number guides_count",
        "How many of its strands are solved, evenly chosen, or grown; 0: all, or as `density` says"},
+      {"leave_out", &HairSpec::leave_out, 0, 0, "", "", false, "without exclude skip_ids",
+       "Strands of that file that it goes without, by their numbers from 0: `\"3, 10-12\"`; what hangs wrong in the "
+       "preview has its number in messages and caches"},
       {"vertices", &HairSpec::vertices, 4, 200, "", "", false, "points segments resolution",
        "Of each strand, at equal distances"},
       {"region", &HairSpec::region, -1e4, 1e4, "m", "", false, "region_center region_centre grow_at",
@@ -48,6 +52,9 @@ std::span<const ShotKey<HairSpec>> hair_keys() {
        "How many more go between the guides, as `NAME_strands`: 20000 for a picture"},
       {"clumping", &HairSpec::clumping, 0, 1, "1", "", false, "clump",
        "Of those: 0 evenly spread, 1 together with their guide at the tip"},
+      {"hairs", &HairSpec::hairs, 0, 1e8, "", "", false, "hair_count total_hairs",
+       "How many hairs the whole of it stands for, by which its forces on the body are: 100000 a head; 0: as many as "
+       "it has strands"},
       {"tie", &HairSpec::tie, -1e4, 1e4, "m", "", false, "band ponytail_band",
        "Centre of a band, as of a pony-tail: strands that go through it are held from the root to where they leave it"},
       {"tie_radius", &HairSpec::tie_radius, 0, 10, "m", "", false, "band_radius", "Of that band; 0: there is none"},
@@ -92,6 +99,12 @@ void judge_source(const Value& table, const HairSpec& spec, FaultList& faults) {
     faults.add((at ? at : along)->place, spec.owner() + ": parting_at and parting_along go together");
   if (const Member* clumping = table.find("clumping"); clumping && spec.strands == 0)
     faults.add(clumping->place, spec.owner() + ": clumping is of strands between guides, and strands is 0");
+  std::vector<int> ids;
+  std::string fault;
+  if (const Member* out = table.find("leave_out"); out && !parse_vertices(spec.leave_out, ids, fault))
+    faults.add(out->place, spec.owner() + ": leave_out: " + fault);
+  if (const Member* out = table.find("leave_out"); out && !guides)
+    faults.add(out->place, spec.owner() + ": leave_out is of strands of a file, and it grows from a region");
   if (!guides) return;
   for (const char* key : {"density", "length", "curl_radius", "curl_pitch", "clump_size", "lift", "bend", "volume",
                           "comb", "parting_at", "seed"})

@@ -11,6 +11,7 @@
 #include "io/hair/guides.h"
 #include "io/hair/resample.h"
 #include "io/shot/mesh_file.h"
+#include "io/shot/ranges.h"
 
 namespace ft::inline baker {
 namespace {
@@ -30,10 +31,24 @@ double sharpest(std::span<const Vec3> line) {
 }
 
 /// `count` of so many, evenly.
-std::vector<std::size_t> evenly(std::size_t all, int count) {
-  const std::size_t wanted = count > 0 ? std::min(all, at(count)) : all;
+std::vector<std::size_t> evenly(std::span<const std::size_t> all, int count) {
+  const std::size_t wanted = count > 0 ? std::min(all.size(), at(count)) : all.size();
   std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < wanted; ++k) out.push_back(k * all / wanted);
+  for (std::size_t k = 0; k < wanted; ++k) out.push_back(all[k * all.size() / wanted]);
+  return out;
+}
+
+/// Of so many strands those that are not left out; a usage error names what is not there, and where nothing is left.
+Result<std::vector<std::size_t>> chosen(std::size_t count, const std::string& leave_out) {
+  std::vector<int> ids;
+  std::string fault;
+  if (!leave_out.empty() && !parse_vertices(leave_out, ids, fault)) return usage_error("leave_out: " + fault);
+  if (!ids.empty() && at(ids.back()) >= count)
+    return usage_error(fmt::format("leave_out names strand {}, and the file has {}, from 0", ids.back(), count));
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < count; ++k)
+    if (!std::binary_search(ids.begin(), ids.end(), static_cast<int>(k))) out.push_back(k);
+  if (out.empty()) return usage_error(fmt::format("leave_out names all of its {} strands", count));
   return out;
 }
 
@@ -57,8 +72,10 @@ Result<HairSource> from_file(const HairSpec& spec, std::span<const Vec3> bind) {
   auto guides = read_guides(spec.guides, spec.scale, there);
   if (!guides) return guides.error();
   out.notes = std::move(guides->notes);
+  auto wanted = chosen(guides->strands.size(), spec.leave_out);
+  if (!wanted) return wanted.error();
   std::vector<int> solved(guides->strands.size(), -1);
-  for (const std::size_t k : evenly(guides->strands.size(), spec.count)) {
+  for (const std::size_t k : evenly(*wanted, spec.count)) {
     solved[k] = static_cast<int>(out.strands.size());
     HairStrand& strand = out.strands.emplace_back();
     strand.id = k;

@@ -16,6 +16,7 @@ struct HairSpec final : SecondarySpec, Growth {  // Growth: of what grows from a
   double scale = 1;                              ///< m per unit of it
   Vec3 position = Vec3::Zero();                  ///< added to its places [m]
   int count = 0;                                 ///< of guides that are solved, evenly chosen; 0: all
+  std::string leave_out;                         ///< ids of guides of the file that are not solved: "3, 10-12"
   std::filesystem::path region_mesh;             ///< .obj: where it grows, instead of guides
   Vec3 region = Vec3::Zero();         ///< middle of a ball in which the body has hair, on the body as garments lie [m]
   double region_radius = 0;           ///< of it; 0: none [m]
@@ -24,6 +25,7 @@ struct HairSpec final : SecondarySpec, Growth {  // Growth: of what grows from a
   int seed_number = 1;
   int strands = 0;          ///< between the guides; 0: none
   double clumping = 0.5;    ///< of those
+  double hairs = 0;         ///< that all of it stands for; 0: one each
   Vec3 tie = Vec3::Zero();  ///< centre of a band, on the body as garments lie on it [m]
   double tie_radius = 0;    ///< strands are held from the root to where they leave it; 0: no band [m]
   double width = 1e-4;      ///< diameter of a strand as drawn [m]

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "baker/record/met_bodies.h"
+#include "baker/systems/hair/overlapped_skin.h"
 #include "collision/check/crossings.h"
 #include "collision/check/penetration.h"
 #include "collision/geometry/triangle_tree.h"
@@ -44,7 +45,9 @@ class JudgedHair final : public JudgedGroup {
     if (const Status read = out->read_first_frame(); !read) return read.error();
     return std::unique_ptr<JudgedGroup>(std::move(out));
   }
-  JudgedHair(CacheTrack track, MetBodies met) : track_(std::move(track)), met_(std::move(met)) {}
+  JudgedHair(CacheTrack track, MetBodies met) : track_(std::move(track)), met_(std::move(met)) {
+    for (const CacheTrack& body : met_.bodies) skins_.emplace_back(body.rest.positions, body.triangles);
+  }
 
   Result<FrameReport> judge(int index, int frame, std::span<const AbsentRuns>) const override {
     std::vector<Vec3> x;
@@ -65,7 +68,7 @@ class JudgedHair final : public JudgedGroup {
       if (body.sheet)
         judge_sheet(x, body, y, report);
       else
-        judge_body(x, body, y, report);
+        judge_body(x, body, skins_[at(&body - met_.bodies.data())], y, report);
     }
     return report;
   }
@@ -111,9 +114,16 @@ class JudgedHair final : public JudgedGroup {
     }
     return {};
   }
-  void judge_body(std::span<const Vec3> x, const CacheTrack& body, std::span<const Vec3> y, FrameReport& report) const {
+  void judge_body(std::span<const Vec3> x, const CacheTrack& body, const OverlappedSkin& skin, std::span<const Vec3> y,
+                  FrameReport& report) const {
+    TriangleTree tree;
     for (const Penetration& p : penetrations(x, y, body.triangles, k_deep)) {
       if (combed_[at(p.vertex)] > k_deep || is_held(p.vertex)) continue;
+      if (tree.empty()) tree = TriangleTree(y, body.triangles);
+      if (skin.holds(x[at(p.vertex)], tree, y)) {
+        ++report.crossings_absent;
+        continue;
+      }
       ++report.inside_body;
       ++report.crossings_body;
       if (p.depth <= report.deepest_drawn) continue;
@@ -146,11 +156,12 @@ class JudgedHair final : public JudgedGroup {
 
   CacheTrack track_;
   MetBodies met_;
-  std::vector<int> first_;          ///< vertex of each strand, and how many there are in all
-  std::vector<double> lengths_;     ///< of strands in the first frame [m]
-  std::vector<double> combed_;      ///< depths of vertices in the first frame: roots, and what was combed inside [m]
-  std::vector<std::int16_t> held_;  ///< vertices of each strand, from the root on, that do not move beside it
-  std::vector<char> through_;       ///< 1: in the first frame the segment that ends at the vertex is through a sheet
+  std::vector<OverlappedSkin> skins_;  ///< of each of them
+  std::vector<int> first_;             ///< vertex of each strand, and how many there are in all
+  std::vector<double> lengths_;        ///< of strands in the first frame [m]
+  std::vector<double> combed_;         ///< depths of vertices in the first frame: roots, and what was combed inside [m]
+  std::vector<std::int16_t> held_;     ///< vertices of each strand, from the root on, that do not move beside it
+  std::vector<char> through_;          ///< 1: in the first frame the segment that ends at the vertex is through a sheet
 };
 
 }  // namespace
