@@ -71,11 +71,11 @@ struct Tolerances {
   double metres, degrees;
 };
 
-/// Meshes of constant topology, instances and curves can be compared so far.
+/// Meshes of constant topology, instances, curves and points can be compared.
 Result<std::unique_ptr<CacheReader>> open_comparable(const std::filesystem::path& path) {
   auto reader = open_cache_of_any_shape(path);
   const auto holds = [&](OutputShape shape) { return reader && (*reader)->info().content.shape == shape; };
-  if (holds(OutputShape::k_instances) || holds(OutputShape::k_curves)) return reader;
+  if (holds(OutputShape::k_instances) || holds(OutputShape::k_curves) || holds(OutputShape::k_points)) return reader;
   return open_cache(path);
 }
 
@@ -137,6 +137,7 @@ int CompareReport::diverging_count() const {
 
 std::string CompareReport::element(int index) const {
   if (curves) return curves->element(index);
+  if (points) return "point " + (index < 0 ? std::string("-") : std::to_string(points->ids[at(index)]));
   if (!instances) return "vertex " + std::to_string(index);
   return "instance " + (index < 0 ? std::string("-") : std::to_string(instances->ids[at(index)]));
 }
@@ -165,6 +166,10 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, d
   }
   if (info_a.content.shape == OutputShape::k_curves) {
     if (const Status s = compare_curves(a, b, r); !s) return give_up(s.error().text());
+    return r;
+  }
+  if (info_a.content.shape == OutputShape::k_points) {
+    if (const Status s = compare_points(a, b, r); !s) return give_up(s.error().text());
     return r;
   }
 

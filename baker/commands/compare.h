@@ -1,5 +1,6 @@
 // compare: are two caches, or the caches of two bake folders, the same within a tolerance? For regression suites and
-// for artists who changed "nothing". Meshes, instances (compare_instances.h) and curves (compare_curves.h). Any two
+// for artists who changed "nothing". Meshes, instances (compare_instances.h), curves (compare_curves.h), points
+// (compare_points.h). Any two
 // formats: what only one of them holds (topology, frame rate, velocities) is not compared. compare_caches is pure:
 // readers in, report out; compare_report.h turns reports into text, JSON, HTML and JUnit.
 #pragma once
@@ -11,6 +12,7 @@
 
 #include "baker/commands/compare_curves.h"
 #include "baker/commands/compare_instances.h"
+#include "baker/commands/compare_points.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
 #include "io/cache/cache.h"
@@ -26,7 +28,8 @@ struct CompareOptions {
 
 enum class CompareVerdict {
   k_equal,      ///< exit code 0
-  k_different,  ///< 1: same topology and range, a vertex beyond the tolerance; instances or strands that only one has
+  k_different,  ///< 1: same topology and range, a vertex beyond the tolerance; instances, strands or points that only
+                ///< one has
   k_incomparable,  ///< 3: another topology or frame range, or unreadable
 };
 
@@ -64,12 +67,13 @@ struct CompareReport {
   std::vector<float> picture_distances;           ///< m
   std::optional<InstanceDifference> instances{};  ///< of caches of instances
   std::optional<CurveDifference> curves{};        ///< of caches of curves
+  std::optional<PointDifference> points{};        ///< of caches of points
 
   bool diverges(const FrameDifference& f) const {
     return f.max > tolerance || f.max_speed > speed_tolerance || f.turn > turn_tolerance || f.spin > spin_tolerance ||
            f.scale > tolerance;
   }
-  /// "vertex 12", or "instance 4031" by its id, or "strand 1004, vertex 7".
+  /// "vertex 12", or "instance 4031" by its id, "point 77", or "strand 1004, vertex 7".
   std::string element(int index) const;
   int diverging_count() const;
 };

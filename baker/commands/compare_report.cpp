@@ -21,6 +21,8 @@ nlohmann::ordered_json to_json(const CompareReport& r, const FrameDifference& f)
     if (element < 0) return;
     if (r.instances)
       j[of_instances] = r.instances->ids[static_cast<std::size_t>(element)];
+    else if (r.points)
+      j[std::string(of_mesh) == "vertex" ? "point" : "speed_point"] = r.points->ids[static_cast<std::size_t>(element)];
     else
       j[of_mesh] = element;
     if (!r.curves) return;
@@ -70,9 +72,14 @@ nlohmann::ordered_json to_json(const CurveDifference& d) {
           {"lengths_b", to_json(d.lengths_b)}};
 }
 
+nlohmann::ordered_json to_json(const PointDifference& d) {
+  return {{"common", d.common}, {"missing", d.missing}, {"extra", d.extra}, {"p95", d.p95}, {"width_max", d.width_max}};
+}
+
 std::string place_in_table(const CompareReport& r, int element) {
   if (element < 0) return "-";
   if (r.instances) return std::to_string(r.instances->ids[static_cast<std::size_t>(element)]);
+  if (r.points) return std::to_string(r.points->ids[static_cast<std::size_t>(element)]);
   if (!r.curves) return std::to_string(element);
   const std::size_t strand = r.curves->strand_of(element);
   return fmt::format("{}/{}", r.curves->ids[strand], element - r.curves->starts[strand]);
@@ -142,8 +149,12 @@ std::string summary(const CompareReport& r) {
     return fmt::format("largest difference {} in frame {}, {}; RMS {}; tolerance {}", length_text(w.max), w.frame,
                        r.element(w.vertex), length_text(r.rms), length_text(r.tolerance));
   }
+  if (r.first_diverging < 0 && r.points && r.points->same_set())
+    return fmt::format("widths differ by up to {}", length_text(r.points->width_max));
   if (r.first_diverging < 0)
-    return std::string(r.curves ? "the strands" : "the instances") +
+    return std::string(r.curves   ? "the strands"
+                       : r.points ? "the points"
+                                  : "the instances") +
            " are not the same ones; those that both have do not differ";
   std::string text = first_difference(r, at(r, r.first_diverging));
   if (r.worst >= 0)
@@ -158,8 +169,9 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
     out += fmt::format("{}: {}: {}\n  a: {}\n  b: {}\n", r.system, verdict_name(r.verdict), summary(r), r.a, r.b);
     if (r.instances) out += instances_text(r);
     if (r.curves) out += curves_text(r);
+    if (r.points) out += points_text(r);
     if (r.verdict != CompareVerdict::k_different || r.first_diverging < 0) continue;
-    const char* where = r.instances ? "instance" : r.curves ? "strand/vertex" : "vertex";
+    const char* where = r.instances ? "instance" : r.curves ? "strand/vertex" : r.points ? "point" : "vertex";
     out += fmt::format("  {:>8} {:>12} {:>12} {:>14} {:>12}\n", "frame", "max [mm]", "rms [mm]", where,
                        r.instances ? "max [deg]" : "max [m/s]");
     int lines = 0;
@@ -190,6 +202,7 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
       j["vertex_count"] = r.vertex_count;
       if (r.instances) j["instances"] = to_json(*r.instances);
       if (r.curves) j["curves"] = to_json(*r.curves);
+      if (r.points) j["points"] = to_json(*r.points);
       j["velocities_compared"] = r.velocities;
       j["rms"] = r.rms;
       j["diverging_frames"] = r.diverging_count();

@@ -36,6 +36,7 @@ std::string contents(const ManifestSystem& s) {
   switch (s.shape) {
     case OutputShape::k_mesh: return fmt::format("{} vertices, {} faces", s.vertex_count, s.face_count);
     case OutputShape::k_curves: return fmt::format("{} strands, {} vertices", s.curve_count, s.count);
+    case OutputShape::k_points: return "points, which come and go";
     default: return fmt::format("{} {}, {} prototypes", s.count, shape_key(s.shape), s.prototypes.size());
   }
 }

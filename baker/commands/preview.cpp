@@ -71,7 +71,9 @@ Result<PreviewPage> preview_page(const PreviewOptions& options) {
   replace(page, "%PATHS%", embedded_paths());
   replace(page, "%INSTANCES%", embedded_instances());
   replace(page, "%CURVES%", embedded_curves());
+  replace(page, "%POINTS%", embedded_points());
   replace(page, "%WIND%", embedded_wind());
+  replace(page, "%WATER%", embedded_water());
   replace(page, "%PLAYER%", embedded_player());
   replace(page, "%CONTROLS%", embedded_controls());
   replace(page, "%THREE%", embedded_three());

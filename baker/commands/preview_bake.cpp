@@ -11,6 +11,7 @@
 #include "baker/commands/preview.h"
 #include "baker/commands/preview_curves.h"
 #include "baker/commands/preview_instances.h"
+#include "baker/commands/preview_points.h"
 #include "baker/core/edge_strain.h"
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
@@ -136,6 +137,7 @@ Json describe(const Clip& clip) {
   Json out{{"name", clip.system.name}, {"role", clip.system.role}, {"vertices", clip.track.rest.vertex_count()}};
   if (const SystemKind* kind = find_system_kind(clip.system.role)) {
     out["sheet"] = kind->is_sheet();
+    if (kind->is_liquid()) out["liquid"] = true;
     out["colour"] = kind->colour();
   }
   out["low"] = {clip.box.lo[0], clip.box.lo[1], clip.box.lo[2]};
@@ -252,8 +254,7 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder, double curve
   for (const ManifestSystem& system : manifest->systems) {
     auto track = open_track(bake_folder, system, *manifest);
     if (!track) return track.error();
-    if (system.shape != OutputShape::k_mesh && system.shape != OutputShape::k_instances &&
-        system.shape != OutputShape::k_curves)
+    if (system.shape == OutputShape::k_grid)
       return input_error(std::string("the page cannot show ") + std::string(shape_name(system.shape)) + " yet",
                          (bake_folder / system.caches[0].file).string());
     frames = std::min(frames, track->reader->info().frame_count);
@@ -290,8 +291,9 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder, double curve
   for (Clip& clip : clips) {
     if (clip.system.role == "collider" && has_body) continue;  // looks like the body and costs as much
     if (clip.system.shape != OutputShape::k_mesh) {
-      auto shown = clip.system.shape == OutputShape::k_curves ? preview_curves(clip.system, clip.track, frames, share)
-                                                              : preview_instances(clip.system, clip.track, frames);
+      auto shown = clip.system.shape == OutputShape::k_curves   ? preview_curves(clip.system, clip.track, frames, share)
+                   : clip.system.shape == OutputShape::k_points ? preview_points(clip.system, clip.track, frames)
+                                                                : preview_instances(clip.system, clip.track, frames);
       if (!shown) return shown.error();
       if (const SystemKind* kind = find_system_kind(clip.system.role)) (*shown)["colour"] = kind->colour();
       bake["systems"].push_back(std::move(*shown));

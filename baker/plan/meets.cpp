@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/shot/patterns.h"
+#include "io/shot/words.h"
 
 namespace ft::inline baker {
 namespace {
@@ -38,8 +39,10 @@ bool stands_still(const Shot& shot, const PrimaryPlan& primary) {
 }
 
 bool is_two_way(const Shot& shot, const std::string& primary) {
-  return std::any_of(shot.secondaries.begin(), shot.secondaries.end(),
-                     [&](const auto& s) { return s->on == primary && s->coupling == "two-way"; });
+  return std::any_of(shot.secondaries.begin(), shot.secondaries.end(), [&](const auto& s) {
+    return (s->on == primary && s->coupling == "two-way") ||
+           std::ranges::any_of(s->section->moves(*s), [&](const std::string& p) { return matches(p, primary); });
+  });
 }
 
 std::string why_alone(const Shot& shot, const PrimaryPlan& primary) {

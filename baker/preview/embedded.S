@@ -14,7 +14,9 @@ embed plots, FT_PLOTS_FILE
 embed paths, FT_PATHS_FILE
 embed instances, FT_INSTANCES_FILE
 embed curves, FT_CURVES_FILE
+embed points, FT_POINTS_FILE
 embed wind, FT_WIND_FILE
+embed water, FT_WATER_FILE
 embed player, FT_PLAYER_FILE
 embed three, FT_THREE_FILE
 embed controls, FT_CONTROLS_FILE

@@ -26,7 +26,7 @@
 
   // ---- data ----
   function coordinate(s, index, vertex, axis) {
-    const packed = s.positions[(index * s.vertices + vertex) * 3 + axis];
+    const packed = s.positions[((s.points ? s.points.starts[index] : index * s.vertices) + vertex) * 3 + axis];
     if (s.curves) return s.curves.bounds[6 * index + axis] + packed * s.curves.bounds[6 * index + 3 + axis];
     return s.low[axis] + packed * s.step[axis];
   }
@@ -103,9 +103,9 @@
     let garment = 0;
     const colour_of = (s) => s.colour || (s.curves ? hair_brown : palette[garment++ % palette.length]);
     for (const s of systems) {
-      if (s.instances || s.curves) {
+      if (s.instances || s.curves || s.points) {
         s.plain = colour_of(s);
-        s.drawing = (s.curves ? makeCurves : makeInstances)(s, s.plain, bytes);
+        s.drawing = (s.curves ? makeCurves : s.points ? makePoints : makeInstances)(s, s.plain, bytes);
         s.mesh = s.drawing.group;
         s.mesh.visible = !s.hidden;
         s.drawing.material.wireframe = $('wireframe').checked;
@@ -117,12 +117,12 @@
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
       geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
       s.plain = secondary(s) ? colour_of(s) : 0xc4beb4;
-      const material = new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
+      const material = s.liquid ? makeWaterMaterial(s.plain, scene.background) : new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
         side: s.sheet ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
         wireframe: secondary(s) && $('wireframe').checked });
       s.mesh = new THREE.Mesh(geometry, material);
-      s.mesh.castShadow = !s.stands;
-      s.mesh.receiveShadow = true;
+      s.mesh.castShadow = !s.stands && !s.liquid;
+      s.mesh.receiveShadow = !s.liquid;
       s.mesh.frustumCulled = false;
       s.mesh.visible = s.role !== 'collider' && !s.hidden;
       group.add(s.mesh);
@@ -310,6 +310,7 @@
   }
   function how_many(s) {
     if (s.instances) return s.vertices + ' instances';
+    if (s.points) return 'up to ' + s.vertices + ' points';
     return (s.curves ? s.curves.strands + ' strands, ' : '') + s.vertices + ' vertices' + (s.curves?.note ? ' drawn' : '');
   }
   function describe() {

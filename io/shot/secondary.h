@@ -63,6 +63,11 @@ class SecondarySection {
 
   /// What `on` says: "who wears it".
   virtual std::string_view whom() const = 0;
+  /// Whether one has to be named where there are several; else it is on the first.
+  virtual bool needs_on() const { return true; }
+  /// Primaries that it moves while it is solved, beside the one that it is on and is coupled with two-way; names with
+  /// `*` and `?`.
+  virtual std::vector<std::string> moves(const SecondarySpec&) const { return {}; }
   /// Patterns of what it meets beside what it is on. One that is another secondary's reference() has that baked before.
   virtual std::vector<std::string> meets(const SecondarySpec&) const { return {}; }
   /// Names of others of its kind that it can only be solved together with.

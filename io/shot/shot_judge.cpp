@@ -35,7 +35,8 @@ void judge_wearer(const Value& root, SecondarySpec& spec, const std::vector<std:
       faults.add(place_of(root, {spec.kind(), spec.name}), owner + ": a primary has the same name" +
                                                                (name == spec.name ? "" : " as its " + in_quotes(name)) +
                                                                ", their caches would overwrite each other");
-  if (spec.on.empty() && primaries.size() == 1) spec.on = primaries.front();
+  const bool is_clear = primaries.size() == 1 || (!primaries.empty() && !spec.section->needs_on());
+  if (spec.on.empty() && is_clear) spec.on = primaries.front();
   if (primaries.empty() || contains(primaries, spec.on) || contains(carriers, spec.on)) return;
   const Place place = place_of(root, {spec.kind(), spec.name, "on"});
   if (spec.on.empty())

@@ -128,6 +128,8 @@ class SystemKind {
   virtual bool shows_body() const { return false; }
   /// Whether its meshes are sheets, which are seen from both sides.
   virtual bool is_sheet() const { return false; }
+  /// Whether its meshes are surfaces of a liquid, which mirrors and is looked through.
+  virtual bool is_liquid() const { return false; }
   /// In which the preview draws it, 0xrrggbb; 0: the next that no other has.
   virtual std::uint32_t colour() const { return 0; }
 };
