@@ -31,6 +31,7 @@ struct Flow {
   std::array<FlowSide, 4> sides{};
 
   std::vector<double> bed;     ///< height of the ground [m]
+  std::vector<double> bed_x, bed_z;  ///< of the ground at faces, see find_face_beds() [m]
   std::vector<double> h;       ///< thickness of the water [m], never below zero
   std::vector<double> lift;    ///< head above bed + h: not zero near bodies alone [m]
   std::vector<double> u, w;    ///< on faces [m/s]
@@ -57,6 +58,9 @@ inline constexpr double k_dry = 1e-7;
 /// Puts what lies behind walls and open sides into the ghosts of `values`: the mirror image. Faces along x have
 /// `face` 0, along z 1, cells -1; velocities square to a wall change their sign.
 void fill_ghosts(const Flow& flow, std::vector<double>& values, int face);
+
+/// Heights of the ground at faces: half-way where it is smooth, the upper side's at a step. Once the bed is known.
+void find_face_beds(Flow& flow);
 
 /// First half of a step: velocities u1, w1 and fluxes qx1, qz1 of all faces from the state at its start. Stelling and
 /// Duinmeijer (2003), advection and depth at faces limited by van Leer. Ghosts must be filled.

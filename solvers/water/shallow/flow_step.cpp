@@ -28,7 +28,7 @@ inline double van_leer(double a, double b) {
 }
 
 struct alignas(64) Tile {
-  double b[k_all], h[k_all], eta[k_all], head[k_all], u[k_all], w[k_all];
+  double bx[k_all], bz[k_all], h[k_all], eta[k_all], head[k_all], u[k_all], w[k_all];
   double eta_x[k_all], eta_z[k_all], u_x[k_all], u_z[k_all], w_x[k_all], w_z[k_all];  ///< limited differences, halved
   double qx[k_all], qz[k_all];
   double u1[k_all], w1[k_all], qx1[k_all], qz1[k_all], root[k_all];
@@ -76,11 +76,14 @@ void slopes(Tile& t) {
   }
 }
 
-/// Of water through face c with velocity v; the cells beside it are c - back and c.
-inline double depth_of_face(const double* b, const double* eta, const double* slope, int c, int back, double v) {
+/// Of water through face c with velocity v; the cells beside it are c - back and c. Never more than twice what stands
+/// upwind, so that nothing comes from dry ground.
+inline double depth_of_face(const double* bed, const double* h, const double* eta, const double* slope, int c, int back,
+                            double v) {
   const double from_low = eta[c - back] + slope[c - back], from_high = eta[c] - slope[c];
-  const double level = v > 0 ? from_low : from_high;
-  return std::max(0.0, level - std::max(b[c - back], b[c]));
+  const double h_low = h[c - back], h_high = h[c];
+  const double level = v > 0 ? from_low : from_high, most = v > 0 ? h_low : h_high;
+  return std::min(std::max(0.0, level - bed[c]), 2 * most);
 }
 
 /// y[c] = depth^(-1/3) of each face. A first guess from the bits of a float, within 4 %, then Newton's method.
@@ -108,7 +111,7 @@ void momentum(const Tile& t, bool along_x, double dt, double cell, double gravit
               const double* __restrict root, double* __restrict v1, double* __restrict q1) {
   constexpr int s = k_cols;
   const int a = along_x ? 1 : s, o = along_x ? s : 1;
-  const double *__restrict b = t.b, *__restrict h = t.h, *__restrict eta = t.eta, *__restrict head = t.head,
+  const double *__restrict b = along_x ? t.bx : t.bz, *__restrict h = t.h, *__restrict eta = t.eta, *__restrict head = t.head,
                            *__restrict v = along_x ? t.u : t.w, *__restrict va = along_x ? t.u_x : t.w_z,
                            *__restrict vo = along_x ? t.u_z : t.w_x, *__restrict qa = along_x ? t.qx : t.qz,
                            *__restrict qo = along_x ? t.qz : t.qx, *__restrict ea = along_x ? t.eta_x : t.eta_z,
@@ -134,7 +137,7 @@ void momentum(const Tile& t, bool along_x, double dt, double cell, double gravit
       next /= 1 + dt * (friction.manning * std::sqrt(speed * speed + across * across) * y2 * y2 +
                         friction.viscous * y2 * y2 * y2);
     }
-    const double depth = depth_of_face(b, eta, ea, c, a, next);
+    const double depth = depth_of_face(b, h, eta, ea, c, a, next);
     const double wet = depth > k_dry ? 1.0 : 0.0;
     v1[c] = next * wet;
     q1[c] = next * wet * depth;
@@ -188,13 +191,30 @@ inline double draining(double h, double out) {
 
 }  // namespace
 
+void find_face_beds(Flow& f) {
+  for (const bool along_x : {true, false}) {
+    const std::size_t back = along_x ? 1 : f.row;
+    std::vector<double>& out = along_x ? f.bed_x : f.bed_z;
+    for (int k = 0; k <= f.nz; ++k)
+      for (int i = 0; i <= f.nx; ++i) {
+        const std::size_t c = f.of(i, k);
+        const auto slope = [&](std::size_t n) {
+          const std::size_t far = std::min(n + back, f.size() - 1);
+          return 0.5 * van_leer(f.bed[n] - f.bed[n - back], f.bed[far] - f.bed[n]);
+        };
+        out[c] = std::max(f.bed[c - back] + slope(c - back), f.bed[c] - slope(c));
+      }
+  }
+}
+
 double face_depth(const Flow& f, std::size_t c, bool along_x, double v) {
   const std::size_t back = along_x ? 1 : f.row, from = v > 0 ? c - back : c;
   const double level = f.bed[from] + f.h[from], below = f.bed[from - back] + f.h[from - back],
                above = f.bed[from + back] + f.h[from + back];
   const bool wet = std::min(std::min(f.h[from], f.h[from - back]), f.h[from + back]) > k_dry;
   const double slope = wet ? 0.5 * van_leer(level - below, above - level) : 0.0;
-  return std::max(0.0, level + (v > 0 ? slope : -slope) - std::max(f.bed[c - back], f.bed[c]));
+  const double depth = level + (v > 0 ? slope : -slope) - (along_x ? f.bed_x : f.bed_z)[c];
+  return std::min(std::max(0.0, depth), 2 * f.h[from]);
 }
 
 double passed_flux(const Flow& f, std::size_t c, bool along_x, double dt) {
@@ -231,13 +251,15 @@ void step_velocities(Flow& f, const FlowLaws& laws, double dt) {
     Tile t;
     for (std::size_t n = begin; n < end; ++n) {
       const int i0 = tiles.i0(n), k0 = tiles.k0(n);
-      copy_in(f, f.bed, i0, k0, t.b);
+      copy_in(f, f.bed, i0, k0, t.eta);
+      copy_in(f, f.bed_x, i0, k0, t.bx);
+      copy_in(f, f.bed_z, i0, k0, t.bz);
       copy_in(f, f.h, i0, k0, t.h);
       copy_in(f, f.u, i0, k0, t.u);
       copy_in(f, f.w, i0, k0, t.w);
       copy_in(f, f.lift, i0, k0, t.head);
       for (int c = 0; c < k_all; ++c) {
-        t.eta[c] = t.b[c] + t.h[c];
+        t.eta[c] += t.h[c];
         t.head[c] = t.eta[c] + t.head[c];
       }
       slopes(t);

@@ -59,7 +59,7 @@ void NearWater::couple(Flow& f, const NearLaws& laws, double dt) {
           double surface = std::min(level, level_beyond);
           if (head > head_beyond) surface = std::min(level, room_beyond);
           if (head < head_beyond) surface = std::min(level_beyond, room);
-          depth = std::max(0.0, surface - std::max(f.bed[cell.c], f.bed[beyond]));
+          depth = std::max(0.0, surface - (along_x ? f.bed_x : f.bed_z)[face]);
         }
         if (!done) {
           const std::vector<double>& v = along_x ? f.u : f.w;

@@ -35,6 +35,8 @@ void Patch::begin(const Flow& whole, const CellBox& box, bool alone) {
     }
   };
   take(whole.bed, flow.bed);
+  take(whole.bed_x, flow.bed_x);
+  take(whole.bed_z, flow.bed_z);
   take(whole.edge, flow.edge);
   take(whole.lift, flow.lift);
   take(alone ? whole.h : whole.h1, flow.h);

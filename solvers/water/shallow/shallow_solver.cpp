@@ -29,6 +29,7 @@ ShallowSolver::ShallowSolver(ShallowSetup setup)
       model_.edge[c] = model_.bed[c] + model_.h[c];
     }
   fill_ghosts(model_, model_.bed, -1);
+  find_face_beds(model_);
   fill_ghosts(model_, model_.h, -1);
   fill_ghosts(model_, model_.edge, -1);
   for (const ShallowFloat& f : setup_.floats) floats_.push_back(float_model(f.body));

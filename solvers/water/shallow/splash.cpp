@@ -47,11 +47,9 @@ void throw_droplets(Flow& f, const NearWater& near, const ShallowSplash& splash,
       const double sideways = 0.5 * (across[cell.c] + across[cell.c + next]);
       const double heading = along_x ? std::atan2(sideways, (high ? 1 : -1) * out)
                                      : std::atan2((high ? 1 : -1) * out, sideways);
-      const RandomKey key{time.seed, 0x5b1a, time.frame,
-                          mix64(time.step) ^ (static_cast<std::uint64_t>(f.x0 + cell.i) * 0x10000u +
-                                              static_cast<std::uint64_t>(f.z0 + cell.k)) *
-                                                     4 +
-                                  static_cast<std::uint64_t>(side)};
+      const std::uint64_t where = (static_cast<std::uint64_t>(f.x0 + cell.i) * 0x10000u +
+                                   static_cast<std::uint64_t>(f.z0 + cell.k)) * 4 + static_cast<std::uint64_t>(side);
+      const RandomKey key{time.seed, 0x5b1a, time.frame, mix64(time.step) ^ where};
       double left = wanted;
       std::uint64_t draw = 0;
       for (int n = 0; n < 64 && left > 0 && droplets.size() < most; ++n) {
