@@ -117,6 +117,7 @@ void NearWater::gate(const Flow& flow, const NearLaws& laws) {
     const double bed = flow.bed[cell.c];
     cell.begin = static_cast<int>(reaches_.size());
     double room = 0;
+    cell.gives = k_infinite;
     int columns = 0, closed = -1, last = -1;
     for (int s = cell.spans_begin; s < cell.spans_end; ++s) {
       const ColumnSpan& span = columns_.spans[at(s)];
@@ -138,6 +139,7 @@ void NearWater::gate(const Flow& flow, const NearLaws& laws) {
         r.top = r.bottom + laws.cap;
         r.top_way = r.bottom_way, r.top_place = r.bottom_place, r.top_body = r.bottom_body;
       }
+      cell.gives = std::min(cell.gives, r.top);
       reaches_.push_back(r);
       if (span.column != last) {
         last = span.column;

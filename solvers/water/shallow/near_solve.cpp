@@ -8,7 +8,12 @@
 namespace ft::inline solvers {
 namespace {
 
-constexpr int k_most_newton = 30, k_most_halvings = 6;
+constexpr int k_most_newton = 40, k_most_halvings = 12;
+/// The first changes are made whole: mostly that ends at once in the right pieces of V, and a change that is cut for one
+/// cell's sake keeps all others waiting.
+constexpr int k_whole_changes = 12;
+/// How much of its slope the energy may have left along a change [1].
+constexpr double k_turned = 0.5;
 /// Of thicknesses: absolute [m], and as a share of what was wrong at first.
 constexpr double k_tolerance = 1e-11, k_relative = 1e-6;
 /// Put on the diagonal, where a body lies on the ground and what is left can go nowhere.
@@ -205,7 +210,13 @@ void NearWater::solve(Flow& f, std::span<NearBody> bodies, const NearLaws& laws,
   for (; newton < k_most_newton && residual > enough; ++newton) {
     assemble(bodies, laws, dt, f.cell);
     before_.resize(n);
-    for (std::size_t m = 0; m < n; ++m) before_[m] = cells_[m].head;
+    for (std::size_t m = 0; m < n; ++m) {
+      const Cell& cell = cells_[m];
+      before_[m] = cell.head;
+      // Where a full cell gives way again, by its cap or over a top, it takes no more than is too much.
+      const double give = cell.gives + k_columns_a_cell * std::abs(rest_[m]);
+      if (cell.head < cell.gives && cell.head + delta_[m] > give) delta_[m] = give - cell.head;
+    }
     const double weight = laws.density * laws.gravity * f.cell * f.cell;
     std::vector<Vec6> change(bodies.size(), Vec6::Zero());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -219,14 +230,32 @@ void NearWater::solve(Flow& f, std::span<NearBody> bodies, const NearLaws& laws,
       // block is weight dt^2 (M + dt^2 K)^-1.
       change[b] = body.block * (dt * weight * along - wrong) / (weight * dt * dt);
     }
+    // Without bodies that float, R is the slope of a convex energy: along the change it must not have turned by much.
+    // With them, R must become smaller.
+    const bool convex = std::none_of(bodies.begin(), bodies.end(), [](const NearBody& body) { return body.floats; });
+    double start_slope = 0, low = 0, high = 0;
+    for (std::size_t m = 0; m < n; ++m) start_slope += rest_[m] * delta_[m];
     double step = 1;
-    for (int halving = 0;; ++halving, step *= 0.5) {
+    for (int halving = 0;; ++halving) {
       for (std::size_t m = 0; m < n; ++m) cells_[m].head = before_[m] + step * delta_[m];
       for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].velocity = velocity_before_[b] + step * change[b];
       const double now = evaluate(bodies, laws, dt, f.cell);
-      if (now < merit || halving == k_most_halvings) {
+      double slope = 0;
+      for (std::size_t m = 0; m < n; ++m) slope += rest_[m] * delta_[m];
+      const bool good = newton < k_whole_changes || now < merit || residual <= enough ||
+                        (convex && std::abs(slope) <= k_turned * std::abs(start_slope));
+      if (good || halving == k_most_halvings) {
         merit = now;
         break;
+      }
+      if (!convex) {
+        step *= 0.5;
+      } else if (slope > 0) {
+        high = step;
+        step = 0.5 * (low + high);
+      } else {
+        low = step;
+        step = high > 0 ? 0.5 * (low + high) : 2 * step;
       }
     }
   }

@@ -45,6 +45,7 @@ class NearWater {
     int begin = 0, end = 0;      ///< reaches
     int spans_begin = 0, spans_end = 0;
     double capacity = 0;         ///< thickness that it can hold; infinite where there is a free column [m]
+    double gives = 0;            ///< the lowest head at which a top of it counts [m]
     double covered = 0;          ///< share of its columns under a bottom that is in the water [1]
     double head0 = 0, head = 0;  ///< m, at the step's start and now
     double aim = 0;              ///< thickness to hold [m]
