@@ -23,15 +23,16 @@ ShallowSetup strip(int cells_a_half, double half, double draft_share, double dee
   return s;
 }
 
-/// Largest error by the first displacement, of the heave of systems.md 9.5: half length .5, water 1 m, draft .25 m, 2 cm.
+/// Largest error by the first displacement, of the heave of systems.md 9.5: half length .5, water 1 m, draft .25 m, 2
+/// cm.
 double heave_error(int cells, double& lowest) {
   const double l = 0.5, deep = 1, draft = 0.25, start = 0.02;
   ShallowSetup s = strip(cells, l, 0.5, deep, 2.5);
   s.floats[0].start.pose.position.y() = deep - draft + 0.25 + start;
   ShallowSolver solver = solver_of(s);
   State state = solver.initial_state();
-  // (m + 2 rho l^3 / 3 hw) y'' + (2 rho g l^2 / c) y' + 2 rho g l y = 0: water in the gap hw under the box is pushed out
-  // to both sides, where it makes waves.
+  // (m + 2 rho l^3 / 3 hw) y'' + (2 rho g l^2 / c) y' + 2 rho g l y = 0: water in the gap hw under the box is pushed
+  // out to both sides, where it makes waves.
   const double rho = 1000, gap = deep - draft, c = std::sqrt(k_g * deep), m = rho * 2 * l * draft;
   const double mass = m + 2 * rho * l * l * l / (3 * gap), drag = 2 * rho * k_g * l * l / c, spring = 2 * rho * k_g * l;
   double y = start, v = 0, worst = 0;
@@ -72,10 +73,10 @@ TEST(ShallowBodies, Finer_cells_heave_more_exactly_slow) {
 /// Rotation of a box that is let go tilted, by its ODE, derived here. The box has half length l, draft D, gap hw under
 /// it; th is its tilt (the right side down for th > 0 below: bottom at x sinks by th x), s = th'. Small tilts:
 ///
-/// Water under it: the bottom sinks at x by s x, so q' = s x: q = q_c + s x^2 / 2, even in x. A wall at x = +l is D high
-/// and turns, too: at the depth y below the box's middle line it moves by -s (y - y_axis) outwards... Its swept volume
-/// is taken by the water outside: at x = l the flux into the outer water is q(l) + s a, where a is the first moment of
-/// the wetted wall about the axis' height; outside waves rise by eta = +-(q_out) / c (right: going right).
+/// Water under it: the bottom sinks at x by s x, so q' = s x: q = q_c + s x^2 / 2, even in x. A wall at x = +l is D
+/// high and turns, too: at the depth y below the box's middle line it moves by -s (y - y_axis) outwards... Its swept
+/// volume is taken by the water outside: at x = l the flux into the outer water is q(l) + s a, where a is the first
+/// moment of the wetted wall about the axis' height; outside waves rise by eta = +-(q_out) / c (right: going right).
 struct Tilt {
   double l, draft, deep, mass_moment, stiffness;  ///< per metre of width; moment of inertia, m g GM
   double arm;                                     ///< axis above the middle of the wetted wall [m]
@@ -85,12 +86,12 @@ struct Tilt {
     const double rho = 1000, hw = deep - draft, c = std::sqrt(k_g * deep);
     const double th = x[0], s = x[1], qc = x[2];
     // Reciprocity: the wall's volume per tilt is also its moment per head outside. A wall point at the height z above
-    // the axis (z < 0 down the wall) goes outwards by s z when the right side sinks (turning clockwise seen from -z...):
-    // the vector (l, z) turns so that (l, z) -> (l + s z dt, z - s l dt). Volume into the outer right water per time:
-    // the integral of z over the wetted wall = D zm, zm the height of its middle above the axis = -arm.
+    // the axis (z < 0 down the wall) goes outwards by s z when the right side sinks (turning clockwise seen from
+    // -z...): the vector (l, z) turns so that (l, z) -> (l + s z dt, z - s l dt). Volume into the outer right water per
+    // time: the integral of z over the wetted wall = D zm, zm the height of its middle above the axis = -arm.
     const double wall = -draft * arm;
     const double into_right = qc + 0.5 * s * l * l + s * wall;  // what raises the right water, going right
-    const double eta = into_right / c;                         // head right; left it is -eta (q is even in x)
+    const double eta = into_right / c;                          // head right; left it is -eta (q is even in x)
     // Under it: hw-momentum: q_t = -g hw zeta_x, integrated from -l to l with zeta(+-l) = +-eta:
     //   2 l qc' + s' l^3 / 3 = -g hw (2 eta)
     // Head: zeta_x = -(qc' + s' x^2/2) / (g hw), odd: zeta = -(qc' x + s' x^3/6) / (g hw).
@@ -164,7 +165,8 @@ TEST(ShallowBodies, Balls_rest_at_their_drafts) {
     for (int n = 0; n < 60; ++n) {
       const double y = 0.5 * (lo + hi);
       (hydrostatics(ball.positions, ball.triangles, -y, 1, Vec3::Zero()).volume * 1000 > at_rest.body.mass.mass ? lo
-                                                                                                               : hi) = y;
+                                                                                                                : hi) =
+          y;
     }
     s.floats.push_back(floating("ball", ball, density, Vec3(middle, 0.6 + lo, middle), 0.47));
     ShallowSolver solver = solver_of(s);

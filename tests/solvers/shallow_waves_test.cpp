@@ -94,8 +94,7 @@ Dam dam(int cells, double high, double low, double time, const std::function<dou
   for (int f = 0; f < 24; ++f) solver.advance_frame(state, time / 24);
   const auto depth = solver.depths(state);
   Dam out;
-  for (int i = 0; i < cells; ++i)
-    out.error += std::abs(depth[at(i)] - exact(-5 + (i + 0.5) * s.cell, time)) * s.cell;
+  for (int i = 0; i < cells; ++i) out.error += std::abs(depth[at(i)] - exact(-5 + (i + 0.5) * s.cell, time)) * s.cell;
   out.error /= high * 3 * std::sqrt(k_g * high) * time;
   out.left = depth[at(cells / 2 - 1)], out.right = depth[at(cells / 2)];
   const auto v = solver.velocities(state);
@@ -111,7 +110,8 @@ double ritter(double x, double t) {
 }
 
 TEST(ShallowWaves, A_dam_before_dry_ground_breaks_as_Ritter_says) {
-  const Dam coarse = dam(200, 1, 0, 0.6, ritter), fine = dam(400, 1, 0, 0.6, ritter), finest = dam(800, 1, 0, 0.6, ritter);
+  const Dam coarse = dam(200, 1, 0, 0.6, ritter), fine = dam(400, 1, 0, 0.6, ritter),
+            finest = dam(800, 1, 0, 0.6, ritter);
   RecordProperty("L1_percent", std::to_string(100 * fine.error));
   EXPECT_LT(fine.error, 0.002);
   EXPECT_LT(fine.error, 0.7 * coarse.error);
@@ -184,7 +184,8 @@ TEST(ShallowWaves, Water_swings_in_a_bowl_as_Thacker_says_slow) {
 TEST(ShallowWaves, A_lake_over_bumps_and_around_islands_stays_at_rest) {
   ShallowSetup s = still_water(60, 50, 0.1, 0.3);
   set_bed(s, [](double x, double z) {
-    return 0.25 * std::sin(3 * x) * std::cos(2 * z) + (std::hypot(x - 2, z - 3) < 0.7 ? 0.5 : 0) + 0.02 * std::sin(40 * x);
+    return 0.25 * std::sin(3 * x) * std::cos(2 * z) + (std::hypot(x - 2, z - 3) < 0.7 ? 0.5 : 0) +
+           0.02 * std::sin(40 * x);
   });
   ShallowSolver solver = solver_of(s);
   State state = solver.initial_state();

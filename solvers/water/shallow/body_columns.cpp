@@ -44,9 +44,7 @@ void add_hits(const ColumnGrid& grid, const Vec3& a, const Vec3& b, const Vec3& 
   const bool own_pq = owns_edge(p, q), own_qr = owns_edge(q, r), own_rp = owns_edge(r, p);
   const double size = std::abs(area);
   const Vec3 n = (b - a).cross(c - a);
-  const auto slope = [&](double part) {
-    return static_cast<float>(std::clamp(part / n.y(), -k_steepest, k_steepest));
-  };
+  const auto slope = [&](double part) { return static_cast<float>(std::clamp(part / n.y(), -k_steepest, k_steepest)); };
   const float slope_x = slope(n.x()), slope_z = slope(n.z());
   for (int k = k0; k <= k1; ++k)
     for (int i = i0; i <= i1; ++i) {

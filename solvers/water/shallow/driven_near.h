@@ -9,9 +9,9 @@
 namespace ft::inline solvers {
 
 struct DrivenNear {
-  std::vector<Triangle> triangles;   ///< into the vertices below
-  std::vector<Vec3> from, to;        ///< of those [m]
-  std::vector<Vec3> places;          ///< as place() left them [m]
+  std::vector<Triangle> triangles;  ///< into the vertices below
+  std::vector<Vec3> from, to;       ///< of those [m]
+  std::vector<Vec3> places;         ///< as place() left them [m]
 
   /// Keeps the triangles that come below a height in the frame.
   DrivenNear(const DrivenBody& body, double below);

@@ -120,7 +120,8 @@ Vec6 keep_above(const Flow& flow, double world_x, double world_z, const Box& wal
     const double fast = slide.norm();
     if (given > before && fast > 1e-12) {
       Vec6 along;
-      along << slide / fast, arm.cross(slide / fast);
+      along.head<3>() = slide / fast;
+      along.tail<3>() = arm.cross(slide) / fast;
       v -= inverse * along * std::min(fast / along.dot(inverse * along), k_ground_friction * (given - before));
     }
   };

@@ -19,7 +19,7 @@ void write_float(const FloatState& state, std::span<double> numbers);
 /// What never changes of a body.
 struct FloatModel {
   FloatingBody body;
-  double volume = 0;   ///< m3
+  double volume = 0;     ///< m3
   double spin_drag = 0;  ///< torque by density and speed squared [m5]
 };
 FloatModel float_model(const FloatingBody& body);
@@ -30,8 +30,8 @@ RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt);
 /// How water stands around a body.
 struct FloatWater {
   bool any = false;
-  double level = 0;                 ///< m
-  Vec3 velocity = Vec3::Zero();     ///< m/s
+  double level = 0;              ///< m
+  Vec3 velocity = Vec3::Zero();  ///< m/s
 };
 
 /// Fills mass and v* of `near`, and the added mass of `state` with the momentum kept; `positions` are those of its pose

@@ -9,7 +9,8 @@ namespace ft::inline solvers {
 Flow::Flow(int cells_x, int cells_z, double cell_size)
     : nx(cells_x), nz(cells_z), row(at(cells_x + 2 * k_ghosts + 1)), cell(cell_size) {
   const std::size_t n = row * at(nz + 2 * k_ghosts + 1);
-  for (auto* v : {&bed, &bed_x, &bed_z, &h, &lift, &u, &w, &h1, &u1, &w1, &qx, &qz, &qx1, &qz1, &edge}) v->assign(n, 0.0);
+  for (auto* v : {&bed, &bed_x, &bed_z, &h, &lift, &u, &w, &h1, &u1, &w1, &qx, &qz, &qx1, &qz1, &edge})
+    v->assign(n, 0.0);
 }
 
 void fill_ghosts(const Flow& flow, std::vector<double>& values, int face) {

@@ -30,14 +30,14 @@ struct Flow {
   double cell = 0;  ///< m
   std::array<FlowSide, 4> sides{};
 
-  std::vector<double> bed;     ///< height of the ground [m]
+  std::vector<double> bed;           ///< height of the ground [m]
   std::vector<double> bed_x, bed_z;  ///< of the ground at faces, see find_face_beds() [m]
-  std::vector<double> h;       ///< thickness of the water [m], never below zero
-  std::vector<double> lift;    ///< head above bed + h: not zero near bodies alone [m]
-  std::vector<double> u, w;    ///< on faces [m/s]
+  std::vector<double> h;             ///< thickness of the water [m], never below zero
+  std::vector<double> lift;          ///< head above bed + h: not zero near bodies alone [m]
+  std::vector<double> u, w;          ///< on faces [m/s]
   std::vector<double> qx, qz;  ///< on faces: depth times velocity in the step before, before draining was cut [m2/s]
   std::vector<double> h1, u1, w1, qx1, qz1;  ///< at the step's end; finish_step() swaps them
-  std::vector<double> edge;    ///< level beyond open sides, in the ghosts next to them [m]
+  std::vector<double> edge;                  ///< level beyond open sides, in the ghosts next to them [m]
 
   Flow() = default;
   Flow(int cells_x, int cells_z, double cell_size);
@@ -69,9 +69,12 @@ void step_velocities(Flow& flow, const FlowLaws& laws, double dt);
 /// Depth at a face through which water goes with velocity v, from its upwind side [m]: the x face (z face) of cell c.
 double face_depth(const Flow& flow, std::size_t c, bool along_x, double v);
 
+/// Waves may go so much farther in a step than water [1]: for a step's length their speed counts by this.
+inline constexpr double k_wave_share = 0.6;
+
 /// Second half: thicknesses h1 from the fluxes, which are cut where a cell would lose more than it has (passed_flux()
-/// says what has passed). The largest |velocity| + sqrt(g h) of a cell [m/s] of each tile goes to `speeds`, if any
-/// (k_speed_tile x k_speed_tile cells a tile, x fastest); returns the largest.
+/// says what has passed). The largest |velocity| + k_wave_share sqrt(g h) of a cell [m/s] of each tile goes to
+/// `speeds`, if any (k_speed_tile x k_speed_tile cells a tile, x fastest); returns the largest.
 double step_depths(Flow& flow, const FlowLaws& laws, double dt, std::vector<double>* speeds);
 
 /// What passes face c in the step that is not finished yet, after the cut [m2/s].

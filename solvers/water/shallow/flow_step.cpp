@@ -1,8 +1,8 @@
 // The two halves of a step, see flow.h. Tiles are copied into small arrays of fixed size with all their neighbours, so
 // that every loop is one long row of simple arithmetic for the vector units, and tiles need nothing of one another.
 //
-// Momentum (Stelling and Duinmeijer 2003), in conservative form on the staggered grid, for the x face between cells L, R:
-// (the fluxes q that brought h to where it is, so that h u is conserved to rounding)
+// Momentum (Stelling and Duinmeijer 2003), in conservative form on the staggered grid, for the x face between cells L,
+// R: (the fluxes q that brought h to where it is, so that h u is conserved to rounding)
 //   du/dt = -[qR (uR - u) - qL (uL - u) + qT (uT - u) - qB (uB - u)] / (h_face dx) - g (head_R - head_L) / dx
 // q are means of face fluxes in the cells and at the corners, uL..uB the velocity from upwind, limited by van Leer.
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include "baker/core/parallel.h"
 #include "solvers/water/shallow/flow.h"
+#include "solvers/water/shallow/flow_limits.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -21,11 +22,6 @@ constexpr int k_cols = k_tile + 8, k_rows = k_tile + 5;  ///< of a copied tile: 
 constexpr int k_all = k_rows * k_cols;
 /// Depths that divide [m].
 constexpr double k_thin = 1e-6;
-
-inline double van_leer(double a, double b) {
-  const double p = a * b;
-  return p > 0 ? 2 * p / (a + b) : 0.0;
-}
 
 struct alignas(64) Tile {
   double bx[k_all], bz[k_all], h[k_all], eta[k_all], head[k_all], u[k_all], w[k_all];
@@ -56,9 +52,8 @@ void copy_out(const Flow& f, const double* from, int i0, int k0, std::vector<dou
 }
 
 void slopes(Tile& t) {
-  const double *__restrict h = t.h, *__restrict eta = t.eta, *__restrict u = t.u, *__restrict w = t.w;
-  double *__restrict ex = t.eta_x, *__restrict ez = t.eta_z, *__restrict ux = t.u_x, *__restrict uz = t.u_z,
-                     *__restrict wx = t.w_x, *__restrict wz = t.w_z;
+  const double* __restrict h = t.h, * __restrict eta = t.eta, * __restrict u = t.u, * __restrict w = t.w;
+  double* __restrict ex = t.eta_x, * __restrict ez = t.eta_z, * __restrict ux = t.u_x, * __restrict uz = t.u_z, * __restrict wx = t.w_x, * __restrict wz = t.w_z;
   constexpr int s = k_cols;
   for (int c = s + 1; c < k_all - s - 1; ++c) {
     const double wet_x = std::min(std::min(h[c - 1], h[c]), h[c + 1]);
@@ -89,8 +84,7 @@ inline double depth_of_face(const double* bed, const double* h, const double* et
 /// y[c] = depth^(-1/3) of each face. A first guess from the bits of a float, within 4 %, then Newton's method.
 void inverse_cube_roots(const double* __restrict h, int back, double* __restrict y) {
   alignas(64) float guess[k_all];
-  for (int c = k_cols; c < k_all; ++c)
-    guess[c] = static_cast<float>(std::max(k_thin, 0.5 * (h[c - back] + h[c])));
+  for (int c = k_cols; c < k_all; ++c) guess[c] = static_cast<float>(std::max(k_thin, 0.5 * (h[c - back] + h[c])));
   for (int c = k_cols; c < k_all; ++c)
     guess[c] = std::bit_cast<float>(0x54a2fa8c - std::bit_cast<std::int32_t>(guess[c]) / 3);
   for (int c = k_cols; c < k_all; ++c) {
@@ -111,11 +105,7 @@ void momentum(const Tile& t, bool along_x, double dt, double cell, double gravit
               const double* __restrict root, double* __restrict v1, double* __restrict q1) {
   constexpr int s = k_cols;
   const int a = along_x ? 1 : s, o = along_x ? s : 1;
-  const double *__restrict b = along_x ? t.bx : t.bz, *__restrict h = t.h, *__restrict eta = t.eta, *__restrict head = t.head,
-                           *__restrict v = along_x ? t.u : t.w, *__restrict va = along_x ? t.u_x : t.w_z,
-                           *__restrict vo = along_x ? t.u_z : t.w_x, *__restrict qa = along_x ? t.qx : t.qz,
-                           *__restrict qo = along_x ? t.qz : t.qx, *__restrict ea = along_x ? t.eta_x : t.eta_z,
-                           *__restrict other = along_x ? t.w : t.u;
+  const double* __restrict b = along_x ? t.bx : t.bz, * __restrict h = t.h, * __restrict eta = t.eta, * __restrict head = t.head, * __restrict v = along_x ? t.u : t.w, * __restrict va = along_x ? t.u_x : t.w_z, * __restrict vo = along_x ? t.u_z : t.w_x, * __restrict qa = along_x ? t.qx : t.qz, * __restrict qo = along_x ? t.qz : t.qx, * __restrict ea = along_x ? t.eta_x : t.eta_z, * __restrict other = along_x ? t.w : t.u;
   const double by_cell = dt / cell;
   for (int c = 3 * s; c < k_all - 2 * s; ++c) {
     const double speed = v[c];
@@ -183,65 +173,7 @@ struct Tiles {
 /// Smallest number of tiles for which waking the threads pays.
 constexpr std::size_t k_tiles_a_block = 4;
 
-/// By how much what leaves a cell is cut [1].
-inline double draining(double h, double out) {
-  const double share = h / std::max(out, 1e-300) * (1 - 1e-14);
-  return out > h ? share : 1.0;
-}
-
 }  // namespace
-
-void find_face_beds(Flow& f) {
-  for (const bool along_x : {true, false}) {
-    const std::size_t back = along_x ? 1 : f.row;
-    std::vector<double>& out = along_x ? f.bed_x : f.bed_z;
-    for (int k = 0; k <= f.nz; ++k)
-      for (int i = 0; i <= f.nx; ++i) {
-        const std::size_t c = f.of(i, k);
-        const auto slope = [&](std::size_t n) {
-          const std::size_t far = std::min(n + back, f.size() - 1);
-          return 0.5 * van_leer(f.bed[n] - f.bed[n - back], f.bed[far] - f.bed[n]);
-        };
-        out[c] = std::max(f.bed[c - back] + slope(c - back), f.bed[c] - slope(c));
-      }
-  }
-}
-
-double face_depth(const Flow& f, std::size_t c, bool along_x, double v) {
-  const std::size_t back = along_x ? 1 : f.row, from = v > 0 ? c - back : c;
-  const double level = f.bed[from] + f.h[from], below = f.bed[from - back] + f.h[from - back],
-               above = f.bed[from + back] + f.h[from + back];
-  const bool wet = std::min(std::min(f.h[from], f.h[from - back]), f.h[from + back]) > k_dry;
-  const double slope = wet ? 0.5 * van_leer(level - below, above - level) : 0.0;
-  const double depth = level + (v > 0 ? slope : -slope) - (along_x ? f.bed_x : f.bed_z)[c];
-  return std::min(std::max(0.0, depth), 2 * f.h[from]);
-}
-
-double passed_flux(const Flow& f, std::size_t c, bool along_x, double dt) {
-  const double q = (along_x ? f.qx1 : f.qz1)[c];
-  const std::size_t from = q > 0 ? c - (along_x ? 1 : f.row) : c;
-  const double leaves = std::max(0.0, f.qx1[from + 1]) + std::max(0.0, -f.qx1[from]) +
-                        std::max(0.0, f.qz1[from + f.row]) + std::max(0.0, -f.qz1[from]);
-  return q * draining(f.h[from], dt / f.cell * leaves);
-}
-
-double step_outflow(const Flow& f, double dt) {
-  double out = 0;
-  // What comes in is not cut.
-  const auto add = [&](std::size_t c, bool along_x, double outwards) {
-    const double q = (along_x ? f.qx1 : f.qz1)[c];
-    out += outwards * (q * outwards > 0 ? passed_flux(f, c, along_x, dt) : q);
-  };
-  for (int k = 0; k < f.nz; ++k) {
-    if (f.sides[0] == FlowSide::k_open) add(f.of(0, k), true, -1);
-    if (f.sides[1] == FlowSide::k_open) add(f.of(f.nx, k), true, 1);
-  }
-  for (int i = 0; i < f.nx; ++i) {
-    if (f.sides[2] == FlowSide::k_open) add(f.of(i, 0), false, -1);
-    if (f.sides[3] == FlowSide::k_open) add(f.of(i, f.nz), false, 1);
-  }
-  return out * f.cell * dt;
-}
 
 void step_velocities(Flow& f, const FlowLaws& laws, double dt) {
   const Tiles tiles(f);
@@ -283,21 +215,6 @@ void step_velocities(Flow& f, const FlowLaws& laws, double dt) {
   step_sides(f, laws.gravity);
 }
 
-void flow_speeds(const Flow& f, const FlowLaws& laws, std::vector<double>& speeds) {
-  const int across = speed_tiles(f.nx);
-  speeds.assign(at(across) * at(speed_tiles(f.nz)), 0.0);
-  parallel_for(at(speed_tiles(f.nz)), 4, [&](std::size_t begin, std::size_t end) {
-    for (int k = static_cast<int>(begin) * k_speed_tile; k < std::min(f.nz, static_cast<int>(end) * k_speed_tile); ++k) {
-      const std::size_t c = f.of(0, k);
-      for (int i = 0; i < f.nx; ++i) {
-        const double u = f.u[c + at(i)], w = f.w[c + at(i)];
-        double& most = speeds[at(i / k_speed_tile) + at(across) * at(k / k_speed_tile)];
-        most = std::max(most, std::sqrt(std::max(u * u, w * w)) + std::sqrt(laws.gravity * f.h[c + at(i)]));
-      }
-    }
-  });
-}
-
 double step_depths(Flow& f, const FlowLaws& laws, double dt, std::vector<double>* speeds) {
   const Tiles tiles(f);
   const double by_cell = dt / f.cell;
@@ -313,12 +230,11 @@ double step_depths(Flow& f, const FlowLaws& laws, double dt, std::vector<double>
       const int ni = std::min(k_tile, f.nx - i0), nk = std::min(k_tile, f.nz - k0);
       for (int k = -1; k <= nk; ++k) {
         const std::size_t c0 = f.of(i0, k0 + k) - 1;
-        const double *__restrict h = &f.h[c0], *__restrict qx = &f.qx1[c0], *__restrict qz = &f.qz1[c0],
-                                 *__restrict qz_above = &f.qz1[c0 + f.row];
+        const double* __restrict h = &f.h[c0], * __restrict qx = &f.qx1[c0], * __restrict qz = &f.qz1[c0], * __restrict qz_above = &f.qz1[c0 + f.row];
         double* __restrict out = factor + (k + 1) * s;
         for (int i = 0; i < ni + 2; ++i) {
-          const double leaves = std::max(0.0, qx[i + 1]) + std::max(0.0, -qx[i]) + std::max(0.0, qz_above[i]) +
-                                std::max(0.0, -qz[i]);
+          const double leaves =
+              std::max(0.0, qx[i + 1]) + std::max(0.0, -qx[i]) + std::max(0.0, qz_above[i]) + std::max(0.0, -qz[i]);
           out[i] = draining(h[i], by_cell * leaves);
         }
       }
@@ -332,19 +248,18 @@ double step_depths(Flow& f, const FlowLaws& laws, double dt, std::vector<double>
       alignas(64) double column_fastest[k_tile] = {};
       for (int k = 0; k < nk; ++k) {
         const std::size_t c0 = f.of(i0, k0 + k);
-        const double *__restrict h = &f.h[c0], *__restrict qx = &f.qx1[c0], *__restrict qz = &f.qz1[c0],
-                                 *__restrict qz_above = &f.qz1[c0 + f.row], *__restrict u = &f.u1[c0],
-                                 *__restrict w = &f.w1[c0];
-        const double *__restrict own = factor + (k + 1) * s + 1, *__restrict below = own - s,
-                                 *__restrict above = own + s;
+        const double* __restrict h = &f.h[c0], * __restrict qx = &f.qx1[c0], * __restrict qz = &f.qz1[c0], * __restrict qz_above = &f.qz1[c0 + f.row], * __restrict u = &f.u1[c0], * __restrict w = &f.w1[c0];
+        const double* __restrict own = factor + (k + 1) * s + 1, * __restrict below = own - s, * __restrict above = own + s;
         double* __restrict h1 = &f.h1[c0];
         for (int i = 0; i < ni; ++i) {
           const double f_low = own[i - 1], f_own = own[i], f_high = own[i + 1], f_left = below[i], f_right = above[i];
           const double low = qx[i] * (qx[i] > 0 ? f_low : f_own), high = qx[i + 1] * (qx[i + 1] > 0 ? f_own : f_high);
-          const double left = qz[i] * (qz[i] > 0 ? f_left : f_own), right = qz_above[i] * (qz_above[i] > 0 ? f_own : f_right);
+          const double left = qz[i] * (qz[i] > 0 ? f_left : f_own),
+                       right = qz_above[i] * (qz_above[i] > 0 ? f_own : f_right);
           const double next = h[i] - by_cell * ((high - low) + (right - left));
           h1[i] = next;
-          const double speed = std::sqrt(std::max(u[i] * u[i], w[i] * w[i])) + std::sqrt(laws.gravity * std::max(next, 0.0));
+          const double speed = std::sqrt(std::max(u[i] * u[i], w[i] * w[i])) +
+                               k_wave_share * std::sqrt(laws.gravity * std::max(next, 0.0));
           column_fastest[i] = std::max(column_fastest[i], speed);
         }
         if (k % part != part - 1 && k + 1 != nk) continue;

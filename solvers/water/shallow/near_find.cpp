@@ -28,7 +28,7 @@ void NearWater::find(const Flow& flow, std::span<const NearBody> bodies, double 
   for (const NearBody& b : bodies) {
     surfaces.push_back(b.surface);
     for (const Triangle& t : b.surface.triangles) {
-      const Vec3 *p[3] = {&b.surface.positions[at(t[0])], &b.surface.positions[at(t[1])],
+      const Vec3* p[3] = {&b.surface.positions[at(t[0])], &b.surface.positions[at(t[1])],
                           &b.surface.positions[at(t[2])]};
       if (std::min({p[0]->y(), p[1]->y(), p[2]->y()}) < top)
         for (const Vec3* v : p) box.include(*v);
@@ -99,8 +99,8 @@ void NearWater::gate(const Flow& flow, const NearLaws& laws) {
       const Cell& cell = cells_[n];
       if (cell.spans_begin == cell.spans_end || open_[n] > -k_infinite) continue;
       double level = -k_infinite;
-      for (const int j : {index(cell.i - 1, cell.k), index(cell.i + 1, cell.k), index(cell.i, cell.k - 1),
-                          index(cell.i, cell.k + 1)})
+      for (const int j :
+           {index(cell.i - 1, cell.k), index(cell.i + 1, cell.k), index(cell.i, cell.k - 1), index(cell.i, cell.k + 1)})
         if (j >= 0) level = std::max(level, open_[at(j)]);
       bool all = true;
       for (int s = cell.spans_begin; s < cell.spans_end; ++s) {
@@ -187,8 +187,7 @@ bool NearWater::level_around(std::size_t body, const Flow& flow, double& level) 
         const int j = index(cell.i + di, cell.k + dk);
         if (j < 0) continue;
         const Cell& other = cells_[at(j)];
-        for (int s = other.begin; s < other.end && !beside; ++s)
-          beside = at(reaches_[at(s)].bottom_body) == body;
+        for (int s = other.begin; s < other.end && !beside; ++s) beside = at(reaches_[at(s)].bottom_body) == body;
       }
     if (beside) sum += cell.head0, ++count;
   }

@@ -9,8 +9,8 @@ namespace ft::inline solvers {
 namespace {
 
 constexpr int k_most_newton = 40, k_most_halvings = 12;
-/// The first changes are made whole: mostly that ends at once in the right pieces of V, and a change that is cut for one
-/// cell's sake keeps all others waiting.
+/// The first changes are made whole: mostly that ends at once in the right pieces of V, and a change that is cut for
+/// one cell's sake keeps all others waiting.
 constexpr int k_whole_changes = 12;
 /// How much of its slope the energy may have left along a change [1].
 constexpr double k_turned = 0.5;
@@ -54,16 +54,18 @@ void NearWater::couple(Flow& f, const NearLaws& laws, double dt) {
         } else if (bare) {
           depth = face_depth(f, face, along_x, v1[face]);
         } else {
-          // From where the head is higher, as much as there is room for on the other side.
+          // From where it flows, or would for the heads, as much as there is room for on the other side.
           const std::size_t beyond = high ? cell.c + step : cell.c - step;
           const double head = cell.head0, head_beyond = f.bed[beyond] + f.h[beyond] + f.lift[beyond];
           const double level = f.bed[cell.c] + f.h[cell.c], level_beyond = f.bed[beyond] + f.h[beyond];
           const double room = f.bed[cell.c] + cell.capacity;
           const double room_beyond =
               f.bed[beyond] + (other >= 0 ? cells_[at(other)].capacity : std::numeric_limits<double>::infinity());
+          double outwards = high ? v1[face] : -v1[face];
+          if (outwards == 0) outwards = head - head_beyond;
           double surface = std::min(level, level_beyond);
-          if (head > head_beyond) surface = std::min(level, room_beyond);
-          if (head < head_beyond) surface = std::min(level_beyond, room);
+          if (outwards > 0) surface = std::min(level, room_beyond);
+          if (outwards < 0) surface = std::min(level_beyond, room);
           depth = std::max(0.0, surface - (along_x ? f.bed_x : f.bed_z)[face]);
         }
         if (!done) {
@@ -98,12 +100,21 @@ double NearWater::evaluate(std::span<const NearBody> bodies, const NearLaws& law
     int wet = 0, over = 0;
     for (int s = cell.begin; s < cell.end; ++s) {
       const Reach& r = reaches_[at(s)];
-      const Vec6 below = lever(r.bottom_way, r.bottom_place, bodies[at(r.bottom_body)].about);
-      const Vec6 above = lever(r.top_way, r.top_place, bodies[at(r.top_body)].about);
-      const double p = cell.head - r.bottom - below.dot(moved[at(r.bottom_body)]);
-      const double q = cell.head - r.top - (std::isfinite(r.top) ? above.dot(moved[at(r.top_body)]) : 0.0);
-      if (p > 0) taken += p, ++wet, force_[at(r.bottom_body)] += weight * p * below;
-      if (q > 0) taken -= q, ++over, force_[at(r.top_body)] -= weight * q * above;
+      const std::size_t low = at(r.bottom_body), high = at(r.top_body);
+      double p = cell.head - r.bottom, q = cell.head - r.top;
+      // Levers matter for bodies that answer.
+      if (bodies[low].floats) {
+        const Vec6 below = lever(r.bottom_way, r.bottom_place, bodies[low].about);
+        p -= below.dot(moved[low]);
+        if (p > 0) force_[low] += weight * p * below;
+      }
+      if (bodies[high].floats && std::isfinite(r.top)) {
+        const Vec6 above = lever(r.top_way, r.top_place, bodies[high].about);
+        q -= above.dot(moved[high]);
+        if (q > 0) force_[high] -= weight * q * above;
+      }
+      if (p > 0) taken += p, ++wet;
+      if (q > 0) taken -= q, ++over;
     }
     const double bed = bed_[n];
     cell.volume = cell.head - bed - taken / k_columns_a_cell;
@@ -266,7 +277,7 @@ void NearWater::solve(Flow& f, std::span<NearBody> bodies, const NearLaws& laws,
 }
 
 void NearWater::correct(Flow& f, const NearLaws& laws, double dt) {
-  const double factor = laws.gravity * dt / f.cell;
+  const double factor = laws.gravity * dt / f.cell, most = std::sqrt(2 * laws.gravity * laws.cap);
   for (std::size_t m = 0; m < cells_.size(); ++m) {
     const Cell& cell = cells_[m];
     const double d = cell.head - cell.head0;
@@ -278,6 +289,10 @@ void NearWater::correct(Flow& f, const NearLaws& laws, double dt) {
       const double beyond = j >= 0 ? cells_[at(j)].head - cells_[at(j)].head0 : 0.0;
       double& v = (along_x ? f.u1 : f.w1)[face];
       v -= factor * (high ? beyond - d : d - beyond);
+      // No faster than the contact's pressure drives water: where thin films collide under a body that stands, what is
+      // pressed again while it runs would go ever faster with finer cells.
+      if (cell.begin != cell.end || (j >= 0 && cells_[at(j)].begin != cells_[at(j)].end))
+        v = std::clamp(v, -most, most);
       (along_x ? f.qx1 : f.qz1)[face] = v * depth_[m][side];
     }
   }

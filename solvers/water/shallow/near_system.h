@@ -1,6 +1,6 @@
 // The linear system of the heads near bodies: a symmetric five-point matrix over an irregular set of cells, with a few
-// dense directions (the bodies that the water moves) added. Conjugate gradients, preconditioned by a modified incomplete
-// Cholesky factor (Bridson 2015, 5.4) of the five-point part; one thread, cells in their order.
+// dense directions (the bodies that the water moves) added. Conjugate gradients, preconditioned by a modified
+// incomplete Cholesky factor (Bridson 2015, 5.4) of the five-point part; one thread, cells in their order.
 #pragma once
 
 #include <array>

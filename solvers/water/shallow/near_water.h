@@ -1,5 +1,5 @@
-// Water near bodies: under them one head per cell decides, and its storage V(head; pose) says how much water a cell holds
-// at that head, from the spans of its columns. Explicit outside, implicit here, with one flux per face:
+// Water near bodies: under them one head per cell decides, and its storage V(head; pose) says how much water a cell
+// holds at that head, from the spans of its columns. Explicit outside, implicit here, with one flux per face:
 //
 //   V(head + dhead, pose) = h - dt div(depth u*) + g dt^2 div(depth grad dhead),   M (v - v*) = dt F(head, pose)
 //
@@ -29,9 +29,9 @@ struct NearBody {
   Vec3 about = Vec3::Zero();  ///< of its torques [m]
   // Of one that floats:
   bool floats = false;
-  Mat6 mass = Mat6::Identity();  ///< with added mass; world axes, about its centre of mass
-  Vec6 free = Vec6::Zero();      ///< v*: its velocity and spin at the step's end without the water's pressure
-  Vec6 posed = Vec6::Zero();     ///< velocity and spin that brought it into this pose
+  Mat6 mass = Mat6::Identity();    ///< with added mass; world axes, about its centre of mass
+  Vec6 free = Vec6::Zero();        ///< v*: its velocity and spin at the step's end without the water's pressure
+  Vec6 posed = Vec6::Zero();       ///< velocity and spin that brought it into this pose
   Vec6 rest_force = Vec6::Zero();  ///< beside that of the columns: the geometric residual
   Vec6 velocity = Vec6::Zero();    ///< result
 };
@@ -41,8 +41,8 @@ class NearWater {
  public:
   struct Cell {
     int i = 0, k = 0;
-    std::size_t c = 0;           ///< of the flow
-    int begin = 0, end = 0;      ///< reaches
+    std::size_t c = 0;       ///< of the flow
+    int begin = 0, end = 0;  ///< reaches
     int spans_begin = 0, spans_end = 0;
     double capacity = 0;         ///< thickness that it can hold; infinite where there is a free column [m]
     double gives = 0;            ///< the lowest head at which a top of it counts [m]
@@ -54,8 +54,8 @@ class NearWater {
 
   /// Which cells are near, from the bodies' surfaces at the step's end. `world_x`, `world_z`: of cell (0, 0)'s corner.
   void find(const Flow& flow, std::span<const NearBody> bodies, double world_x, double world_z, const NearLaws& laws);
-  /// Solves for heads and the velocities of those that float; corrects the flow's u1, w1, qx1, qz1. `first`: whether the
-  /// heads start from the flow's; else from those of the same step's solve before.
+  /// Solves for heads and the velocities of those that float; corrects the flow's u1, w1, qx1, qz1. `first`: whether
+  /// the heads start from the flow's; else from those of the same step's solve before.
   void solve(Flow& flow, std::span<NearBody> bodies, const NearLaws& laws, double dt, bool first);
   /// After step_depths(): puts the heads into the flow, whose lift was cleared.
   void keep_heads(Flow& flow) const;
@@ -82,9 +82,9 @@ class NearWater {
  private:
   /// A span as the water meets it: pressure from `bottom` on, held against from `top` on.
   struct Reach {
-    double bottom, top;                     ///< m
-    Vec3 bottom_way, top_way;               ///< n / n.y
-    Vec3 bottom_place, top_place;           ///< in the world [m]
+    double bottom, top;            ///< m
+    Vec3 bottom_way, top_way;      ///< n / n.y
+    Vec3 bottom_place, top_place;  ///< in the world [m]
     int bottom_body, top_body;
   };
   void gate(const Flow& flow, const NearLaws& laws);

@@ -26,7 +26,8 @@ void Patch::begin(const Flow& whole, const CellBox& box, bool alone) {
   flow.x0 = whole.x0 + box.i0, flow.z0 = whole.z0 + box.k0;
   box_ = box;
   flow.sides = {box.i0 == 0 ? whole.sides[0] : FlowSide::k_held, box.i1 == whole.nx ? whole.sides[1] : FlowSide::k_held,
-                box.k0 == 0 ? whole.sides[2] : FlowSide::k_held, box.k1 == whole.nz ? whole.sides[3] : FlowSide::k_held};
+                box.k0 == 0 ? whole.sides[2] : FlowSide::k_held,
+                box.k1 == whole.nz ? whole.sides[3] : FlowSide::k_held};
   const int g = Flow::k_ghosts;
   const auto take = [&](const std::vector<double>& from, std::vector<double>& to) {
     for (int k = -g; k <= nz + g; ++k) {
@@ -156,7 +157,7 @@ double Patch::rim_speed(double gravity, int width) const {
       for (int i = std::max(0, i0); i < std::min(flow.nx, i1); ++i) {
         const std::size_t c = flow.of(i, k);
         most = std::max(most, std::max(std::abs(flow.u[c]), std::abs(flow.w[c])) +
-                                  std::sqrt(gravity * std::max(0.0, flow.h[c])));
+                                  k_wave_share * std::sqrt(gravity * std::max(0.0, flow.h[c])));
       }
   };
   if (held(0)) look(0, width, 0, flow.nz);

@@ -20,8 +20,8 @@ class Patch {
  public:
   Flow flow;
 
-  /// Takes the box's state from the whole. `alone`: it is all of it, and the whole has not moved; otherwise the whole is
-  /// at the step's end, with its start in h1, u1..., and `rim()` has been called before.
+  /// Takes the box's state from the whole. `alone`: it is all of it, and the whole has not moved; otherwise the whole
+  /// is at the step's end, with its start in h1, u1..., and `rim()` has been called before.
   void begin(const Flow& whole, const CellBox& box, bool alone);
   /// After step_depths() of the whole: what has passed the box's rim.
   void rim(const Flow& whole, const CellBox& box, double dt);
@@ -35,7 +35,7 @@ class Patch {
   /// Before step_depths(): cuts what leaves cells at the rim inwards to what they do not owe; `left` of the long step,
   /// this step included [s].
   void keep_owed(double dt, double left);
-  /// The largest |velocity| + sqrt(g h) in the `width` cells along the rim [m/s].
+  /// The largest |velocity| + k_wave_share sqrt(g h) in the `width` cells along the rim [m/s].
   double rim_speed(double gravity, int width) const;
   /// Puts its state into the whole.
   void end(Flow& whole) const;

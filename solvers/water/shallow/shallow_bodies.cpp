@@ -34,7 +34,8 @@ void push_water(Flow& f, const Box& box, double x, double z, const Vec3& impulse
   for (int k = k0; k <= k1; ++k)
     for (int i = i0; i <= i1; ++i) mass += density * f.cell * f.cell * f.h[f.of(i, k)];
   if (!(mass > 0)) return;
-  const double push_x = std::clamp(impulse.x() / mass, -most, most), push_z = std::clamp(impulse.z() / mass, -most, most);
+  const double push_x = std::clamp(impulse.x() / mass, -most, most),
+               push_z = std::clamp(impulse.z() / mass, -most, most);
   for (int k = k0; k <= k1; ++k)
     for (int i = i0; i <= i1; ++i) {
       const std::size_t c = f.of(i, k);
@@ -125,7 +126,8 @@ void ShallowFrame::add_forces(double dt) {
     if (!(cell.covered >= 0.5)) continue;
     for (int side = 0; side < 4; ++side) {
       const bool along_x = side < 2, high = side % 2 == 1;
-      const int other = s_.near.index(cell.i + (along_x ? (high ? 1 : -1) : 0), cell.k + (along_x ? 0 : (high ? 1 : -1)));
+      const int other =
+          s_.near.index(cell.i + (along_x ? (high ? 1 : -1) : 0), cell.k + (along_x ? 0 : (high ? 1 : -1)));
       if (other < 0 || s_.near.cells()[at(other)].covered >= 0.5) continue;
       const std::size_t face = cell.c + (high ? (along_x ? 1 : p.row) : 0);
       report_.rim_fastest = std::max(report_.rim_fastest, (high ? 1 : -1) * (along_x ? p.u1 : p.w1)[face]);
@@ -162,8 +164,7 @@ ShallowReport ShallowFrame::report() {
   // Near bodies columns are not filled alike.
   const Flow& p = s_.patch.flow;
   for (const NearWater::Cell& cell : s_.near.cells())
-    if (cell.begin != cell.end)
-      high += s_.near.potential(p, cell) - p.h[cell.c] * (p.bed[cell.c] + 0.5 * p.h[cell.c]);
+    if (cell.begin != cell.end) high += s_.near.potential(p, cell) - p.h[cell.c] * (p.bed[cell.c] + 0.5 * p.h[cell.c]);
   const double area = f.cell * f.cell;
   r.kinetic = setup_.density * area * moving;
   r.potential = setup_.density * setup_.gravity * area * high;

@@ -11,7 +11,7 @@ namespace {
 constexpr int k_margin = 8;
 /// Of these next to the rim, so many must stay slow enough for the long step, as a multiple of dx/dt.
 constexpr int k_rim = 3;
-constexpr double k_rim_cfl = 0.6;
+constexpr double k_rim_cfl = 0.45;
 /// A step of a patch's cell costs so many of the whole's; and beside it so many for a step near bodies.
 constexpr double k_patch_cost = 1.3, k_near_cost = 20000;
 /// Candidates for the long step: each is for water half as fast as that of the one before.
@@ -20,7 +20,8 @@ constexpr int k_candidates = 10;
 CellBox aligned(const CellBox& box, int nx, int nz) {
   if (box.empty()) return {};
   constexpr int t = k_speed_tile;
-  return {box.i0 / t * t, box.k0 / t * t, std::min(nx, (box.i1 + t - 1) / t * t), std::min(nz, (box.k1 + t - 1) / t * t)};
+  return {box.i0 / t * t, box.k0 / t * t, std::min(nx, (box.i1 + t - 1) / t * t),
+          std::min(nz, (box.k1 + t - 1) / t * t)};
 }
 
 double fastest_in(const std::vector<double>& speeds, int across, const CellBox& box) {
@@ -35,8 +36,13 @@ double fastest_in(const std::vector<double>& speeds, int across, const CellBox& 
 
 ShallowFrame::ShallowFrame(const ShallowSetup& setup, std::span<const FloatModel> floats, ShallowScratch& scratch,
                            double frame_time, std::uint64_t number)
-    : setup_(setup), models_(floats), s_(scratch), laws_{setup.gravity, setup.manning, setup.viscosity},
-      near_(near_laws(setup)), frame_time_(frame_time), number_(number) {
+    : setup_(setup),
+      models_(floats),
+      s_(scratch),
+      laws_{setup.gravity, setup.manning, setup.viscosity},
+      near_(near_laws(setup)),
+      frame_time_(frame_time),
+      number_(number) {
   const std::size_t count = s_.driven.size() + models_.size();
   s_.bodies.assign(count, {});
   s_.float_places.resize(models_.size());
@@ -128,8 +134,9 @@ StepPlan ShallowFrame::plan() const {
       for (int k = 0; k < along; ++k)
         for (int i = 0; i < across; ++i)
           if (s_.speeds[at(i) + at(across) * at(k)] * dt > setup_.cfl * f.cell * (1 + 1e-9))
-            box.include(CellBox{i * k_speed_tile, k * k_speed_tile, (i + 1) * k_speed_tile, (k + 1) * k_speed_tile}
-                            .inside(f.nx, f.nz, k_margin));
+            box.include(
+                CellBox{i * k_speed_tile, k * k_speed_tile, (i + 1) * k_speed_tile, (k + 1) * k_speed_tile}.inside(
+                    f.nx, f.nz, k_margin));
     box = aligned(box.inside(f.nx, f.nz, 0), f.nx, f.nz);
     // Fast water must not reach the rim in the step.
     const double reach = (k_margin - k_rim) * f.cell / (std::max(fastest, body_speed) + 1e-9);
@@ -222,7 +229,7 @@ bool ShallowFrame::step_patch(const StepPlan& plan, bool alone, double& elapsed)
       if (p.h[c] > k_dry) top = std::max(top, p.bed[c] + p.h[c]);
     }
   near_box(plan.dt, top, body_speed);
-  const double wave = std::sqrt(setup_.gravity * deepest);
+  const double wave = k_wave_share * std::sqrt(setup_.gravity * deepest);
   double speed = fastest_in(s_.speeds, speed_tiles(f.nx), plan.box);
   elapsed = 0;
   std::uint64_t number = 0;

@@ -51,7 +51,7 @@ Status check_shallow_setup(const ShallowSetup& s) {
   if (!(s.cell > 0 && s.cell < 1e3)) fault(fmt::format("cells of {} m: must be above 0 and below 1000", s.cell));
   if (!(s.gravity > 0)) fault(fmt::format("gravity {} must be above 0", s.gravity));
   if (!(s.density > 0)) fault(fmt::format("density {} must be above 0", s.density));
-  if (!(s.cfl > 0 && s.cfl < 0.7)) fault(fmt::format("cfl {} is outside 0 to 0.7", s.cfl));
+  if (!(s.cfl > 0 && s.cfl < 0.4)) fault(fmt::format("cfl {} is outside 0 to 0.4", s.cfl));
   if (!(s.manning >= 0) || !(s.viscosity >= 0)) fault("manning and viscosity must be 0 or more");
   if (!(s.contact_pressure > 0)) fault(fmt::format("contact pressure {} must be above 0", s.contact_pressure));
   if (!(s.drying_time > 0)) fault(fmt::format("drying time {} must be above 0", s.drying_time));
@@ -62,8 +62,8 @@ Status check_shallow_setup(const ShallowSetup& s) {
     fault(fmt::format("droplets of {} to {} m: must be above 0, and in this order", p.smallest, p.largest));
   const double bytes = s.nx > 0 && s.nz > 0 ? shallow_memory(s.nx, s.nz) : 0;
   if (bytes > s.memory_limit)
-    fault(fmt::format("{} x {} cells need {:.0f} MB, more than the {:.0f} MB allowed: a cell of {:.3g} m would fit", s.nx,
-                      s.nz, bytes / 1e6, s.memory_limit / 1e6, s.cell * std::sqrt(bytes / s.memory_limit)));
+    fault(fmt::format("{} x {} cells need {:.0f} MB, more than the {:.0f} MB allowed: a cell of {:.3g} m would fit",
+                      s.nx, s.nz, bytes / 1e6, s.memory_limit / 1e6, s.cell * std::sqrt(bytes / s.memory_limit)));
   const std::size_t cells = s.nx > 0 && s.nz > 0 ? at(s.nx) * at(s.nz) : 0;
   const auto finite = [](const std::vector<double>& v) {
     return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
@@ -78,7 +78,8 @@ Status check_shallow_setup(const ShallowSetup& s) {
     const bool dry = s.depth.empty() ? lowest >= s.level
                                      : std::all_of(s.depth.begin(), s.depth.end(), [](double d) { return d == 0; });
     if (dry)
-      fault(fmt::format("no water: the bed, {} m at its lowest, is nowhere below the surface at {} m", lowest, s.level));
+      fault(
+          fmt::format("no water: the bed, {} m at its lowest, is nowhere below the surface at {} m", lowest, s.level));
   }
   std::vector<std::vector<Vec3>> placed;
   for (const ShallowFloat& f : s.floats) {
@@ -98,8 +99,8 @@ Status check_shallow_setup(const ShallowSetup& s) {
     const Box box = bounds(x);
     const double wide = s.cell * s.nx, deep = s.cell * s.nz, slack = 1e-9 * (wide + deep);
     if (box.size().x() > wide + slack || box.size().z() > deep + slack)
-      fault(fmt::format("\"{}\" is {:.3g} x {:.3g} m, larger than the domain of {:.3g} x {:.3g} m", name, box.size().x(),
-                        box.size().z(), wide, deep));
+      fault(fmt::format("\"{}\" is {:.3g} x {:.3g} m, larger than the domain of {:.3g} x {:.3g} m", name,
+                        box.size().x(), box.size().z(), wide, deep));
     else if (box.lo.x() < s.origin.x() - slack || box.lo.z() < s.origin.y() - slack ||
              box.hi.x() > s.origin.x() + wide + slack || box.hi.z() > s.origin.y() + deep + slack)
       fault(fmt::format("\"{}\" starts beyond the domain's edge", name));

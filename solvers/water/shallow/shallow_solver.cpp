@@ -18,7 +18,9 @@ ShallowSolver& ShallowSolver::operator=(ShallowSolver&&) noexcept = default;
 ShallowSolver::~ShallowSolver() = default;
 
 ShallowSolver::ShallowSolver(ShallowSetup setup)
-    : setup_(std::move(setup)), model_(setup_.nx, setup_.nz, setup_.cell), scratch_(std::make_unique<ShallowScratch>()) {
+    : setup_(std::move(setup)),
+      model_(setup_.nx, setup_.nz, setup_.cell),
+      scratch_(std::make_unique<ShallowScratch>()) {
   for (std::size_t s = 0; s < 4; ++s)
     model_.sides[s] = setup_.edges[s] == ShallowEdge::k_open ? FlowSide::k_open : FlowSide::k_wall;
   for (int k = 0; k < setup_.nz; ++k)
@@ -66,8 +68,7 @@ State ShallowSolver::initial_state() const {
   }
   std::vector<double> wet(at(setup_.nx) * at(setup_.nz));
   for (int k = 0; k < setup_.nz; ++k)
-    for (int i = 0; i < setup_.nx; ++i)
-      wet[at(i) + at(setup_.nx) * at(k)] = h[model_.of(i, k)] > k_wet_depth ? 1 : 0;
+    for (int i = 0; i < setup_.nx; ++i) wet[at(i) + at(setup_.nx) * at(k)] = h[model_.of(i, k)] > k_wet_depth ? 1 : 0;
   state.set("depth", std::move(h));
   for (const char* name : {"u", "w", "qx", "qz"}) state.set(name, std::vector<double>(model_.size()));
   state.set("lift", std::move(lift));
@@ -102,9 +103,8 @@ std::vector<double> ShallowSolver::surface(const State& state) const {
 
 std::vector<Vec2> ShallowSolver::velocities(const State& state) const {
   const auto &u = *state.find("u"), &w = *state.find("w");
-  return of_cells<Vec2>(model_, [&](std::size_t c) {
-    return Vec2(0.5 * (u[c] + u[c + 1]), 0.5 * (w[c] + w[c + model_.row]));
-  });
+  return of_cells<Vec2>(model_,
+                        [&](std::size_t c) { return Vec2(0.5 * (u[c] + u[c + 1]), 0.5 * (w[c] + w[c + model_.row])); });
 }
 
 std::vector<double> ShallowSolver::wet(const State& state) const {

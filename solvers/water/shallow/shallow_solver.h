@@ -1,8 +1,9 @@
 // Water that is shallow: puddles, shores, ditches; what steps and falls into it, and what floats in it, both ways.
 //
-// A height field over x and z (flow.h), near bodies with the head of near_water.h, droplets above (splash.h). A frame is
-// a few steps of the whole; where water is fast or near bodies a patch takes its own shorter ones in each (patch.h), and
-// what goes over the patch's rim is the same on both sides. The same bytes with any number of threads and after a resume.
+// A height field over x and z (flow.h), near bodies with the head of near_water.h, droplets above (splash.h). A frame
+// is a few steps of the whole; where water is fast or near bodies a patch takes its own shorter ones in each (patch.h),
+// and what goes over the patch's rim is the same on both sides. The same bytes with any number of threads and after a
+// resume.
 #pragma once
 
 #include <memory>
@@ -26,21 +27,21 @@ struct ShallowReport {
   int near_cells = 0;     ///< the most of a step
   int droplets = 0, droplets_thrown = 0;
   double volume_thrown = 0;  ///< m3
-  double fastest = 0;        ///< velocity and speed of waves together, the largest [m/s]
+  double fastest = 0;        ///< the largest velocity and k_wave_share of the waves' together, which sets steps [m/s]
   double rim_fastest = 0;    ///< outward, from under a body [m/s]
   double lowest_depth = 0;   ///< the lowest thickness of a cell at any step: never below 0 [m]
   double kinetic = 0, potential = 0;  ///< of the water at the frame's end, heights from y = 0 [J]
-  double floats_energy = 0;  ///< of floating bodies, kinetic (added mass included) and potential [J]
-  WaterLedger ledger;        ///< at the frame's end
+  double floats_energy = 0;           ///< of floating bodies, kinetic (added mass included) and potential [J]
+  WaterLedger ledger;                 ///< at the frame's end
   std::vector<WaterForce> driven, floats;
   bool finite = true;
 };
 
 struct ShallowScratch;
 
-/// Blocks of its states: "depth", "u", "w", "qx", "qz", "lift" of cells with the flow's ghosts, "wet" of cells, "floats"
-/// (14 numbers a body), "droplets" (8 each: id, place, velocity, volume), "account" (outflow [m3], next id, frames,
-/// whether it has begun).
+/// Blocks of its states: "depth", "u", "w", "qx", "qz", "lift" of cells with the flow's ghosts, "wet" of cells,
+/// "floats" (14 numbers a body), "droplets" (8 each: id, place, velocity, volume), "account" (outflow [m3], next id,
+/// frames, whether it has begun).
 class ShallowSolver {
  public:
   /// Refuses, by a usage error that says all, what check_shallow_setup() finds.

@@ -45,10 +45,11 @@ void throw_droplets(Flow& f, const NearWater& near, const ShallowSplash& splash,
       const std::vector<double>& across = along_x ? f.w1 : f.u1;
       const std::size_t next = along_x ? f.row : 1;
       const double sideways = 0.5 * (across[cell.c] + across[cell.c + next]);
-      const double heading = along_x ? std::atan2(sideways, (high ? 1 : -1) * out)
-                                     : std::atan2((high ? 1 : -1) * out, sideways);
-      const std::uint64_t where = (static_cast<std::uint64_t>(f.x0 + cell.i) * 0x10000u +
-                                   static_cast<std::uint64_t>(f.z0 + cell.k)) * 4 + static_cast<std::uint64_t>(side);
+      const double heading =
+          along_x ? std::atan2(sideways, (high ? 1 : -1) * out) : std::atan2((high ? 1 : -1) * out, sideways);
+      const std::uint64_t where =
+          (static_cast<std::uint64_t>(f.x0 + cell.i) * 0x10000u + static_cast<std::uint64_t>(f.z0 + cell.k)) * 4 +
+          static_cast<std::uint64_t>(side);
       const RandomKey key{time.seed, 0x5b1a, time.frame, mix64(time.step) ^ where};
       double left = wanted;
       std::uint64_t draw = 0;
