@@ -102,7 +102,7 @@ TEST(ShallowFoot, Volume_in_columns_in_the_air_and_outside_adds_up_through_a_bak
   const double volume = solver.ledger(state).total();
   Driven foot = sole();
   bool flew = false;
-  for (int f = 0; f < 48; ++f) {
+  for (int f = 0; f < 84; ++f) {
     const DrivenBody body = foot.frame(f / 24.0, (f + 1) / 24.0);
     const ShallowReport r = solver.advance_frame(state, 1.0 / 24, {&body, 1});
     flew = flew || r.ledger.droplets > 0;
@@ -180,7 +180,7 @@ TEST(ShallowFoot, A_body_that_stands_in_the_water_at_the_start_only_takes_its_pl
   for (int f = 0; f < 12; ++f) {
     const DrivenBody body = foot.frame(f / 24.0, (f + 1) / 24.0);
     const ShallowReport r = solver.advance_frame(state, 1.0 / 24, {&body, 1});
-    EXPECT_LT(r.fastest, 0.27);  // 0.6 sqrt(g h) is 0.266
+    EXPECT_LT(r.fastest, 0.23);  // half of sqrt(g h) is 0.2215
     EXPECT_NEAR(r.driven[0].mean.force.y(), 1000 * k_g * 0.015 * k_sole_x * k_sole_z, 0.1);
     EXPECT_NEAR(r.ledger.total(), volume, 1e-12 * volume);
   }

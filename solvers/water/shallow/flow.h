@@ -70,7 +70,7 @@ void step_velocities(Flow& flow, const FlowLaws& laws, double dt);
 double face_depth(const Flow& flow, std::size_t c, bool along_x, double v);
 
 /// Waves may go so much farther in a step than water [1]: for a step's length their speed counts by this.
-inline constexpr double k_wave_share = 0.6;
+inline constexpr double k_wave_share = 0.5;
 
 /// Second half: thicknesses h1 from the fluxes, which are cut where a cell would lose more than it has (passed_flux()
 /// says what has passed). The largest |velocity| + k_wave_share sqrt(g h) of a cell [m/s] of each tile goes to

@@ -51,7 +51,7 @@ Status check_shallow_setup(const ShallowSetup& s) {
   if (!(s.cell > 0 && s.cell < 1e3)) fault(fmt::format("cells of {} m: must be above 0 and below 1000", s.cell));
   if (!(s.gravity > 0)) fault(fmt::format("gravity {} must be above 0", s.gravity));
   if (!(s.density > 0)) fault(fmt::format("density {} must be above 0", s.density));
-  if (!(s.cfl > 0 && s.cfl < 0.4)) fault(fmt::format("cfl {} is outside 0 to 0.4", s.cfl));
+  if (!(s.cfl > 0 && s.cfl <= 0.33)) fault(fmt::format("cfl {} is outside 0 to 0.33", s.cfl));
   if (!(s.manning >= 0) || !(s.viscosity >= 0)) fault("manning and viscosity must be 0 or more");
   if (!(s.contact_pressure > 0)) fault(fmt::format("contact pressure {} must be above 0", s.contact_pressure));
   if (!(s.drying_time > 0)) fault(fmt::format("drying time {} must be above 0", s.drying_time));

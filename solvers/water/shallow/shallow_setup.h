@@ -49,7 +49,7 @@ struct ShallowSetup {
   double density = 1000;               ///< kg/m3
   double manning = 0.012;   ///< roughness of the bed [s/m^(1/3)]. 0 none, 0.010 glass, 0.013 concrete, 0.03 gravel
   double viscosity = 1e-6;  ///< kinematic [m2/s]: laminar friction 3 nu/h2, which holds thin films. 0 none
-  double cfl = 0.3;         ///< cells that water may go in a step, and 0.6 of what waves go [1]; below 0.4
+  double cfl = 0.25;        ///< cells that water may go in a step, and half of what waves go [1]; to 0.33
   /// The largest pressure between a driven body and the ground or the water under it [Pa]: what a foot's sole bears
   /// (2.3 kN on 0.0234 m2). It sets how fast the rim goes, sqrt(2 p/density).
   double contact_pressure = 98e3;
