@@ -1,0 +1,158 @@
+// Floating bodies of the pond against linear theory (Cummins with Hulme's hemisphere), other codes' decay of a sphere
+// (IEA OES task 10), Archimedes, and their own energy.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "tests/solvers/pond_scenes.h"
+
+namespace ft {
+namespace {
+
+Swing heave(const PondSolver& pond, double seconds, double frame_time, double scale, double rest = 0) {
+  State state = pond.initial_state();
+  Swing out;
+  out.add(0, (pond.float_motions(state)[0].pose.position.y() - rest) / scale);
+  while (state.time < seconds) {
+    pond.advance_frame(state, frame_time, {});
+    out.add(state.time, (pond.float_motions(state)[0].pose.position.y() - rest) / scale);
+  }
+  return out;
+}
+
+void show(const Swing& s) {
+  if (std::getenv("POND_SHOW") == nullptr) return;
+  for (const double z : s.zeros) std::printf("zero %.4f  ", z);
+  for (const double z : s.extremes) std::printf("extreme %.4f  ", z);
+  std::printf("\n");
+}
+
+// Six codes: trough -0.87 to -0.89, peak 0.63 to 0.65, period 4.37 to 4.45 s.
+TEST(PondFloats, The_sphere_of_many_codes_sinks_back_as_with_them) {
+  PondSetup s = square_pond(100, 160, 60);
+  s.floats.push_back(floating_ball(5, 261800 / (1000 * 4.0 / 3 * std::numbers::pi * 125), Vec3(50, 1, 50)));
+  const Swing swing = heave(*made(s), 8, 1.0 / 24, 1);
+  show(swing);
+  ASSERT_GE(swing.zeros.size(), 3u);
+  EXPECT_NEAR(swing.extremes[0], -0.88, 0.03);
+  EXPECT_NEAR(swing.extremes[1], 0.64, 0.03);
+  EXPECT_NEAR(swing.extreme_times[1], 4.40, 0.09);
+}
+
+// Zeros and extremes of the Cummins equation for a ball of 0.15 m in deep water.
+TEST(PondFloats, A_ball_heaves_as_linear_theory_says) {
+  PondSetup s = square_pond(4, 128, 2);
+  s.floats.push_back(floating_ball(0.15, 0.5, Vec3(2, 0.15 / 20, 2)));
+  const Swing swing = heave(*made(s), 1.45, 1.0 / 120, 0.15 / 20);
+  show(swing);
+  const double zeros[] = {0.197, 0.587, 0.966, 1.342}, extremes[] = {-0.867, 0.635, -0.465};
+  ASSERT_GE(swing.zeros.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(swing.zeros[i], zeros[i], 0.02 * zeros[i]);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(swing.extremes[i], extremes[i], 0.1 * std::abs(extremes[i]));
+  EXPECT_NEAR(swing.zeros[3] - swing.zeros[1], 1.342 - 0.587, 0.02 * 0.755);
+}
+
+/// A ball at rest in a standing wave whose antinode is at it: heave over the wave, both as they swing at that frequency.
+/// The wave's other half would do the same, so a narrow basin is one.
+double heave_response(double ka) {
+  const double radius = 0.15, k = ka / radius, length = 2 * std::numbers::pi / k;
+  // Four wavelengths across, antinodes at the walls and the middle; ramped up by a weak push at its frequency would take
+  // long: instead the wave is there, the ball is let go, and what it does is fitted after its own swing has died.
+  PondSetup s = square_pond(std::ceil(4 / length) * length, 0, 3);
+  s.nx = s.nz = 2 * static_cast<int>(std::clamp(s.size_x / radius * 2.5, 32.0, 96.0));
+  s.floats.push_back(floating_ball(radius, 0.5, Vec3(0.5 * s.size_x, 0, 0.5 * s.size_z)));
+  s.floats[0].body.drag = 0;
+  s.edges = PondEdge::k_wall;
+  const auto pond = made(s);
+  State state = pond->initial_state();
+  const std::size_t wave = at(static_cast<int>(std::lround(s.size_x * k / std::numbers::pi)));
+  EXPECT_NEAR(pond->modes().kx[wave], k, 1e-9 * k);
+  const double amplitude = 0.01 * radius;
+  const double sign = wave % 2 == 0 && wave % 4 != 0 ? -1 : 1;
+  state.block("eta")[wave] = sign * amplitude;
+  const double omega = std::sqrt(9.81 * k * std::tanh(k * s.depth));
+  // Least squares of z = a cos wt + b sin wt over whole periods, after the ball's own swing.
+  const double from = 3.5, to = from + 2 * 2 * std::numbers::pi / omega, dt = 1.0 / 60;
+  double cc = 0, ss = 0, cs = 0, zc = 0, zs = 0, ec = 0, es = 0;
+  while (state.time < to) {
+    pond->advance_frame(state, dt, {});
+    if (state.time < from) continue;
+    const double z = pond->float_motions(state)[0].pose.position.y(), c = std::cos(omega * state.time), n = std::sin(omega * state.time);
+    const double e = sign * (*state.find("eta"))[wave];
+    cc += c * c, ss += n * n, cs += c * n, zc += z * c, zs += z * n, ec += e * c, es += e * n;
+  }
+  const double det = cc * ss - cs * cs;
+  const auto size = [&](double p, double q) { return std::hypot((p * ss - q * cs) / det, (q * cc - p * cs) / det); };
+  return size(zc, zs) / amplitude;
+}
+
+TEST(PondFloats, A_ball_answers_waves_of_all_lengths_as_theory_says_slow) {
+  const std::pair<double, double> table[] = {{0.1, 1.00}, {0.2, 1.01}, {0.4, 1.06}, {0.6, 1.18}, {0.8, 1.48}, {1, 1.88}, {1.3, 0.93}};
+  for (const auto& [ka, theory] : table) {
+    const double got = heave_response(ka);
+    if (std::getenv("POND_SHOW")) std::printf("ka %.1f: %.3f of %.2f\n", ka, got, theory);
+    EXPECT_NEAR(got, theory, 0.06 * theory) << "ka " << ka;
+  }
+}
+
+TEST(PondFloats, Balls_and_boxes_come_to_rest_where_Archimedes_says) {
+  for (const double density : {0.2, 0.5, 0.8}) {
+    PondSetup s = square_pond(4, 64, 2);
+    s.edges = PondEdge::k_open;
+    // Volume of a cap: pi t^2 (R - t / 3) = density 4/3 pi R^3.
+    const double radius = 0.15;
+    double lo = 0, hi = 2 * radius;
+    for (int i = 0; i < 100; ++i) {
+      const double t = 0.5 * (lo + hi);
+      (t * t * (radius - t / 3) < density * 4.0 / 3 * radius * radius * radius ? lo : hi) = t;
+    }
+    s.floats.push_back(floating_ball(radius, density, Vec3(1.3, radius - lo, 2)));
+    s.floats.push_back(floating_box(Vec3(0.6, 0.2, 0.4), density, Vec3(2.7, 0.2 * (0.5 - density), 2)));
+    const auto pond = made(s);
+    State state = pond->initial_state();
+    for (int f = 0; f < 48; ++f) pond->advance_frame(state, 1.0 / 24, {});
+    const auto now = pond->float_motions(state);
+    EXPECT_NEAR(now[0].pose.position.y(), radius - lo, 1e-6);
+    EXPECT_NEAR(now[1].pose.position.y(), 0.2 * (0.5 - density), 1e-6);
+    EXPECT_LT(now[1].pose.rotation.angularDistance(Quat::Identity()), 1e-6);
+  }
+}
+
+TEST(PondFloats, A_ball_of_density_two_sinks_at_its_terminal_speed) {
+  PondSetup s = square_pond(8, 64, 30);
+  const double radius = 0.15;
+  s.floats.push_back(floating_ball(radius, 2, Vec3(4, -0.5, 4)));
+  const auto pond = made(s);
+  State state = pond->initial_state();
+  for (int f = 0; f < 96; ++f) pond->advance_frame(state, 1.0 / 24, {});
+  const double terminal = std::sqrt(8 * radius * 9.81 / (3 * 0.47));
+  EXPECT_NEAR(-pond->float_motions(state)[0].velocity.y(), terminal, 0.02 * terminal);
+}
+
+TEST(PondFloats, Three_balls_dropped_gain_no_energy) {
+  PondSetup s = square_pond(6, 128, 2);
+  const double densities[] = {0.2, 0.5, 0.8};
+  double drop = 0;
+  for (int i = 0; i < 3; ++i) {
+    s.floats.push_back(floating_ball(0.15, densities[i], Vec3(1.8 + 1.1 * i, 0.65, 3), "ball" + std::to_string(i)));
+    drop += s.floats.back().body.mass.mass * 9.81 * 0.5;
+  }
+  s.splash.on = false;
+  const auto pond = made(s);
+  State state = pond->initial_state();
+  double least = pond->energy(state).total(), rise = 0;
+  PondEnergy e;
+  for (int f = 0; f < 120; ++f) {
+    e = pond->advance_frame(state, 1.0 / 48, {}).energy;
+    rise = std::max(rise, e.total() - least);
+    least = std::min(least, e.total());
+  }
+  if (std::getenv("POND_SHOW")) std::printf("rise %.4g of %.4g J; slam %.3g drag %.3g\n", rise, drop, e.slam, e.drag);
+  EXPECT_LT(rise, 1e-3 * drop);
+  EXPECT_GT(e.slam, 0);
+}
+
+}  // namespace
+}  // namespace ft
