@@ -55,6 +55,8 @@ PondReport PondSolver::advance_frame(State& state, double frame_time, std::span<
   f.memory = memory(state);
   f.frame = state.frame;
   f.eta = *state.find("eta"), f.potential = *state.find("potential"), f.foam = *state.find("foam");
+  const std::vector<double> heights = *state.find("height");
+  f.heights = heights;
   f.report.driven.resize(driven.size());
   f.report.skin_pushes.assign(driven.size(), Vec3::Zero());
 
@@ -63,8 +65,13 @@ PondReport PondSolver::advance_frame(State& state, double frame_time, std::span<
     const double fall = f.memory.floats.motion[i].velocity.norm() + setup_.gravity * frame_time;
     per_second = std::max(per_second, fall / (k_body_step * floats_[i].shape.depth));
   }
-  const int steps = static_cast<int>(std::ceil(frame_time * per_second - 1e-9));
-  step_slice(f, frame_time, steps);
+  const int slices = begin_driven(f, driven, frame_time);
+  const int steps = static_cast<int>(std::ceil(frame_time / slices * per_second - 1e-9));
+  for (int slice = 0; slice < slices; ++slice) {
+    cross_driven(f, driven, frame_time, slice, slices);
+    step_slice(f, frame_time / slices, steps);
+  }
+  throw_and_land(f, frame_time);
   finish_frame(f, state, frame_time);
   return std::move(f.report);
 }

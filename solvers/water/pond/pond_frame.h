@@ -1,6 +1,7 @@
 // Scratch of a frame of the pond: see pond_frame.cpp.
 #pragma once
 
+#include "solvers/water/pond/cavity.h"
 #include "solvers/water/pond/float_contact.h"
 #include "solvers/water/pond/pond_solver.h"
 #include "solvers/water/pond/skin_volume.h"
@@ -16,6 +17,8 @@ struct PondSolver::Frame {
   WaveStepScratch waves;
   FloatLosses losses;
   VolumeLayers layers;
+  std::span<const double> heights;  ///< at the frame's start
+  CavityEvents events;
   std::vector<SkinPoints> skins;
   PondReport report;
   int frame = 0;

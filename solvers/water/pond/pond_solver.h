@@ -83,6 +83,11 @@ class PondSolver {
   explicit PondSolver(PondSetup setup);
   PondMemory memory(const State& state) const;
   WaterLedger ledger_of(const PondMemory& memory, double mean_height) const;
+  /// Skins at the frame's start; how many slices they need.
+  int begin_driven(Frame& frame, std::span<const DrivenBody> driven, double frame_time) const;
+  /// What skins and cavities give to the surface in a slice, crowns and jets that it makes, forces on skins.
+  void cross_driven(Frame& frame, std::span<const DrivenBody> driven, double frame_time, int slice, int slices) const;
+  void throw_and_land(Frame& frame, double frame_time) const;
   void step_slice(Frame& frame, double time, int steps) const;
   void finish_frame(Frame& frame, State& state, double frame_time) const;
 

@@ -17,8 +17,9 @@ struct PondAccount {
 
 /// A disc of air below the surface, where a body has passed.
 struct CavitySlice {
-  double x = 0, z = 0, depth = 0, thickness = 0;  ///< pool [m]
+  double x = 0, z = 0, depth = 0, thickness = 0;  ///< pool [m]; thickness below zero: just opened
   double square = 0, rate = 0;                    ///< of its radius [m2], [m2/s]
+  double acts_at = 0;                             ///< depth from which its volume pushes the surface [m]
   double body = 0;                                ///< index of the driven body
 };
 
