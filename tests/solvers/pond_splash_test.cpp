@@ -87,8 +87,11 @@ TEST(PondSplash, A_dive_throws_a_crown_leaves_a_cavity_and_its_water_comes_back)
     most_foam = std::max(most_foam, *std::max_element(foam.begin(), foam.end()));
   }
   if (k_show)
-    std::printf("crown %.2f m, tail in %.3f, cavity %.3f, closed %.3f s, %.1f L of air, %.1f L thrown, %d droplets, energy %.0f J, ledger %.2g, foam %.2f\n",
-                highest, tail_in, opened, closed, -1000 * least_cavity, 1000 * thrown, launched, d.pond->energy(d.state).thrown, worst, most_foam);
+    std::printf(
+        "crown %.2f m, tail in %.3f, cavity %.3f, closed %.3f s, %.1f L of air, %.1f L thrown, %d droplets, energy "
+        "%.0f J, ledger %.2g, foam %.2f\n",
+        highest, tail_in, opened, closed, -1000 * least_cavity, 1000 * thrown, launched, d.pond->energy(d.state).thrown,
+        worst, most_foam);
   EXPECT_GT(highest, 1);
   EXPECT_LT(highest, 4);
   // The tail's own instant, not the frame's.
@@ -152,7 +155,8 @@ TEST(PondSplash, A_box_held_under_weighs_less_by_the_water_it_displaces) {
 
 TEST(PondSplash, Dropped_balls_throw_water_that_comes_back_to_the_last_drop) {
   PondSetup s = square_pond(6, 64, 2);
-  for (int i = 0; i < 3; ++i) s.floats.push_back(floating_ball(0.15, 0.3 + 0.6 * i, Vec3(1.6 + 1.2 * i, 1.5, 3), std::to_string(i)));
+  for (int i = 0; i < 3; ++i)
+    s.floats.push_back(floating_ball(0.15, 0.3 + 0.6 * i, Vec3(1.6 + 1.2 * i, 1.5, 3), std::to_string(i)));
   const auto pond = made(s);
   State state = pond->initial_state();
   const double before = pond->ledger(state).total();

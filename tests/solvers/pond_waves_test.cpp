@@ -14,8 +14,7 @@ namespace {
 std::vector<double> random_grid(const PondModes& m) {
   std::vector<double> out(m.size(), 0.0);
   for (std::size_t j = 0; j < at(m.nz); ++j)
-    for (std::size_t i = 0; i < at(m.nx); ++i)
-      out[j * at(m.stride) + i] = random_uniform({7, 0, j, i}) - 0.5;
+    for (std::size_t i = 0; i < at(m.nx); ++i) out[j * at(m.stride) + i] = random_uniform({7, 0, j, i}) - 0.5;
   return out;
 }
 
@@ -97,7 +96,8 @@ TEST(PondWaves, Waves_keep_their_energy_and_volume) {
   WaveStepScratch scratch;
   const double dt = 1.0 / 240;
   step_waves(m, {}, 0.5 * dt, 0, eta, potential, {}, scratch);
-  for (int n = 0; n < 960; ++n) step_waves(m, {}, n < 959 ? dt : 0.5 * dt, n < 959 ? dt : 0, eta, potential, {}, scratch);
+  for (int n = 0; n < 960; ++n)
+    step_waves(m, {}, n < 959 ? dt : 0.5 * dt, n < 959 ? dt : 0, eta, potential, {}, scratch);
   EXPECT_EQ(eta[0], volume);
   // The step's own energy differs from the true one by (w dt)^2 / 8, at most, of the shortest waves: 1 %.
   EXPECT_NEAR(wave_energy(m, eta, potential), before, 0.01 * before);

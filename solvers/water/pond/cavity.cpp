@@ -13,7 +13,9 @@ constexpr double k_side_drag = 0.05;    ///< of the skin along its sides, on its
 constexpr double k_close_step = 1e-3;   ///< s
 constexpr double k_volume_depth = 0.6;  ///< a slice's air acts so many radii deeper than its middle
 
-double volume(const CavitySlice& s) { return k_pi * std::max(s.square, 0.0) * std::abs(s.thickness); }
+double volume(const CavitySlice& s) {
+  return k_pi * std::max(s.square, 0.0) * std::abs(s.thickness);
+}
 
 }  // namespace
 
@@ -22,11 +24,12 @@ void cross_surface(const SkinUnderWater& from, const SkinUnderWater& to, double 
                    std::vector<CavitySlice>& slices) {
   if (from.section == 0 && to.section == 0 && (to.bottom >= 0 || from.top < 0)) {
     // Out of the water or wholly under it: the next passage is a new one.
-    if (to.bottom >= 0 && from.bottom >= 0) c = {.crown_energy = c.crown_energy,
-                                                 .crown_speed = c.crown_speed,
-                                                 .crown_x = c.crown_x,
-                                                 .crown_z = c.crown_z,
-                                                 .crown_radius = c.crown_radius};
+    if (to.bottom >= 0 && from.bottom >= 0)
+      c = {.crown_energy = c.crown_energy,
+           .crown_speed = c.crown_speed,
+           .crown_x = c.crown_x,
+           .crown_z = c.crown_z,
+           .crown_radius = c.crown_radius};
   }
   const SkinUnderWater& wet = to.section > 0 ? to : from;
   const double radius = std::sqrt(wet.section / k_pi);

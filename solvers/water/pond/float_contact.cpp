@@ -76,8 +76,7 @@ void meet(Side a, Side b, FloatLosses& losses) {
   b.motion->pose.position -= m.depth * (1 - share) * m.normal;
   const double approach = (a.motion->velocity_at(m.place) - b.motion->velocity_at(m.place)).dot(m.normal);
   if (approach >= 0) return;
-  const double bounce =
-      approach < -k_bounce_speed ? std::min(a.model->restitution, b.model->restitution) : 0;
+  const double bounce = approach < -k_bounce_speed ? std::min(a.model->restitution, b.model->restitution) : 0;
   const double before = a.kinetic() + b.kinetic();
   const Vec3 impulse =
       (-(1 + bounce) * approach / (a.softness(m.place, m.normal) + b.softness(m.place, m.normal))) * m.normal;

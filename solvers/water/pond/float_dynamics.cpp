@@ -27,12 +27,26 @@ Mat36 at_arm(const Vec3& arm) {
   return out;
 }
 
-/// Added mass over density times volume, without what couples sideways and upwards.
-Mat3 added_ratio(const FloatModel& m, const Quat& rotation) {
-  const Mat3 turn = rotation.toRotationMatrix();
-  Mat3 a = turn * m.shape.added.asDiagonal() * turn.transpose();
+/// Without what couples sideways and upwards.
+Mat3 uncoupled(Mat3 a) {
   a(0, 1) = a(1, 0) = a(1, 2) = a(2, 1) = 0;
   return a;
+}
+
+/// Added mass over density times volume.
+Mat3 added_ratio(const FloatModel& m, const Quat& rotation) {
+  const Mat3 turn = rotation.toRotationMatrix();
+  return uncoupled(turn * m.shape.added.asDiagonal() * turn.transpose());
+}
+
+/// By how much it changes when the body turns about an axis of the world.
+Mat3 turned_ratio(const FloatModel& m, const Quat& rotation, int axis) {
+  const Mat3 turn = rotation.toRotationMatrix();
+  const Mat3 a = turn * m.shape.added.asDiagonal() * turn.transpose();
+  Mat3 cross;
+  const Vec3 e = Vec3::Unit(axis);
+  cross << 0, -e.z(), e.y(), e.z(), 0, -e.x(), -e.y(), e.x(), 0;
+  return uncoupled(cross * a - a * cross);
 }
 
 /// Of sideways parts those that act at once.
@@ -85,7 +99,16 @@ void add_part(const FloatModel& m, const FloatWater& water, const RigidMotion& m
   const Vec3 velocity = motion.velocity + motion.spin.cross(source_arm);
   const Vec3 flow(probe.velocity_x, probe.velocity_y, probe.velocity_z), relative = velocity - flow;
 
-  eq.mass += source.transpose() * (displaced * at_once(ratio, sudden)) * source;
+  const Mat3 added = displaced * at_once(ratio, sudden);
+  eq.mass += source.transpose() * added * source;
+  // What turning does to the added mass: -d(A v)/dt on the part, and the torque of 1/2 v A v.
+  Vec3 change = added * motion.spin.cross(motion.spin.cross(source_arm));
+  for (int axis = 0; axis < 3 && shape.ball_radius == 0; ++axis) {
+    const Vec3 by_axis = displaced * (at_once(turned_ratio(m, motion.pose.rotation, axis), sudden) * velocity);
+    change += motion.spin[axis] * by_axis;
+    eq.force[3 + axis] += 0.5 * velocity.dot(by_axis);
+  }
+  eq.force -= source.transpose() * change;
   eq.force += buoyed.transpose() * Vec3(0, g * displaced, 0);
   const Vec3 slope(probe.slope_x, scratch.top_depth[b] > 0 ? probe.pull : 0, probe.slope_z);
   eq.force -= source.transpose() * ((displaced * g) * (slope + ratio * slope));
@@ -160,8 +183,8 @@ void find_levels(std::span<const FloatModel> models, Floats& floats, FloatScratc
       const double dx = scratch.sources[b].next_x - scratch.sources[c].next_x;
       const double dz = scratch.sources[b].next_z - scratch.sources[c].next_z;
       const double far = (dx * dx + dz * dz) / ((parts[b].depth + parts[c].depth) * (parts[b].depth + parts[c].depth));
-      sum += std::sqrt(parts[b].self * parts[c].self) / ((1 + far) * std::sqrt(1 + far)) *
-             (floats.volume[c] - before[c]);
+      sum +=
+          std::sqrt(parts[b].self * parts[c].self) / ((1 + far) * std::sqrt(1 + far)) * (floats.volume[c] - before[c]);
     }
     return sum;
   };
@@ -232,8 +255,7 @@ void drift_floats(double time, Floats& floats) {
     m.pose.position += time * m.velocity;
     const double angle = time * m.spin.norm();
     if (angle > 1e-15)
-      m.pose.rotation =
-          (Quat(Eigen::AngleAxisd(angle, m.spin.normalized())) * m.pose.rotation).normalized();
+      m.pose.rotation = (Quat(Eigen::AngleAxisd(angle, m.spin.normalized())) * m.pose.rotation).normalized();
   }
 }
 

@@ -41,11 +41,11 @@ struct Floats {
 
 /// What is known between two steps; forgotten after the frame.
 struct FloatScratch {
-  std::vector<Submerged> wet;         ///< of parts
-  std::vector<double> top_depth;      ///< of parts [m]
-  std::vector<WaveProbe> probes;      ///< of parts
-  std::vector<WaveSource> sources;    ///< of parts: what goes into the waves with the next sweep
-  std::vector<double> level;          ///< of parts [m]
+  std::vector<Submerged> wet;       ///< of parts
+  std::vector<double> top_depth;    ///< of parts [m]
+  std::vector<WaveProbe> probes;    ///< of parts
+  std::vector<WaveSource> sources;  ///< of parts: what goes into the waves with the next sweep
+  std::vector<double> level;        ///< of parts [m]
 };
 
 struct FloatWater {

@@ -49,7 +49,8 @@ std::vector<Vec3> slab(const std::vector<Vec3>& corners, int axis, double lo, do
         const double ha = sign * (a[axis] - place), hb = sign * (b[axis] - place);
         if (ha >= 0) inside[count++] = a;
         if ((ha >= 0) == (hb >= 0)) continue;
-        Vec3 p = a + (ha / (ha - hb)) * (b - a);
+        // From the inner end, whichever comes first: both triangles of an edge get the same bits.
+        Vec3 p = ha >= 0 ? Vec3(a + (ha / (ha - hb)) * (b - a)) : Vec3(b + (hb / (hb - ha)) * (a - b));
         p[axis] = place;
         inside[count++] = p;
         if (ha >= 0) leaves = cuts;
@@ -140,7 +141,8 @@ FloatShape float_shape(const PondFloat& body, double density) {
   FloatShape out;
   std::vector<Vec3> corners;
   double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& p : body.body.positions) out.reach = std::max(out.reach, p.norm()), least = std::min(least, p.norm());
+  for (const Vec3& p : body.body.positions)
+    out.reach = std::max(out.reach, p.norm()), least = std::min(least, p.norm());
   for (const Triangle& t : body.body.triangles)
     for (const int v : t) corners.push_back(body.body.positions[at(v)]);
   out.volume = signed_volume(corners);

@@ -12,10 +12,10 @@ namespace ft::inline solvers {
 
 /// A piece of a body. Its surface may hold triangles of either sign whose sum is closed: enough for volumes.
 struct FloatPart {
-  double ball_radius = 0;           ///< > 0: a ball about the origin, corners are empty [m]
-  std::vector<Vec3> corners;        ///< of triangles, three by three; body axes [m]
-  double volume = 0;                ///< m3
-  Vec3 centre = Vec3::Zero();       ///< of volume; where it pushes the waves; body axes [m]
+  double ball_radius = 0;      ///< > 0: a ball about the origin, corners are empty [m]
+  std::vector<Vec3> corners;   ///< of triangles, three by three; body axes [m]
+  double volume = 0;           ///< m3
+  Vec3 centre = Vec3::Zero();  ///< of volume; where it pushes the waves; body axes [m]
 };
 
 /// What of a part lies below a level.
@@ -30,14 +30,14 @@ Submerged submerged(const FloatPart& part, const RigidPose& pose, double level);
 /// Model of a body; never changes.
 struct FloatShape {
   std::vector<FloatPart> parts;
-  double volume = 0;                                ///< m3
-  double depth = 0;                                 ///< d of its kernel [m]: wave_kernel.h
-  Vec3 added = Vec3::Constant(0.5);                 ///< added mass over displaced mass, body axes, slow motion [1]
-  Vec3 face = Vec3::Zero();                         ///< area that it shows along its axes [m2]
-  std::vector<Vec3> contact_centres;                ///< of spheres in it, body axes [m]
-  double contact_radius = 0;                        ///< m
-  double reach = 0;                                 ///< farthest point from the centre of mass [m]
-  double rest_height = 0;                           ///< of its centre of mass above the level at rest, upright [m]
+  double volume = 0;                  ///< m3
+  double depth = 0;                   ///< d of its kernel [m]: wave_kernel.h
+  Vec3 added = Vec3::Constant(0.5);   ///< added mass over displaced mass, body axes, slow motion [1]
+  Vec3 face = Vec3::Zero();           ///< area that it shows along its axes [m2]
+  std::vector<Vec3> contact_centres;  ///< of spheres in it, body axes [m]
+  double contact_radius = 0;          ///< m
+  double reach = 0;                   ///< farthest point from the centre of mass [m]
+  double rest_height = 0;             ///< of its centre of mass above the level at rest, upright [m]
 };
 
 /// By its start attitude. density: of the water.

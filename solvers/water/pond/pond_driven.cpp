@@ -10,8 +10,8 @@ namespace ft::inline solvers {
 namespace {
 
 constexpr int k_most_slices = 12;
-constexpr double k_slice_way = 0.08;       ///< a skin goes so far in a slice, or a cell [m]
-constexpr double k_near_surface = 0.25;    ///< vertices this near to it tell how fast a skin crosses it [m]
+constexpr double k_slice_way = 0.08;     ///< a skin goes so far in a slice, or a cell [m]
+constexpr double k_near_surface = 0.25;  ///< vertices this near to it tell how fast a skin crosses it [m]
 /// Of an impact's speed: what its droplets have; of slender ones (a diver), of round ones (a ball).
 constexpr double k_slow = 0.25, k_fast = 0.6, k_round_slow = 0.4, k_round_fast = 0.9;
 
@@ -57,8 +57,9 @@ int PondSolver::begin_driven(Frame& f, std::span<const DrivenBody> driven, doubl
       if (std::min(s.places[v].y(), s.places[v].y() + frame_time * s.velocities[v].y()) < k_near_surface)
         most = std::max(most, frame_time * s.velocities[v].norm());
     }
-    f.report.driven[b].speed = (volume_centre(driven[b].to, driven[b].triangles) -
-                                volume_centre(driven[b].from, driven[b].triangles)).norm() / frame_time;
+    f.report.driven[b].speed =
+        (volume_centre(driven[b].to, driven[b].triangles) - volume_centre(driven[b].from, driven[b].triangles)).norm() /
+        frame_time;
   }
   const double way = std::max(k_slice_way, std::max(modes_.cell_x(), modes_.cell_z()));
   return std::clamp(static_cast<int>(std::ceil(most / way)), 1, k_most_slices);
@@ -71,7 +72,8 @@ void PondSolver::cross_driven(Frame& f, std::span<const DrivenBody> driven, doub
     const SkinPoints& skin = f.skins[b];
     if (skin.box.lo.y() > k_near_surface) continue;
     const double from = static_cast<double>(slice) / slices, to = static_cast<double>(slice + 1) / slices;
-    const std::vector<Vec3> start = skin_at(driven[b], setup_.corner, from), end = skin_at(driven[b], setup_.corner, to);
+    const std::vector<Vec3> start = skin_at(driven[b], setup_.corner, from),
+                            end = skin_at(driven[b], setup_.corner, to);
     const double spacing = ray_spacing(modes_, start);
     const SkinUnderWater before = skin_under_water(start, driven[b].triangles, spacing);
     const SkinUnderWater after = skin_under_water(end, driven[b].triangles, spacing);

@@ -10,9 +10,9 @@
 namespace ft::inline solvers {
 namespace {
 
-/// Rate of the rim at the wall, in crossings of its width by a wave of that length, per second. Tuned on reflections of
-/// waves from a quarter of the width to three widths.
-constexpr double k_rim_rate = 9;
+/// Rate of the rim at the wall, over the frequency of waves twice as long as it is wide. Tuned on what comes back of
+/// packets in water of depth 5 m on a rim of 5 m: of 1, 2.5, 5, 10 m 0.01, 0.1, 0.6, 7 % of the amplitude.
+constexpr double k_rim_rate = 6;
 constexpr std::uint64_t k_ruffle_system = 0x72756666;  ///< of random keys
 constexpr double k_ruffle_memory = 4;                  ///< s in which a wave of the ruffle is forgotten
 constexpr double k_ruffle_longest = 1.2;               ///< m
@@ -28,7 +28,7 @@ std::vector<double> rim_keeps(const PondModes& m, double width, double frame_tim
       const double from_wall = std::min(std::min(x, m.length_x - x), std::min(z, m.length_z - z));
       const double s = std::clamp(1 - from_wall / width, 0.0, 1.0);
       out[static_cast<std::size_t>(j) * static_cast<std::size_t>(m.stride) + static_cast<std::size_t>(i)] =
-          std::exp(-rate * frame_time * s * s * s);
+          std::exp(-rate * frame_time * s * s);
     }
   return out;
 }
@@ -65,7 +65,8 @@ void ruffle(const PondModes& m, double wind_x, double wind_z, std::uint64_t seed
   const auto weight = [&](std::size_t n, std::size_t i, std::size_t j) {
     const double k = m.k[n];
     if (k < longest || k > shortest) return 0.0;
-    const double along = std::abs(m.kx[i] * wind_x + m.kz[j] * wind_z), across = std::abs(m.kx[i] * wind_x - m.kz[j] * wind_z);
+    const double along = std::abs(m.kx[i] * wind_x + m.kz[j] * wind_z),
+                 across = std::abs(m.kx[i] * wind_x - m.kz[j] * wind_z);
     const double c = std::max(along, across) / (k * speed);
     return c * c / (k * k);  // slopes evenly over octaves
   };

@@ -1,6 +1,6 @@
-// See pond_solver.h: a frame. Slices, at whose ends skins are known, of many steps each; a step kicks bodies, moves them,
-// and sweeps the waves (wave_step.h), which kicks the potential by the surface at the step's start and moves the surface.
-// Kicks of half a step at a slice's ends keep the whole symmetric in time.
+// See pond_solver.h: a frame. Slices, at whose ends skins are known, of many steps each; a step kicks bodies, moves
+// them, and sweeps the waves (wave_step.h), which kicks the potential by the surface at the step's start and moves the
+// surface. Kicks of half a step at a slice's ends keep the whole symmetric in time.
 #include "solvers/water/pond/pond_frame.h"
 
 #include <algorithm>

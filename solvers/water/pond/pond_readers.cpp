@@ -15,7 +15,9 @@ const std::vector<double>& block_of(const State& state, std::string_view name, s
 
 }  // namespace
 
-PondMemory PondSolver::memory(const State& state) const { return take(state, floats_.size(), part_count_); }
+PondMemory PondSolver::memory(const State& state) const {
+  return take(state, floats_.size(), part_count_);
+}
 
 void PondSolver::surface_heights(const State& state, std::span<double> out) const {
   CHECK(out.size() == at(nx()) * at(nz()));
@@ -38,9 +40,10 @@ void PondSolver::surface_velocity(const State& state, std::span<Vec3> out) const
         const std::size_t left = i > 0 ? i - 1 : i, right = std::min(i + 1, at(nx()) - 1);
         const std::size_t below = j > 0 ? j - 1 : j, above = std::min(j + 1, at(nz()) - 1);
         // Beyond a wall stands its mirror image: half the difference there, too.
-        out[j * at(nx()) + i] = {(potential[j * stride + right] - potential[j * stride + left]) / (2 * modes_.cell_x()),
-                                 climb[j * stride + i],
-                                 (potential[above * stride + i] - potential[below * stride + i]) / (2 * modes_.cell_z())};
+        out[j * at(nx()) + i] = {
+            (potential[j * stride + right] - potential[j * stride + left]) / (2 * modes_.cell_x()),
+            climb[j * stride + i],
+            (potential[above * stride + i] - potential[below * stride + i]) / (2 * modes_.cell_z())};
       }
   });
 }
@@ -90,7 +93,8 @@ WaterLedger PondSolver::ledger(const State& state) const {
 PondEnergy PondSolver::energy(const State& state) const {
   PondEnergy out;
   PondMemory m = memory(state);
-  std::vector<double> eta = block_of(state, "eta", modes_.size()), potential = block_of(state, "potential", modes_.size());
+  std::vector<double> eta = block_of(state, "eta", modes_.size()),
+                      potential = block_of(state, "potential", modes_.size());
   out.waves = setup_.density * wave_energy(modes_, eta, potential);
   FloatScratch scratch;
   WaveStepScratch waves;

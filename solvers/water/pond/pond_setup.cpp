@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -48,15 +47,15 @@ void check_body(const PondSetup& s, const PondFloat& f, std::vector<std::string>
   for (const Vec3& p : b.positions) box.include(f.start.pose * p);
   const Vec3 size = box.size();
   if (size.x() > s.size_x || size.z() > s.size_z)
-    return fault(fmt::format("is {:.4g} x {:.4g} m and the pond {:.4g} x {:.4g} m", size.x(), size.z(), s.size_x,
-                             s.size_z));
+    return fault(
+        fmt::format("is {:.4g} x {:.4g} m and the pond {:.4g} x {:.4g} m", size.x(), size.z(), s.size_x, s.size_z));
   const Vec3 lo = box.lo - s.corner, hi = box.hi - s.corner;
   if (lo.x() < 0 || lo.z() < 0 || hi.x() > s.size_x || hi.z() > s.size_z)
-    return fault(fmt::format("starts outside the pond: x {:.4g} to {:.4g} of 0 to {:.4g} m, z {:.4g} to {:.4g} of 0 to "
-                             "{:.4g} m",
-                             lo.x(), hi.x(), s.size_x, lo.z(), hi.z(), s.size_z));
-  if (lo.y() < -s.depth)
-    return fault(fmt::format("starts {:.4g} m below the floor", -s.depth - lo.y()));
+    return fault(
+        fmt::format("starts outside the pond: x {:.4g} to {:.4g} of 0 to {:.4g} m, z {:.4g} to {:.4g} of 0 to "
+                    "{:.4g} m",
+                    lo.x(), hi.x(), s.size_x, lo.z(), hi.z(), s.size_z));
+  if (lo.y() < -s.depth) return fault(fmt::format("starts {:.4g} m below the floor", -s.depth - lo.y()));
 }
 
 void check_overlaps(const PondSetup& s, std::vector<std::string>& faults) {

@@ -1,7 +1,7 @@
 // Pools and ponds: dispersive waves between walls or towards an open edge, bodies that float, dive and sink, skins that
 // wade and dive, and what splashes. Waves are linear and exact in their speed (pond_modes.h); bodies are paired with
-// them so that energy is kept (float_dynamics.h); water that is thrown is taken from the surface and given back where it
-// lands (splash.h), and behind a diver stands a cavity of air (cavity.h).
+// them so that energy is kept (float_dynamics.h); water that is thrown is taken from the surface and given back where
+// it lands (splash.h), and behind a diver stands a cavity of air (cavity.h).
 //
 // For water that is deep against what is in it: three times a body's radius or more; puddles and beaches are another
 // solver's. Waves do not break. The bottom is even. World axes as water_body.h.

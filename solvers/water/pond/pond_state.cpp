@@ -50,8 +50,7 @@ PondMemory take(const State& state, std::size_t float_count, std::size_t part_co
   out.floats.volume = *volumes;
   for (std::size_t i = 0; i < droplets->size(); i += k_droplet_width) {
     const double* d = droplets->data() + i;
-    out.droplets.push_back(
-        {static_cast<std::uint64_t>(d[0]), Vec3(d[1], d[2], d[3]), Vec3(d[4], d[5], d[6]), d[7]});
+    out.droplets.push_back({static_cast<std::uint64_t>(d[0]), Vec3(d[1], d[2], d[3]), Vec3(d[4], d[5], d[6]), d[7]});
   }
   out.cavities = structs<CavitySlice>(state.find("cavities"));
   out.crossings = structs<Crossing>(state.find("driven"));

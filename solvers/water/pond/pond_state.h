@@ -12,7 +12,8 @@ struct PondAccount {
   double cavities = 0;  ///< that open cavities have [m3]
   double outflow = 0;   ///< m3
   double next_droplet = 1;
-  double slam = 0, drag = 0, contact = 0, absorbed = 0, wind = 0, thrown = 0;  ///< J: lost, lost, lost, left, given, in splashes
+  double slam = 0, drag = 0, contact = 0, absorbed = 0, wind = 0,
+         thrown = 0;  ///< J: lost, lost, lost, left, given, in splashes
 };
 
 /// A disc of air below the surface, where a body has passed.
@@ -25,13 +26,13 @@ struct CavitySlice {
 
 /// What is remembered of a driven body.
 struct Crossing {
-  double widest = 0;           ///< radius of its widest section at the surface in this passage [m]
-  double armed = 0;            ///< 1: a cavity opens behind its tail
-  double sealed = 0;           ///< 1: its cavity has closed at the top; no air follows
-  double crown_energy = 0;     ///< J, not yet thrown
-  double crown_speed = 0;      ///< m/s
+  double widest = 0;        ///< radius of its widest section at the surface in this passage [m]
+  double armed = 0;         ///< 1: a cavity opens behind its tail
+  double sealed = 0;        ///< 1: its cavity has closed at the top; no air follows
+  double crown_energy = 0;  ///< J, not yet thrown
+  double crown_speed = 0;   ///< m/s
   double crown_x = 0, crown_z = 0, crown_radius = 0;  ///< m
-  double cavity_energy = 0;    ///< most of this passage [J]
+  double cavity_energy = 0;                           ///< most of this passage [J]
 };
 
 /// Views of the columns of a State; all to be put back by put().

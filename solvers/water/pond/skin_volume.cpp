@@ -58,8 +58,7 @@ SkinUnderWater skin_under_water(std::span<const Vec3> positions, std::span<const
         const Vec2 ray(static_cast<double>(i) * spacing + off, static_cast<double>(k) * spacing + off);
         const double u = turn(q, r, ray) / area, v = turn(r, p, ray) / area, w = 1 - u - v;
         if (u < 0 || v < 0 || w < 0) continue;
-        hits.push_back(
-            {(k - first_z) * columns + (i - first_x), u * a.y() + v * b.y() + w * c.y(), area > 0 ? 1 : -1});
+        hits.push_back({(k - first_z) * columns + (i - first_x), u * a.y() + v * b.y() + w * c.y(), area > 0 ? 1 : -1});
       }
   }
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
@@ -89,15 +88,17 @@ SkinUnderWater skin_under_water(std::span<const Vec3> positions, std::span<const
 }
 
 double height_at(const PondModes& m, std::span<const double> heights, double x, double z) {
-  const double p = std::clamp(x / m.cell_x() - 0.5, 0.0, m.nx - 1.0), q = std::clamp(z / m.cell_z() - 0.5, 0.0, m.nz - 1.0);
+  const double p = std::clamp(x / m.cell_x() - 0.5, 0.0, m.nx - 1.0),
+               q = std::clamp(z / m.cell_z() - 0.5, 0.0, m.nz - 1.0);
   const int i = std::min(static_cast<int>(p), m.nx - 2), j = std::min(static_cast<int>(q), m.nz - 2);
   const double u = p - i, v = q - j;
   const double* at = heights.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(m.stride) + i;
   return (1 - v) * ((1 - u) * at[0] + u * at[1]) + v * ((1 - u) * at[m.stride] + u * at[m.stride + 1]);
 }
 
-Wrench skin_force(std::span<const Vec3> positions, std::span<const Vec3> velocities, std::span<const Triangle> triangles,
-                  const PondModes& modes, std::span<const double> heights, double gravity, double density) {
+Wrench skin_force(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                  std::span<const Triangle> triangles, const PondModes& modes, std::span<const double> heights,
+                  double gravity, double density) {
   Wrench sum;
   for (const auto& [a, b, c] : triangles) {
     const Vec3 &pa = positions[at(a)], &pb = positions[at(b)], &pc = positions[at(c)];

@@ -14,17 +14,20 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr std::uint64_t k_splash_system = 0x73706c61;  ///< of random keys
 constexpr double k_air_density = 1.2, k_air_drag = 0.47;
-constexpr int k_flight_steps = 8;            ///< of a frame
-constexpr int k_most_of_throw = 4000;        ///< droplets of one ring and frame
-constexpr double k_least_volume = 2e-9;      ///< thrown, less waits for more [m3]
-constexpr double k_foam_width = 3;           ///< of what a droplet covers, in its diameters
+constexpr int k_flight_steps = 8;        ///< of a frame
+constexpr int k_most_of_throw = 4000;    ///< droplets of one ring and frame
+constexpr double k_least_volume = 2e-9;  ///< thrown, less waits for more [m3]
+constexpr double k_foam_width = 3;       ///< of what a droplet covers, in its diameters
 
-double diameter(double volume) { return std::cbrt(6 * volume / k_pi); }
+double diameter(double volume) {
+  return std::cbrt(6 * volume / k_pi);
+}
 
 }  // namespace
 
 void add_foam(const PondModes& m, double x, double z, double area, std::span<double> foam) {
-  const double p = std::clamp(x / m.cell_x() - 0.5, 0.0, m.nx - 1.0), q = std::clamp(z / m.cell_z() - 0.5, 0.0, m.nz - 1.0);
+  const double p = std::clamp(x / m.cell_x() - 0.5, 0.0, m.nx - 1.0),
+               q = std::clamp(z / m.cell_z() - 0.5, 0.0, m.nz - 1.0);
   const int i = std::min(static_cast<int>(p), m.nx - 2), j = std::min(static_cast<int>(q), m.nz - 2);
   const double u = p - i, v = q - j, cover = area / (m.cell_x() * m.cell_z());
   double* at = foam.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(m.stride) + i;
@@ -67,7 +70,8 @@ double throw_water(const Throw& t, const SplashSettings& settings, const SplashW
     next_id += 1;
     d.volume = volume * sizes[at(i)] / sum;
     d.place = Vec3(t.x, 0, t.z) + t.radius * out;
-    d.place.x() = std::clamp(d.place.x(), 0.0, modes.length_x), d.place.z() = std::clamp(d.place.z(), 0.0, modes.length_z);
+    d.place.x() = std::clamp(d.place.x(), 0.0, modes.length_x),
+    d.place.z() = std::clamp(d.place.z(), 0.0, modes.length_z);
     d.place.y() = height_at(modes, heights, d.place.x(), d.place.z());
     d.velocity = speed * (std::cos(steep) * out + std::sin(steep) * Vec3::UnitY());
     volumes.add(d.place.x(), d.place.z(), std::max(0.5 * t.radius, 0.15), -d.volume);
@@ -93,7 +97,8 @@ Landed fly(const PondModes& modes, const SplashWater& water, std::span<const dou
         d.velocity.y() -= h * water.gravity;
         d.velocity /= 1 + h * drag * d.velocity.norm();
         d.place += h * d.velocity;
-        const bool inside = d.place.x() >= 0 && d.place.z() >= 0 && d.place.x() <= modes.length_x && d.place.z() <= modes.length_z;
+        const bool inside =
+            d.place.x() >= 0 && d.place.z() >= 0 && d.place.x() <= modes.length_x && d.place.z() <= modes.length_z;
         const double level = height_at(modes, heights, d.place.x(), d.place.z());
         if (d.velocity.y() < 0 && d.place.y() <= level) state[i] = inside ? 1 : 2;
       }

@@ -15,11 +15,11 @@ namespace ft::inline solvers {
 
 /// A ring of water that leaves.
 struct Throw {
-  double x = 0, z = 0, radius = 0;     ///< of the ring; pool [m]
-  double slow = 0, fast = 0;           ///< speeds, spread evenly [m/s]
+  double x = 0, z = 0, radius = 0;               ///< of the ring; pool [m]
+  double slow = 0, fast = 0;                     ///< speeds, spread evenly [m/s]
   double steep_least = 0.96, steep_most = 1.48;  ///< elevations, outwards [rad]; 55 to 85 degrees
-  double energy = 0;                   ///< kinetic, of all that is thrown [J]
-  std::uint64_t source = 0;            ///< for random keys: each once in a frame
+  double energy = 0;                             ///< kinetic, of all that is thrown [J]
+  std::uint64_t source = 0;                      ///< for random keys: each once in a frame
 };
 
 struct SplashWater {

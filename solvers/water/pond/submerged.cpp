@@ -1,5 +1,5 @@
-// See float_shape.h: volume below a level by the divergence theorem. Triangles are clipped by the level; tetrahedra from
-// a point in the level's plane need no lid.
+// See float_shape.h: volume below a level by the divergence theorem. Triangles are clipped by the level; tetrahedra
+// from a point in the level's plane need no lid.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,7 +32,7 @@ struct Sums {
     moment += 0.25 * v * (a + b + c);
   }
   /// Where the surface leaves the water, from p to q in its triangle's sense.
-  void cut(const Vec3& p, const Vec3& q) { area += 0.5 * (p.z() * q.x() - p.x() * q.z()); }
+  void cut(const Vec3& p, const Vec3& q) { area -= 0.5 * (p.z() * q.x() - p.x() * q.z()); }
 };
 
 void clip(const std::array<Vec3, 3>& p, Sums& sums) {

@@ -1,6 +1,6 @@
 // What is put into the water from many small places at once (a skin's volume, cavities, droplets that land or leave):
-// gathered on the grid in layers of depth, then given to the waves with exp(-k depth). One transform for each layer that
-// holds anything, however many places there were.
+// gathered on the grid in layers of depth, then given to the waves with exp(-k depth). One transform for each layer
+// that holds anything, however many places there were.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ class VolumeLayers {
  public:
   /// unit: the least depth [m], in which one drop is rounded off; about a cell and a half.
   VolumeLayers(const PondModes& modes, double unit);
-  /// A volume [m3] (or whatever is to be spread) at a place of the pool and a depth below rest [m]. Places outside go to
-  /// the nearest cell.
+  /// A volume [m3] (or whatever is to be spread) at a place of the pool and a depth below rest [m]. Places outside go
+  /// to the nearest cell.
   void add(double x, double z, double depth, double volume);
   bool empty() const;
   /// Adds the gathered to coefficients of waves: heights where volumes were given. Empties the layers.

@@ -55,7 +55,9 @@ double heave_kernel(double q) {
   return std::exp(u * u * (1 + 2 * t) * a + t * t * (3 - 2 * t) * b + h * t * u * (u * slope(i) - t * slope(i + 1)));
 }
 
-double surge_kernel(double q) { return std::exp(-0.745 * q); }
+double surge_kernel(double q) {
+  return std::exp(-0.745 * q);
+}
 
 KernelTable::KernelTable(const PondModes& modes, double depth_) : depth(depth_), phi(modes.size()), chi(modes.size()) {
   // As a function of |k|, from a fine table.

@@ -6,6 +6,9 @@
 
 #include "baker/core/parallel.h"
 
+// Functions that return vectors stay in this file: their calling convention is nobody else's concern.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace ft::inline solvers {
 namespace {
 
@@ -25,8 +28,12 @@ inline Four load(const float* from) {
   std::memcpy(&out, from, sizeof out);
   return __builtin_convertvector(out, Four);
 }
-inline void store(double* to, const Four& value) { std::memcpy(to, &value, sizeof value); }
-inline double sum(const Four& f) { return (f[0] + f[1]) + (f[2] + f[3]); }
+inline void store(double* to, const Four& value) {
+  std::memcpy(to, &value, sizeof value);
+}
+inline double sum(const Four& f) {
+  return (f[0] + f[1]) + (f[2] + f[3]);
+}
 
 /// exp(-x) for x >= 0, to 1e-12; zero beyond 700.
 inline double decay(double x) {
@@ -109,7 +116,9 @@ void fade_row(double top_depth, const double* k, std::size_t stride, double* fad
   for (std::size_t i = 0; i < stride; ++i) fade[i] = decay(k[i] * top_depth);
 }
 
-bool pushes(const WaveSource& s) { return s.volume != 0 || s.way_x != 0 || s.way_z != 0 || s.sinking != 0; }
+bool pushes(const WaveSource& s) {
+  return s.volume != 0 || s.way_x != 0 || s.way_z != 0 || s.sinking != 0;
+}
 
 }  // namespace
 

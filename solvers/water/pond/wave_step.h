@@ -1,6 +1,6 @@
 // One sweep over all waves of a pond: what bodies have pushed up or moved joins the surface, the surface drives the
-// potential, the potential the surface, and bodies read the new water where they will be. One sweep is one step, because
-// memory is what it costs; rows run in parallel, their sums are added in order.
+// potential, the potential the surface, and bodies read the new water where they will be. One sweep is one step,
+// because memory is what it costs; rows run in parallel, their sums are added in order.
 //
 // A source (a body, or a part of a large one) has a kernel phi for its volume, chi for its sidewards motion, both times
 // exp(-k s) where its top lies s below the surface. The kernel that pushes water also weighs what pushes back, which is
@@ -17,9 +17,9 @@ namespace ft::inline solvers {
 
 /// What a body reads: integrals over the surface with its kernels.
 struct WaveProbe {
-  double level = 0;                 ///< <phi, eta> [m]
-  double slope_x = 0, slope_z = 0;  ///< <chi, gradient of eta> [1]
-  double pull = 0;                  ///< <k phi, eta>, of a body under water [1]
+  double level = 0;                                       ///< <phi, eta> [m]
+  double slope_x = 0, slope_z = 0;                        ///< <chi, gradient of eta> [1]
+  double pull = 0;                                        ///< <k phi, eta>, of a body under water [1]
   double velocity_x = 0, velocity_y = 0, velocity_z = 0;  ///< of the water [m/s]
 };
 
