@@ -138,6 +138,60 @@ TEST(PondSplash, What_a_skin_displaces_rises_elsewhere_and_falls_back) {
   EXPECT_NEAR((*state.find("eta"))[0] * 16, 0, 1e-14);
 }
 
+/// A post of 0.5 x 0.5 m and 1 m deep that is drawn through the water.
+PondReport drawn(double speed, double seconds, State& state, const PondSolver& pond) {
+  const TriangleSurface post = box_surface(Vec3(0.5, 2, 0.5));
+  PondReport r;
+  const double start = state.time;
+  while (state.time < start + seconds - 1e-9) {
+    const auto at_time = [&](double t) {
+      std::vector<Vec3> out = post.positions;
+      for (Vec3& p : out) p += Vec3(2 + speed * t, 0, 4);
+      return out;
+    };
+    const auto from = at_time(state.time), to = at_time(state.time + 1.0 / 24);
+    const DrivenBody body{post.triangles, from, to};
+    r = pond.advance_frame(state, 1.0 / 24, {&body, 1});
+  }
+  return r;
+}
+
+TEST(PondSplash, What_wades_makes_waves_and_what_stands_makes_none) {
+  const auto pond = made(square_pond(8, 64, 2));
+  State moving = pond->initial_state(), still = moving;
+  const PondReport walked = drawn(1.2, 2, moving, *pond), stood = drawn(0, 2, still, *pond);
+  EXPECT_LT(stood.energy.waves, 1e-20);  // rounding
+  EXPECT_GT(walked.energy.waves, 1);
+  EXPECT_GT(walked.highest, 0.01);
+  EXPECT_LT(walked.driven[0].mean.force.x(), -50);
+  EXPECT_FALSE(walked.dry);
+}
+
+TEST(PondSplash, A_skin_pushes_a_ball_ahead_and_feels_it) {
+  PondSetup s = square_pond(8, 64, 2);
+  s.floats.push_back(floating_ball(0.3, 0.5, Vec3(2.8, 0, 4)));
+  const auto pond = made(s);
+  State state = pond->initial_state();
+  // Its triangles are large: the ball meets vertices only, so a fine sphere is the skin.
+  const TriangleSurface skin = sphere_surface(0.4, 4);
+  double pushed = 0;
+  for (int f = 0; f < 36; ++f) {
+    const auto at_time = [&](double t) {
+      std::vector<Vec3> out = skin.positions;
+      for (Vec3& p : out) p += Vec3(2 + 1.5 * t, 0, 4);
+      return out;
+    };
+    const auto from = at_time(state.time), to = at_time(state.time + 1.0 / 24);
+    const DrivenBody body{skin.triangles, from, to};
+    const PondReport r = pond->advance_frame(state, 1.0 / 24, {&body, 1});
+    pushed += r.skin_pushes[0].x();
+    const double gap = (pond->float_motions(state)[0].pose.position - Vec3(2 + 1.5 * state.time, 0, 4)).norm();
+    EXPECT_GT(gap, 0.7 - 0.04);
+  }
+  EXPECT_GT(pond->float_motions(state)[0].pose.position.x(), 4);
+  EXPECT_LT(pushed, -10);
+}
+
 TEST(PondSplash, A_box_held_under_weighs_less_by_the_water_it_displaces) {
   PondSetup s = square_pond(4, 64, 2);
   s.corner = Vec3(3, -1, 2);

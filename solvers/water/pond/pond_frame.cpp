@@ -94,6 +94,12 @@ void PondSolver::finish_frame(Frame& f, State& state, double frame_time) const {
   modes_.transform.to_values(height);
 
   PondReport& r = f.report;
+  for (std::size_t j = 0; j < at(nz()); ++j)
+    for (std::size_t i = 0; i < at(nx()); ++i) {
+      const double h = height[j * at(modes_.stride) + i];
+      r.lowest = std::min(r.lowest, h), r.highest = std::max(r.highest, h);
+    }
+  r.dry = r.lowest <= -setup_.depth;
   r.in_air = static_cast<int>(f.memory.droplets.size());
   r.ledger = ledger_of(f.memory, f.eta[0]);
   r.energy.waves = energy();

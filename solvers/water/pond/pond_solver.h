@@ -39,7 +39,9 @@ struct PondReport {
   WaterLedger ledger;
   PondEnergy energy;
   std::vector<DrivenReport> driven;
-  std::vector<Vec3> skin_pushes;  ///< by contact with floating bodies, impulses of the frame on each driven [N s]
+  std::vector<Vec3> skin_pushes;   ///< by contact with floating bodies, impulses of the frame on each driven [N s]
+  double lowest = 0, highest = 0;  ///< of the surface, above the level at rest [m]
+  bool dry = false;                ///< a trough reached the floor: the shot asks for more than waves can be
   bool finite = true;
 };
 
