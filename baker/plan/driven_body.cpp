@@ -98,7 +98,7 @@ std::vector<BodyPoint> body_points(const Surface& surface, std::span<const Vec3>
   return out;
 }
 
-DrivenBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass, int frame_count,
+YieldingBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass, int frame_count,
                        double fps) {
   CHECK(frame_count > 0 && fps > 0);
   const auto frames = at(frame_count);
@@ -126,7 +126,7 @@ DrivenBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint
   for (std::size_t p = 0; p < points.size(); ++p)
     curves->push_back({Curve(places[p], fps), std::move(areas[p]), points[p].volume});
 
-  DrivenBody out;
+  YieldingBody out;
   out.mass = {mass, mass * Mat3::Identity()};  // it does not turn: its inertia is not asked for
   out.motion = [centre, fps](double time) {
     const Instant now = instant_at(time, fps, centre->place.size());

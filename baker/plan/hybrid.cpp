@@ -117,7 +117,7 @@ Result<StandInSpec> stand_in_spec(const StandInKeys& k, const Shot& shot) {
   return out;
 }
 
-Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, DrivenBody body, double longest_step,
+Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, YieldingBody body, double longest_step,
                                const Vec3& turn_axes) {
   const auto at_primary = [&](const Error& error) { return located(error, shot, "primary " + in_quotes(spec.name)); };
   HybridPass out;

@@ -51,7 +51,7 @@ bool is_hybrid(const Shot& shot, const std::string& primary);
 
 /// Over the frames of the shot, in samples at most `longest_step` [s] apart. turn_axes: 0 where the body keeps its
 /// clip's rotation. Refused: a primary without mass, stand-ins that make no sense.
-Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, DrivenBody body, double longest_step,
+Result<HybridPass> hybrid_pass(const Shot& shot, const PrimarySpec& spec, YieldingBody body, double longest_step,
                                const Vec3& turn_axes);
 
 /// The stand-in that a shot file's table means, in world units.

@@ -42,7 +42,7 @@ Status plan_prop(const Shot& shot, const PrimarySpec& spec, PrimaryPlan& primary
   primary.track = primary.prop->track;
   if (is_hybrid(shot, spec.name) && !primary.hybrid) {
     const Prop& prop = *primary.prop;
-    DrivenBody body{prop.mass, prop.track, [samples = prop.samples](double) { return std::span(samples); }};
+    YieldingBody body{prop.mass, prop.track, [samples = prop.samples](double) { return std::span(samples); }};
     auto pass = hybrid_pass(shot, spec, std::move(body), k_prop_step, Vec3::Ones());
     if (!pass) return pass.error();
     primary.track = [before = prop.track, after = sampled_motion(0, pass->dt, pass->motion)](double time) {

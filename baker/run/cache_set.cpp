@@ -214,6 +214,8 @@ std::vector<Vec3> CacheSet::positions_of_mesh(std::size_t system, const State& s
     positions_of(source, state, x);
   else if (!source.slice.empty())
     slice_of(source, state, x);
+  else if (const auto moved = mover_of(source))
+    moved->mover->moved_positions(states[moved->group], systems_[system].name, x);
   else if (source.collider ||
            (source.primary == plan_.groups[source.group]->primary && solvers_[source.group]->moves_primary()))
     solvers_[source.group]->collider_positions(state, x);

@@ -6,6 +6,7 @@
 #include "baker/systems/hair/hair_kind.h"
 #include "baker/systems/interface/system.h"
 #include "baker/systems/leaves/leaves_kind.h"
+#include "baker/systems/water/water_kind.h"
 
 namespace ft::inline baker {
 
@@ -13,7 +14,7 @@ namespace {
 
 struct Registry {
   std::vector<const SystemKind*> kinds = {
-      cloth_kind(), cords_kind(), follow_kind(), leaves_kind(), hair_kind(),
+      cloth_kind(), cords_kind(), follow_kind(), leaves_kind(), hair_kind(), water_kind(),
   };
   std::vector<Metric> metrics = metrics_of(kinds);
 

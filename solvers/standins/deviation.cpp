@@ -78,10 +78,10 @@ bool DeviationState::is_zero() const {
          angular_momentum.isZero(0);
 }
 
-Deviation::Deviation(DrivenBody body, std::vector<std::unique_ptr<StandIn>> stand_ins, DeviationSettings settings)
+Deviation::Deviation(YieldingBody body, std::vector<std::unique_ptr<StandIn>> stand_ins, DeviationSettings settings)
     : body_(std::move(body)), stand_ins_(std::move(stand_ins)), settings_(settings) {}
 
-Result<Deviation> Deviation::make(DrivenBody body, std::vector<std::unique_ptr<StandIn>> stand_ins,
+Result<Deviation> Deviation::make(YieldingBody body, std::vector<std::unique_ptr<StandIn>> stand_ins,
                                   DeviationSettings s) {
   if (!(body.mass.mass > 0) || !(body.mass.inertia.diagonal().minCoeff() > 0))
     return usage_error("a body that yields needs its mass and moments of inertia", {}, "write mass under the primary");

@@ -24,7 +24,7 @@ namespace ft::inline solvers {
 
 /// What is imported: the motion of the centre of mass and the axes of the body at any time [s]. For a character that is
 /// its whole mass, and the samples move against the axes.
-struct DrivenBody {
+struct YieldingBody {
   RigidMass mass;
   std::function<RigidMotion(double time)> motion;
   std::function<std::span<const ShapeSample>(double time)> shape;  ///< stays valid until it is asked again
@@ -80,7 +80,7 @@ struct DeviationStep {
 class Deviation {
  public:
   /// Refuses a body without mass, and steps and measures out of range.
-  static Result<Deviation> make(DrivenBody body, std::vector<std::unique_ptr<StandIn>> stand_ins,
+  static Result<Deviation> make(YieldingBody body, std::vector<std::unique_ptr<StandIn>> stand_ins,
                                 DeviationSettings settings);
 
   DeviationState start(double time) const;
@@ -92,7 +92,7 @@ class Deviation {
 
  private:
   struct Trial;
-  Deviation(DrivenBody body, std::vector<std::unique_ptr<StandIn>> stand_ins, DeviationSettings settings);
+  Deviation(YieldingBody body, std::vector<std::unique_ptr<StandIn>> stand_ins, DeviationSettings settings);
   RigidMotion adjusted(const DeviationState& state, const RigidMotion& clip) const;
   Vec3 turning(const DeviationState& state, const RigidMotion& clip) const;
   StandInForce force(const BodyState& body, std::vector<char>& touched) const;
@@ -101,7 +101,7 @@ class Deviation {
   double comeback_share(const DeviationState& state, bool touching, double middle) const;
   Trial attempt(const DeviationState& from, double h) const;
 
-  DrivenBody body_;
+  YieldingBody body_;
   std::vector<std::unique_ptr<StandIn>> stand_ins_;
   DeviationSettings settings_;
 };

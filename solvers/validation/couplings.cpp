@@ -130,7 +130,7 @@ std::vector<ValidationCase> validate_mat() {
     soles[i].place = Vec3(i % 2 ? 0.1 : -0.1, -height, i < 2 ? 0.1 : -0.1);
     soles[i].normal = Vec3(0, -1, 0), soles[i].area = 0.01;
   }
-  DrivenBody body{{mass, 10 * Mat3::Identity()},
+  YieldingBody body{{mass, 10 * Mat3::Identity()},
                   [&](double) {
                     RigidMotion m;
                     m.pose.position.y() = height;

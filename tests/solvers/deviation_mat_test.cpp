@@ -41,7 +41,7 @@ struct Gymnast {
     m.pose.position.y() = k_height - k_speed * t - 0.5 * k_g * t * t;
     return m;
   }
-  DrivenBody driven() {
+  YieldingBody driven() {
     return {{k_mass, 10 * Mat3::Identity()},
             [this](double t) { return motion(t); },
             [this](double t) {
@@ -115,7 +115,7 @@ TEST(DeviationMat, Standing_sinks_in_by_the_weight_over_the_stiffness) {
   StandInSpec spec = mat();
   spec.damping_ratio = 1;
   Gymnast gymnast(0);
-  DrivenBody body = gymnast.driven();
+  YieldingBody body = gymnast.driven();
   body.motion = [&](double) { return gymnast.motion(1); };
   body.shape = [shape = body.shape](double) { return shape(1); };
   const Deviation d = deviation(body, stand_ins({spec}));
@@ -145,7 +145,7 @@ TEST(DeviationMat, Beside_the_mat_the_clip_is_as_it_was_and_the_mat_is_reported)
 
 TEST(DeviationMat, The_clips_way_along_the_ground_stays) {
   Gymnast gymnast(0.1);
-  DrivenBody body = gymnast.driven();
+  YieldingBody body = gymnast.driven();
   body.motion = [motion = body.motion](double t) {  // a step forward that the feet brake
     RigidMotion m = motion(t);
     m.velocity.x() = t < 0 ? 2 : 2 * std::exp(-t / 0.1);

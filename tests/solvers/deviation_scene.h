@@ -48,7 +48,7 @@ class ConstantForce final : public StandIn {
   StandInForce out_;
 };
 
-inline Deviation deviation(DrivenBody body, std::vector<std::unique_ptr<StandIn>> acting,
+inline Deviation deviation(YieldingBody body, std::vector<std::unique_ptr<StandIn>> acting,
                            const DeviationSettings& settings = {}) {
   auto made = Deviation::make(std::move(body), std::move(acting), settings);
   if (!made) ADD_FAILURE() << made.error().text();
@@ -62,11 +62,11 @@ inline DeviationStep advance(const Deviation& deviation, DeviationState& state, 
 }
 
 /// A body that is kept where it is.
-inline DrivenBody still_body(const RigidMass& mass) {
+inline YieldingBody still_body(const RigidMass& mass) {
   return {mass, [](double) { return RigidMotion(); }, {}};
 }
 
-inline DrivenBody flying_body(const RigidMotion& release, const RigidMass& mass, const Vec3& gravity) {
+inline YieldingBody flying_body(const RigidMotion& release, const RigidMass& mass, const Vec3& gravity) {
   return {mass, [flight = RigidFlight(release, mass, gravity)](double t) { return flight.at(t); }, {}};
 }
 

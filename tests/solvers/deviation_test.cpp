@@ -10,7 +10,7 @@ TEST(Deviation, Without_a_force_the_clip_comes_out_to_the_last_bit) {
   RigidMotion release;
   release.velocity = Vec3(1.1, 3.7, -0.3), release.spin = Vec3(0.3, 1, 5);
   const RigidMass mass{2, Vec3(0.1, 0.2, 0.15).asDiagonal()};
-  const DrivenBody body = flying_body(release, mass, Vec3(0, -k_gravity, 0));
+  const YieldingBody body = flying_body(release, mass, Vec3(0, -k_gravity, 0));
   StandInSpec elsewhere = field(5);
   elsewhere.position = Vec3(0, 5e3, 0);
   for (const Comeback comeback : {Comeback::k_free, Comeback::k_spring, Comeback::k_window, Comeback::k_hold}) {

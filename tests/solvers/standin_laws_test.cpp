@@ -118,7 +118,7 @@ TEST(StandInLaws, A_floating_box_bobs_about_the_draft_that_its_density_says) {
   const auto box = box_shape(Vec3(0.5, 0.5, 0.5), 4);
   const double mass = 0.5 * 1000 * 0.125, w = std::sqrt(1000 * k_gravity * 0.25 / mass);
   EXPECT_NEAR(2 * std::numbers::pi / w, 1.0030, 5e-4);
-  DrivenBody body = still_body({mass, mass * 0.25 / 6 * Mat3::Identity()});
+  YieldingBody body = still_body({mass, mass * 0.25 / 6 * Mat3::Identity()});
   body.shape = [&](double) { return std::span<const ShapeSample>(box); };
   for (const double lifted : {0.0, 0.02}) {  // above its draft, half of its height
     const double held = 0.125 * 0.5 + lifted;
@@ -139,7 +139,7 @@ TEST(StandInLaws, Drag_brings_a_dropped_raft_to_rest_at_its_draft) {
   pond.name = "pond", pond.kind = "water", pond.support = Support::k_replace, pond.drag = 1.2;
   const auto raft = box_shape(Vec3(1, 0.2, 1), 5);
   const double mass = 0.35 * 1000 * 0.2;
-  DrivenBody body = still_body({mass, Vec3(mass * 1.04 / 12, mass / 6, mass * 1.04 / 12).asDiagonal()});
+  YieldingBody body = still_body({mass, Vec3(mass * 1.04 / 12, mass / 6, mass * 1.04 / 12).asDiagonal()});
   body.shape = [&](double) { return std::span<const ShapeSample>(raft); };
   pond.position.y() = -0.15;  // 5 cm below it
   const Deviation d = deviation(body, stand_ins({pond}));
@@ -171,7 +171,7 @@ TEST(StandInLaws, A_sinking_sphere_ends_at_its_terminal_velocity) {
   pond.kind = "water", pond.support = Support::k_replace, pond.drag = 0.47;
   const double r = 0.05, volume = 4 * std::numbers::pi / 3 * r * r * r, mass = 2 * 1000 * volume;
   const auto ball = sphere_shape(r, 10);
-  DrivenBody body = still_body({mass, 0.4 * mass * r * r * Mat3::Identity()});
+  YieldingBody body = still_body({mass, 0.4 * mass * r * r * Mat3::Identity()});
   body.shape = [&](double) { return std::span<const ShapeSample>(ball); };
   const Deviation d = deviation(body, stand_ins({pond}));
   DeviationState state = d.start(0);

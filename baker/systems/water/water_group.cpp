@@ -1,0 +1,166 @@
+#include "baker/systems/water/water_group.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "baker/plan/located.h"
+#include "baker/plan/meets.h"
+#include "baker/systems/water/water_bed.h"
+#include "baker/systems/water/water_model.h"
+#include "io/shot/mesh_file.h"
+#include "io/shot/patterns.h"
+#include "io/shot/words.h"
+#include "solvers/water/pond/pond_core.h"
+#include "solvers/water/shallow/shallow_core.h"
+
+namespace ft::inline baker {
+namespace {
+
+/// Cells along the longer side, where the shot names no size of them.
+constexpr double k_cells = 256;
+/// And no smaller than this [m].
+constexpr double k_smallest_cell = 0.005;
+
+/// Of the whole rectangle: cells are square and an even number, so that it may grow by a cell or two.
+WaterGrid grid_of(const WaterSpec& spec) {
+  WaterGrid out;
+  out.cell = spec.cell > 0 ? spec.cell
+                           : std::max(k_smallest_cell, std::max(spec.size.x(), spec.size.z()) / k_cells);
+  const auto cells = [&](double length) { return 2 * std::max(4, static_cast<int>(std::ceil(0.5 * length / out.cell - 1e-6))); };
+  out.nx = cells(spec.size.x()), out.nz = cells(spec.size.z());
+  out.origin = Vec2(spec.position.x() - 0.5 * out.cell * out.nx, spec.position.z() - 0.5 * out.cell * out.nz);
+  return out;
+}
+
+/// What floats, where it is and how fast at the first frame.
+Status find_floats(const WaterSpec& spec, const BakePlan& plan, std::vector<WaterFloat>& floats,
+                   std::vector<std::pair<FloatingBody, RigidMotion>>& bodies) {
+  std::vector<std::string> names;
+  for (const PrimaryPlan& primary : plan.primaries) names.push_back(primary.name);
+  const auto found = indices_like(spec.floats, names, "floats", "primary");
+  if (!found) return found.error();
+  for (const int p : *found) {
+    const PrimaryPlan& primary = plan.primaries[at(p)];
+    if (!primary.prop)
+      return usage_error(spec.owner() + ": " + in_quotes(primary.name) + " cannot float: it is no rigid prop");
+    if (!(primary.prop->mass.mass > 0))
+      return usage_error(spec.owner() + ": " + in_quotes(primary.name) + " cannot float: its mass is missing");
+    floats.push_back({primary.name, primary.prop->surface});
+    bodies.push_back({{primary.name, primary.prop->surface, primary.prop->triangles, primary.prop->mass, spec.float_drag},
+                      primary.prop->track(0)});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec& spec, std::size_t primary,
+                                               BakePlan& plan) {
+  const auto place = [&](const Error& error) { return located(error, shot, spec.owner()); };
+  const auto note = [&](const std::string& text) { plan.notes.push_back(spec.owner() + ": " + text); };
+  auto group = std::make_unique<WaterGroup>(primary);
+  WaterScene scene;
+  scene.name = spec.name;
+  scene.first_frame = shot.first_frame, scene.fps = shot.fps, scene.preroll_frames = shot.preroll;
+  std::vector<std::pair<FloatingBody, RigidMotion>> bodies;
+  if (const Status found = find_floats(spec, plan, scene.floats, bodies); !found) return place(found.error());
+  for (const WaterFloat& f : scene.floats) group->floats.push_back(f.name);
+  std::vector<std::size_t> met;
+  if (const Status found = find_met(spec, spec.meets, plan, met); !found) return place(found.error());
+  for (const std::size_t p : met) {
+    const PrimaryPlan& body = plan.primaries[p];
+    const auto own = std::ranges::find(shot.primaries, body.name, &PrimarySpec::name);
+    // The ground under it is the water's own affair, and a thin sheet pushes none away.
+    if ((own != shot.primaries.end() && own->shape == k_ground) || std::ranges::count(group->floats, body.name) > 0)
+      continue;
+    if (body.trajectory->surface().triangles.empty()) continue;
+    group->meets.push_back(p);
+    scene.visitors.push_back({body.name, body.trajectory});
+  }
+  const WaterGrid grid = grid_of(spec);
+  std::vector<double> bed;
+  double depth = spec.depth;
+  if (!spec.bed.empty()) {
+    auto mesh = read_obj(spec.bed);
+    if (!mesh) return mesh.error();
+    WaterBed under = bed_under(grid, mesh->positions, triangulate(*mesh));
+    if (under.uncovered > 0)
+      note(fmt::format("the bed does not reach under {} of {} cells: they are as high as its highest place",
+                       under.uncovered, grid.count()));
+    bed = std::move(under.height);
+    depth = spec.position.y() - *std::ranges::min_element(bed);
+  }
+  const WaterAdvice advice = advise_water(std::max(depth, 1e-6), spec.size.x(), spec.size.z(), !bed.empty());
+  group->model = spec.model.empty() ? advice.model : spec.model;
+  if (spec.model.empty()) note(fmt::format("model = \"{}\": {}", advice.model, advice.reason));
+  if (const std::string doubt = doubt_of_model(group->model, advice, depth); !doubt.empty()) note(doubt);
+  if (group->model == "shallow")
+    note("bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn by lot");
+  if (shot.preroll > 0) note("stands still during the pre-roll");
+
+  std::unique_ptr<WaterCore> core;
+  if (group->model == "shallow") {
+    ShallowSetup setup;
+    setup.name = spec.name;
+    setup.origin = grid.origin, setup.cell = grid.cell, setup.nx = grid.nx, setup.nz = grid.nz;
+    setup.bed = bed.empty() ? std::vector<double>(grid.count(), spec.position.y() - spec.depth) : std::move(bed);
+    setup.level = spec.position.y();
+    setup.edges.fill(spec.edges == "open" ? ShallowEdge::k_open : ShallowEdge::k_wall);
+    setup.gravity = shot.solver.gravity.norm();
+    setup.manning = spec.roughness;
+    setup.seed = static_cast<std::uint64_t>(spec.seed);
+    setup.splash.on = spec.splash > 0;
+    setup.splash.share = std::min(1.0, setup.splash.share * spec.splash);
+    for (auto& [body, start] : bodies) setup.floats.push_back({std::move(body), start});
+    auto made = shallow_core(std::move(setup));
+    if (!made) return place(made.error());
+    core = std::move(*made);
+  } else {
+    PondSetup setup;
+    setup.name = spec.name;
+    setup.corner = Vec3(grid.origin.x(), spec.position.y(), grid.origin.y());
+    setup.size_x = grid.cell * grid.nx, setup.size_z = grid.cell * grid.nz, setup.nx = grid.nx, setup.nz = grid.nz;
+    setup.depth = depth;
+    setup.edges = spec.edges == "open" ? PondEdge::k_open : PondEdge::k_wall;
+    setup.gravity = shot.solver.gravity.norm();
+    setup.seed = static_cast<std::uint64_t>(spec.seed);
+    setup.splash.on = spec.splash > 0;
+    setup.splash.energy_share = std::min(1.0, setup.splash.energy_share * spec.splash);
+    setup.splash.cavity_opening *= spec.entry_drag;
+    setup.wind = Vec2(shot.wind.velocity.x(), shot.wind.velocity.z());
+    for (auto& [body, start] : bodies) setup.floats.push_back({std::move(body), start});
+    auto made = pond_core(std::move(setup));
+    if (!made) return place(made.error());
+    core = std::move(*made);
+  }
+  group->grid = grid;
+  group->depth = depth;
+  group->around.include(Vec3(grid.origin.x(), spec.position.y() - depth, grid.origin.y()));
+  group->around.include(Vec3(grid.origin.x() + grid.cell * grid.nx, spec.position.y(), grid.origin.y() + grid.cell * grid.nz));
+  group->solver = std::make_unique<WaterSolver>(std::move(scene), std::move(core));
+  group->volume = group->solver->core().ledger(group->solver->initial_state()).total();
+  SystemOutput& surface = group->outputs.emplace_back();
+  surface.primary = primary;
+  surface.mesh = std::make_shared<const Mesh>(group->solver->system_mesh(0));
+  SystemOutput& droplets = group->outputs.emplace_back();
+  droplets.primary = primary;
+  droplets.shape = std::make_shared<const SystemShape>(*group->solver->system_shape(1));
+  return group;
+}
+
+Result<std::unique_ptr<Solver>> WaterGroup::make_solver() {
+  return std::unique_ptr<Solver>(std::move(solver));
+}
+
+std::vector<std::string> WaterGroup::lines(const BakePlan& plan) const {
+  std::vector<std::string> out{fmt::format(
+      "water \"{}\", {}: {} x {} cells of {:.3g} m, {:.3g} m deep at most, {:.4g} m3; through it go {}", outputs[0].name(),
+      model == "pond" ? "a pond" : "shallow", grid.nx, grid.nz, grid.cell, depth, volume,
+      meets.empty() ? std::string("no bodies") : met_names(plan))};
+  if (!floats.empty()) out.push_back("  it moves, and is moved by, " + joined(floats));
+  return out;
+}
+
+}  // namespace ft::inline baker

@@ -1,0 +1,32 @@
+// One [water.NAME] in a plan: its surface as a mesh, its droplets as points, and the primaries that float in it.
+#pragma once
+
+#include "baker/plan/drawn_group.h"
+#include "baker/plan/plan.h"
+#include "baker/systems/water/water_spec.h"
+#include "solvers/water/water_solver.h"
+
+namespace ft::inline baker {
+
+class WaterGroup final : public DrawnGroup {
+ public:
+  using DrawnGroup::DrawnGroup;
+
+  std::unique_ptr<WaterSolver> solver;  ///< until make_solver()
+  std::string model;                    ///< "shallow" or "pond"
+  double depth = 0;                     ///< of still water at its deepest [m]
+  double volume = 0;                    ///< m3
+  double memory = 0;                    ///< bytes
+  WaterGrid grid;
+  std::vector<std::string> floats;
+
+  std::string_view role() const override { return "water"; }
+  Result<std::unique_ptr<Solver>> make_solver() override;
+  std::vector<std::string> lines(const BakePlan& plan) const override;
+};
+
+/// Errors say where; notes go into the plan.
+Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec& spec, std::size_t primary,
+                                               BakePlan& plan);
+
+}  // namespace ft::inline baker

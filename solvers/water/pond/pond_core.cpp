@@ -1,0 +1,58 @@
+#include "solvers/water/pond/pond_core.h"
+
+#include <algorithm>
+
+#include "solvers/water/pond/pond_solver.h"
+
+namespace ft::inline solvers {
+namespace {
+
+class PondCore final : public WaterCore {
+ public:
+  explicit PondCore(std::unique_ptr<PondSolver> solver) : solver_(std::move(solver)) {}
+
+  WaterGrid grid() const override {
+    const PondSetup& setup = solver_->setup();
+    return {{setup.corner.x(), setup.corner.z()}, setup.size_x / setup.nx, setup.nx, setup.nz};
+  }
+  int float_count() const override { return solver_->float_count(); }
+  State initial_state() const override { return solver_->initial_state(); }
+  WaterReport advance(State& state, double frame_time, std::span<const DrivenBody> bodies) override {
+    const PondReport done = solver_->advance_frame(state, frame_time, bodies);
+    WaterReport out;
+    out.ledger = done.ledger;
+    out.potential = done.energy.total();
+    out.steps = done.steps;
+    out.thrown = done.thrown;
+    out.finite = done.finite;
+    out.dry = done.dry;
+    for (const DrivenReport& body : done.driven)
+      out.forces.push_back({body.mean, body.peak.force.norm(), body.peak.force.isZero(0) ? 0.0 : 1.0});
+    return out;
+  }
+  WaterLedger ledger(const State& state) const override { return solver_->ledger(state); }
+  void surface(const State& state, WaterSurface& out) const override {
+    const std::size_t count = grid().count();
+    out.height.resize(count);
+    out.wet.assign(count, 1);
+    solver_->surface_heights(state, out.height);
+    std::vector<double> foam(count);
+    solver_->foam(state, foam);
+    out.foam.assign(foam.begin(), foam.end());
+  }
+  std::vector<Droplet> droplets(const State& state) const override { return solver_->droplets(state); }
+  std::vector<RigidMotion> floating(const State& state) const override { return solver_->float_motions(state); }
+
+ private:
+  std::unique_ptr<PondSolver> solver_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<WaterCore>> pond_core(PondSetup setup) {
+  auto solver = PondSolver::make(std::move(setup));
+  if (!solver) return solver.error();
+  return std::unique_ptr<WaterCore>(std::make_unique<PondCore>(std::move(*solver)));
+}
+
+}  // namespace ft::inline solvers

@@ -1,0 +1,64 @@
+#include "solvers/water/shallow/shallow_core.h"
+
+#include "solvers/water/shallow/shallow_solver.h"
+
+namespace ft::inline solvers {
+namespace {
+
+/// A thinner film is no surface to be drawn: the ground is wet [m].
+constexpr double k_film = 3e-4;
+
+class ShallowCore final : public WaterCore {
+ public:
+  explicit ShallowCore(ShallowSolver solver) : solver_(std::move(solver)) {}
+
+  WaterGrid grid() const override {
+    const ShallowSetup& setup = solver_.setup();
+    return {setup.origin, setup.cell, setup.nx, setup.nz};
+  }
+  int float_count() const override { return static_cast<int>(solver_.setup().floats.size()); }
+  State initial_state() const override { return solver_.initial_state(); }
+  WaterReport advance(State& state, double frame_time, std::span<const DrivenBody> bodies) override {
+    const ShallowReport done = solver_.advance_frame(state, frame_time, bodies);
+    WaterReport out;
+    out.ledger = done.ledger;
+    out.kinetic = done.kinetic;
+    out.potential = done.potential + done.floats_energy;
+    out.steps = done.steps;
+    out.local_steps = done.patch_steps;
+    out.iterations = done.newton_iterations;
+    out.unsettled = done.failed_solves;
+    out.thrown = done.droplets_thrown;
+    out.fastest = done.fastest;
+    out.finite = done.finite;
+    for (const WaterForce& force : done.driven)
+      out.forces.push_back({force.mean, force.peak.force.norm(), force.peak.force.isZero(0) ? 0.0 : 1.0});
+    return out;
+  }
+  WaterLedger ledger(const State& state) const override { return solver_.ledger(state); }
+  void surface(const State& state, WaterSurface& out) const override {
+    out.height = solver_.surface(state);
+    const std::vector<double> depth = solver_.depths(state);
+    out.wet.resize(depth.size());
+    for (std::size_t c = 0; c < depth.size(); ++c) {
+      out.wet[c] = depth[c] > k_film ? 1 : 0;
+      if (out.wet[c] == 0) out.height[c] -= depth[c];
+    }
+    out.foam.clear();
+  }
+  std::vector<Droplet> droplets(const State& state) const override { return solver_.droplets(state); }
+  std::vector<RigidMotion> floating(const State& state) const override { return solver_.floats(state); }
+
+ private:
+  ShallowSolver solver_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<WaterCore>> shallow_core(ShallowSetup setup) {
+  auto solver = ShallowSolver::make(std::move(setup));
+  if (!solver) return solver.error();
+  return std::unique_ptr<WaterCore>(std::make_unique<ShallowCore>(std::move(*solver)));
+}
+
+}  // namespace ft::inline solvers

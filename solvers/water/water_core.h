@@ -1,0 +1,68 @@
+// What all models of water have in common: a rectangle of columns over x and z, in which bodies go and float, and
+// droplets that fly above it. Each keeps its own numbers in the blocks of a State; see shallow/ and pond/.
+#pragma once
+
+#include <memory>
+
+#include "baker/core/state.h"
+#include "baker/core/wrench.h"
+#include "solvers/water/water_body.h"
+
+namespace ft::inline solvers {
+
+/// The grid on which surfaces are told: cell (i, k), x fastest, has its middle at origin + (i + 1/2, k + 1/2) cell.
+struct WaterGrid {
+  Vec2 origin = Vec2::Zero();  ///< least x and z [m]
+  double cell = 0;             ///< m
+  int nx = 0, nz = 0;
+
+  std::size_t count() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
+};
+
+/// Of what a frame did to a driven body.
+struct WaterOnBody {
+  Wrench mean;              ///< over the frame, the torque about the world's origin
+  double peak = 0;          ///< largest force of a step [N]
+  double wet_share = 0;     ///< of the frame, during which there was any [1]
+};
+
+struct WaterReport {
+  WaterLedger ledger;              ///< at the frame's end
+  double kinetic = 0, potential = 0;  ///< of columns, droplets and what floats; potential against the still water [J]
+  int steps = 0;                   ///< of the whole domain
+  int local_steps = 0;             ///< of parts of it, beyond those
+  int iterations = 0;              ///< of implicit solves, all steps
+  int unsettled = 0;               ///< steps whose solve did not settle
+  int thrown = 0;                  ///< droplets in this frame
+  double fastest = 0;              ///< of the water in columns [m/s]
+  std::vector<WaterOnBody> forces;  ///< on each driven body
+  bool dry = false;                ///< water was pushed down to its ground, and the model cannot leave that dry
+  bool finite = true;
+};
+
+/// The surface as it is seen.
+struct WaterSurface {
+  std::vector<double> height;  ///< of each cell [m]; where it is dry, of the ground
+  std::vector<char> wet;       ///< 1: there is water
+  std::vector<float> foam;     ///< 0 none, 1 white; empty: the model knows of none
+};
+
+class WaterCore {
+ public:
+  virtual ~WaterCore() = default;
+
+  virtual WaterGrid grid() const = 0;
+  virtual int float_count() const = 0;
+  /// At rest, what floats where it starts. Its frame and time are the caller's.
+  virtual State initial_state() const = 0;
+  /// By a frame of so many seconds. bodies: the same ones in the same order in every frame.
+  virtual WaterReport advance(State& state, double frame_time, std::span<const DrivenBody> bodies) = 0;
+
+  virtual WaterLedger ledger(const State& state) const = 0;
+  virtual void surface(const State& state, WaterSurface& out) const = 0;
+  virtual std::vector<Droplet> droplets(const State& state) const = 0;
+  /// Of all that floats, in the order of the setup.
+  virtual std::vector<RigidMotion> floating(const State& state) const = 0;
+};
+
+}  // namespace ft::inline solvers
