@@ -103,6 +103,9 @@ void CacheSet::add_body(std::size_t group, std::size_t primary) {
   const std::vector<std::string> taken = names();
   if (std::find(taken.begin(), taken.end(), body.cache_name()) != taken.end()) return;
   Source source{.group = group, .primary = primary};
+  for (std::size_t g = 0; g < solvers_.size(); ++g)
+    if (const auto* mover = dynamic_cast<const MovesPrimaries*>(solvers_[g].get()); mover && mover->moves(body.name))
+      source.group = g, source.mover = mover;
   source.mesh =
       shared(make_triangle_mesh(body.name, bind_pose_of(*body.trajectory), body.trajectory->surface().triangles));
   add(std::move(source), body.name, "body", all_formats);
@@ -214,8 +217,8 @@ std::vector<Vec3> CacheSet::positions_of_mesh(std::size_t system, const State& s
     positions_of(source, state, x);
   else if (!source.slice.empty())
     slice_of(source, state, x);
-  else if (const auto moved = mover_of(source))
-    moved->mover->moved_positions(states[moved->group], systems_[system].name, x);
+  else if (source.mover)
+    source.mover->moved_positions(state, plan_.primaries[source.primary].name, x);
   else if (source.collider ||
            (source.primary == plan_.groups[source.group]->primary && solvers_[source.group]->moves_primary()))
     solvers_[source.group]->collider_positions(state, x);

@@ -11,6 +11,7 @@
 #include "baker/plan/plan.h"
 #include "baker/record/manifest.h"
 #include "io/cache/cache.h"
+#include "solvers/base/moves_primaries.h"
 
 namespace ft::inline baker {
 
@@ -50,6 +51,7 @@ class CacheSet {
     int garment = -1;  ///< -1: the collider or the body
     bool collider = false;
     std::size_t primary = 0;                     ///< whom it belongs to
+    const MovesPrimaries* mover = nullptr;       ///< of a body that goes where the group's solver takes it; else null
     std::vector<int> slice{};                    ///< of the collider's vertices; empty: all
     std::shared_ptr<const Mesh> mesh{};          ///< rest shape; null once the files have it
     std::shared_ptr<const SystemShape> shape{};  ///< of what is no mesh

@@ -21,22 +21,22 @@ struct WaterGrid {
 
 /// Of what a frame did to a driven body.
 struct WaterOnBody {
-  Wrench mean;              ///< over the frame, the torque about the world's origin
-  double peak = 0;          ///< largest force of a step [N]
-  double wet_share = 0;     ///< of the frame, during which there was any [1]
+  Wrench mean;           ///< over the frame, the torque about the world's origin
+  double peak = 0;       ///< largest force of a step [N]
+  double wet_share = 0;  ///< of the frame, during which there was any [1]
 };
 
 struct WaterReport {
-  WaterLedger ledger;              ///< at the frame's end
+  WaterLedger ledger;                 ///< at the frame's end
   double kinetic = 0, potential = 0;  ///< of columns, droplets and what floats; potential against the still water [J]
-  int steps = 0;                   ///< of the whole domain
-  int local_steps = 0;             ///< of parts of it, beyond those
-  int iterations = 0;              ///< of implicit solves, all steps
-  int unsettled = 0;               ///< steps whose solve did not settle
-  int thrown = 0;                  ///< droplets in this frame
-  double fastest = 0;              ///< of the water in columns [m/s]
-  std::vector<WaterOnBody> forces;  ///< on each driven body
-  bool dry = false;                ///< water was pushed down to its ground, and the model cannot leave that dry
+  int steps = 0;                      ///< of the whole domain
+  int local_steps = 0;                ///< of parts of it, beyond those
+  int iterations = 0;                 ///< of implicit solves, all steps
+  int unsettled = 0;                  ///< steps whose solve did not settle
+  int thrown = 0;                     ///< droplets in this frame
+  double fastest = 0;                 ///< of the water in columns [m/s]
+  std::vector<WaterOnBody> forces;    ///< on each driven body
+  bool dry = false;                   ///< water was pushed down to its ground, and the model cannot leave that dry
   bool finite = true;
 };
 

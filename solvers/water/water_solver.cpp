@@ -165,7 +165,8 @@ FrameReport WaterSolver::advance_frame(State& state) {
     const double error = std::abs(total - volume_) / volume_;
     report.own["water_volume"] = total;
     report.own["water_error"] = error;
-    if (!(error < k_ledger_error)) say(fmt::format("the account of the water is off by {:.1g} of all of it", error), report);
+    if (!(error < k_ledger_error))
+      say(fmt::format("the account of the water is off by {:.1g} of all of it", error), report);
     report.own["water_airborne"] = done.ledger.droplets + done.ledger.pending;
     report.own["water_outflow"] = done.ledger.outflow;
     report.own["water_energy"] = done.kinetic + done.potential;
@@ -175,7 +176,8 @@ FrameReport WaterSolver::advance_frame(State& state) {
   }
   if (done.unsettled > 0)
     say(fmt::format("the water did not settle beside bodies in {} of its steps", done.unsettled), report);
-  if (done.dry) say("the water is pushed down to its ground, which a pond never leaves dry: this is more than it can be", report);
+  if (done.dry)
+    say("the water is pushed down to its ground, which a pond never leaves dry: this is more than it can be", report);
   report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return report;
 }

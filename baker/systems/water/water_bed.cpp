@@ -26,10 +26,10 @@ WaterBed bed_under(const WaterGrid& grid, std::span<const Vec3> positions, std::
     highest = std::max({highest, a.y(), b.y(), c.y()});
     const double twice = (b.x() - a.x()) * (c.z() - a.z()) - (c.x() - a.x()) * (b.z() - a.z());
     if (std::abs(twice) < 1e-18) continue;  // stands upright
-    const auto [i0, i1] = between(std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()}), grid.origin.x(),
-                                  grid.cell, grid.nx);
-    const auto [k0, k1] = between(std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}), grid.origin.y(),
-                                  grid.cell, grid.nz);
+    const auto [i0, i1] =
+        between(std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()}), grid.origin.x(), grid.cell, grid.nx);
+    const auto [k0, k1] =
+        between(std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}), grid.origin.y(), grid.cell, grid.nz);
     for (int k = k0; k <= k1; ++k)
       for (int i = i0; i <= i1; ++i) {
         const double x = grid.origin.x() + grid.cell * (i + 0.5), z = grid.origin.y() + grid.cell * (k + 0.5);

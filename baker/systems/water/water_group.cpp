@@ -26,16 +26,17 @@ constexpr double k_smallest_cell = 0.005;
 /// Of the whole rectangle: cells are square and an even number, so that it may grow by a cell or two.
 WaterGrid grid_of(const WaterSpec& spec) {
   WaterGrid out;
-  out.cell = spec.cell > 0 ? spec.cell
-                           : std::max(k_smallest_cell, std::max(spec.size.x(), spec.size.z()) / k_cells);
-  const auto cells = [&](double length) { return 2 * std::max(4, static_cast<int>(std::ceil(0.5 * length / out.cell - 1e-6))); };
+  out.cell = spec.cell > 0 ? spec.cell : std::max(k_smallest_cell, std::max(spec.size.x(), spec.size.z()) / k_cells);
+  const auto cells = [&](double length) {
+    return 2 * std::max(4, static_cast<int>(std::ceil(0.5 * length / out.cell - 1e-6)));
+  };
   out.nx = cells(spec.size.x()), out.nz = cells(spec.size.z());
   out.origin = Vec2(spec.position.x() - 0.5 * out.cell * out.nx, spec.position.z() - 0.5 * out.cell * out.nz);
   return out;
 }
 
 /// What floats, where it is and how fast at the first frame.
-Status find_floats(const WaterSpec& spec, const BakePlan& plan, std::vector<WaterFloat>& floats,
+Status find_floats(const WaterSpec& spec, BakePlan& plan, WaterGroup& group, std::vector<WaterFloat>& floats,
                    std::vector<std::pair<FloatingBody, RigidMotion>>& bodies) {
   std::vector<std::string> names;
   for (const PrimaryPlan& primary : plan.primaries) names.push_back(primary.name);
@@ -47,9 +48,14 @@ Status find_floats(const WaterSpec& spec, const BakePlan& plan, std::vector<Wate
       return usage_error(spec.owner() + ": " + in_quotes(primary.name) + " cannot float: it is no rigid prop");
     if (!(primary.prop->mass.mass > 0))
       return usage_error(spec.owner() + ": " + in_quotes(primary.name) + " cannot float: its mass is missing");
+    if (primary.prop->release > 0 && std::isfinite(primary.prop->release))
+      plan.notes.push_back(fmt::format("{}: \"{}\" floats from the first frame on, whatever its release says",
+                                       spec.owner(), primary.name));
+    group.floats.push_back(at(p));
     floats.push_back({primary.name, primary.prop->surface});
-    bodies.push_back({{primary.name, primary.prop->surface, primary.prop->triangles, primary.prop->mass, spec.float_drag},
-                      primary.prop->track(0)});
+    bodies.push_back(
+        {{primary.name, primary.prop->surface, primary.prop->triangles, primary.prop->mass, spec.float_drag},
+         primary.prop->track(0)});
   }
   return {};
 }
@@ -65,16 +71,14 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   scene.name = spec.name;
   scene.first_frame = shot.first_frame, scene.fps = shot.fps, scene.preroll_frames = shot.preroll;
   std::vector<std::pair<FloatingBody, RigidMotion>> bodies;
-  if (const Status found = find_floats(spec, plan, scene.floats, bodies); !found) return place(found.error());
-  for (const WaterFloat& f : scene.floats) group->floats.push_back(f.name);
+  if (const Status found = find_floats(spec, plan, *group, scene.floats, bodies); !found) return place(found.error());
   std::vector<std::size_t> met;
   if (const Status found = find_met(spec, spec.meets, plan, met); !found) return place(found.error());
   for (const std::size_t p : met) {
     const PrimaryPlan& body = plan.primaries[p];
     const auto own = std::ranges::find(shot.primaries, body.name, &PrimarySpec::name);
     // The ground under it is the water's own affair, and a thin sheet pushes none away.
-    if ((own != shot.primaries.end() && own->shape == k_ground) || std::ranges::count(group->floats, body.name) > 0)
-      continue;
+    if ((own != shot.primaries.end() && own->shape == k_ground) || std::ranges::count(group->floats, p) > 0) continue;
     if (body.trajectory->surface().triangles.empty()) continue;
     group->meets.push_back(p);
     scene.visitors.push_back({body.name, body.trajectory});
@@ -97,7 +101,9 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   if (spec.model.empty()) note(fmt::format("model = \"{}\": {}", advice.model, advice.reason));
   if (const std::string doubt = doubt_of_model(group->model, advice, depth); !doubt.empty()) note(doubt);
   if (group->model == "shallow")
-    note("bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn by lot");
+    note(
+        "bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn "
+        "by lot");
   if (shot.preroll > 0) note("stands still during the pre-roll");
 
   std::unique_ptr<WaterCore> core;
@@ -138,7 +144,8 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   group->grid = grid;
   group->depth = depth;
   group->around.include(Vec3(grid.origin.x(), spec.position.y() - depth, grid.origin.y()));
-  group->around.include(Vec3(grid.origin.x() + grid.cell * grid.nx, spec.position.y(), grid.origin.y() + grid.cell * grid.nz));
+  group->around.include(
+      Vec3(grid.origin.x() + grid.cell * grid.nx, spec.position.y(), grid.origin.y() + grid.cell * grid.nz));
   group->solver = std::make_unique<WaterSolver>(std::move(scene), std::move(core));
   group->volume = group->solver->core().ledger(group->solver->initial_state()).total();
   SystemOutput& surface = group->outputs.emplace_back();
@@ -150,16 +157,25 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   return group;
 }
 
+std::vector<ColliderSlice> WaterGroup::slices(const BakePlan& plan, std::span<const std::string> taken) const {
+  std::vector<ColliderSlice> out = DrawnGroup::slices(plan, taken);
+  for (const std::size_t p : floats)
+    out.push_back({.primary = p, .name = plan.primaries[p].name, .fixed = true, .vertices = {}, .triangles = {}});
+  return out;
+}
+
 Result<std::unique_ptr<Solver>> WaterGroup::make_solver() {
   return std::unique_ptr<Solver>(std::move(solver));
 }
 
 std::vector<std::string> WaterGroup::lines(const BakePlan& plan) const {
-  std::vector<std::string> out{fmt::format(
-      "water \"{}\", {}: {} x {} cells of {:.3g} m, {:.3g} m deep at most, {:.4g} m3; through it go {}", outputs[0].name(),
-      model == "pond" ? "a pond" : "shallow", grid.nx, grid.nz, grid.cell, depth, volume,
-      meets.empty() ? std::string("no bodies") : met_names(plan))};
-  if (!floats.empty()) out.push_back("  it moves, and is moved by, " + joined(floats));
+  std::vector<std::string> out{
+      fmt::format("water \"{}\", {}: {} x {} cells of {:.3g} m, {:.3g} m deep at most, {:.4g} m3; through it go {}",
+                  outputs[0].name(), model == "pond" ? "a pond" : "shallow", grid.nx, grid.nz, grid.cell, depth, volume,
+                  meets.empty() ? std::string("no bodies") : met_names(plan))};
+  std::vector<std::string> moved;
+  for (const std::size_t p : floats) moved.push_back(in_quotes(plan.primaries[p].name));
+  if (!moved.empty()) out.push_back("  it moves, and is moved by, " + joined(moved));
   return out;
 }
 

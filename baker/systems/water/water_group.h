@@ -18,8 +18,10 @@ class WaterGroup final : public DrawnGroup {
   double volume = 0;                    ///< m3
   double memory = 0;                    ///< bytes
   WaterGrid grid;
-  std::vector<std::string> floats;
+  std::vector<std::size_t> floats;  ///< primaries that it moves, into BakePlan::primaries
 
+  /// What floats, too.
+  std::vector<ColliderSlice> slices(const BakePlan& plan, std::span<const std::string> taken) const override;
   std::string_view role() const override { return "water"; }
   Result<std::unique_ptr<Solver>> make_solver() override;
   std::vector<std::string> lines(const BakePlan& plan) const override;

@@ -25,8 +25,9 @@ WaterAdvice advise_water(double depth, double along, double across, bool has_bed
   out.wave = std::min(k_wave, 0.25 * std::min(along, across));
   const double kh = 2 * std::numbers::pi * depth / out.wave;
   out.too_fast = std::sqrt(kh / std::tanh(kh)) - 1;
-  const std::string speed = fmt::format("shallow water would carry waves of {:.2g} m {:.0f} % too fast at a depth of {:.2g} m",
-                                        out.wave, 100 * out.too_fast, depth);
+  const std::string speed =
+      fmt::format("shallow water would carry waves of {:.2g} m {:.0f} % too fast at a depth of {:.2g} m", out.wave,
+                  100 * out.too_fast, depth);
   if (has_bed) {
     out.model = "shallow";
     out.reason = "its ground is a mesh, which only shallow water knows";

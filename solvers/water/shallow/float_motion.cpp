@@ -35,8 +35,8 @@ void write_float(const FloatState& s, std::span<double> n) {
   std::copy(std::begin(all), std::end(all), n.begin());
 }
 
-FloatModel float_model(const FloatingBody& body) {
-  FloatModel m{body, 0, 0};
+ShallowFloatModel float_model(const FloatingBody& body) {
+  ShallowFloatModel m{body, 0, 0};
   for (const Triangle& t : body.triangles)
     m.volume += body.positions[at(t[0])].dot(body.positions[at(t[1])].cross(body.positions[at(t[2])])) / 6;
   const double r = std::cbrt(std::max(0.0, m.volume) * 0.75 / 3.14159265358979323846);
@@ -44,7 +44,7 @@ FloatModel float_model(const FloatingBody& body) {
   return m;
 }
 
-void float_positions(const FloatModel& model, const RigidPose& pose, std::vector<Vec3>& positions) {
+void float_positions(const ShallowFloatModel& model, const RigidPose& pose, std::vector<Vec3>& positions) {
   positions.resize(model.body.positions.size());
   const Mat3 r = pose.rotation.toRotationMatrix();
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = pose.position + r * model.body.positions[i];
@@ -59,7 +59,7 @@ RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt) {
   return out;
 }
 
-Vec3 prepare_float(const FloatModel& model, FloatState& state, std::span<const Vec3> positions, const FloatWater& water,
+Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions, const ShallowFloatWater& water,
                    const NearLaws& laws, double dt, NearBody& near) {
   RigidMotion& motion = state.motion;
   const RigidMass& m = model.body.mass;

@@ -17,18 +17,18 @@ FloatState read_float(std::span<const double> numbers);
 void write_float(const FloatState& state, std::span<double> numbers);
 
 /// What never changes of a body.
-struct FloatModel {
+struct ShallowFloatModel {
   FloatingBody body;
   double volume = 0;     ///< m3
   double spin_drag = 0;  ///< torque by density and speed squared [m5]
 };
-FloatModel float_model(const FloatingBody& body);
+ShallowFloatModel float_model(const FloatingBody& body);
 
-void float_positions(const FloatModel& model, const RigidPose& pose, std::vector<Vec3>& positions);
+void float_positions(const ShallowFloatModel& model, const RigidPose& pose, std::vector<Vec3>& positions);
 RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt);
 
 /// How water stands around a body.
-struct FloatWater {
+struct ShallowFloatWater {
   bool any = false;
   double level = 0;              ///< m
   Vec3 velocity = Vec3::Zero();  ///< m/s
@@ -36,7 +36,7 @@ struct FloatWater {
 
 /// Fills mass and v* of `near`, and the added mass of `state` with the momentum kept; `positions` are those of its pose
 /// at the step's end. Returns the force of the drag on the body.
-Vec3 prepare_float(const FloatModel& model, FloatState& state, std::span<const Vec3> positions, const FloatWater& water,
+Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions, const ShallowFloatWater& water,
                    const NearLaws& laws, double dt, NearBody& near);
 
 /// Ground and walls, as the bed of a flow and the sides of the domain: velocity after a step of dt without a vertex

@@ -71,7 +71,7 @@ void ShallowFrame::step_bodies(double dt, double share1) {
     s_.near.find(p, s_.bodies, x, z, near_);
     for (std::size_t b = 0; b < models_.size(); ++b) {
       NearBody& body = s_.bodies[driven + b];
-      FloatWater water;
+      ShallowFloatWater water;
       water.any = s_.near.level_around(driven + b, p, water.level);
       if (pass == 0) {
         const Box box = bounds(s_.float_places[b]);

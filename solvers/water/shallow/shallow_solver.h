@@ -74,7 +74,7 @@ class ShallowSolver {
 
   ShallowSetup setup_;
   Flow model_;  ///< bed, sides and levels beyond open ones; its water is nobody's
-  std::vector<FloatModel> floats_;
+  std::vector<ShallowFloatModel> floats_;
   std::unique_ptr<ShallowScratch> scratch_;
 };
 
