@@ -259,9 +259,8 @@ void drift_floats(double time, Floats& floats) {
   }
 }
 
-void move_sources(std::span<const FloatModel> models, const FloatWater& water, std::span<const RigidMotion> before,
-                  const Floats& floats, FloatScratch& scratch) {
-  (void)water;
+void move_sources(std::span<const FloatModel> models, std::span<const RigidMotion> before, const Floats& floats,
+                  FloatScratch& scratch) {
   for (std::size_t i = 0; i < models.size(); ++i) {
     const RigidPose& now = floats.motion[i].pose;
     const Mat3 ratio = added_ratio(models[i], now.rotation);

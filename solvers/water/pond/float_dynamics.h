@@ -62,8 +62,8 @@ void kick_floats(std::span<const FloatModel> models, const FloatWater& water, do
 /// Places over a time [s]; before sources are set.
 void drift_floats(double time, Floats& floats);
 /// From the places before and now: ways of all sources. Keeps the volumes that wait in them.
-void move_sources(std::span<const FloatModel> models, const FloatWater& water, std::span<const RigidMotion> before,
-                  const Floats& floats, FloatScratch& scratch);
+void move_sources(std::span<const FloatModel> models, std::span<const RigidMotion> before, const Floats& floats,
+                  FloatScratch& scratch);
 /// Kinetic with added mass, of height, and of the water that they displace [J].
 double float_energy(std::span<const FloatModel> models, const FloatWater& water, const Floats& floats,
                     const FloatScratch& scratch);

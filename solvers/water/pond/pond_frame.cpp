@@ -35,7 +35,7 @@ void PondSolver::step_slice(Frame& f, double time, int steps) const {
       solve_contacts(floats_, pool, f.skins, f.memory.floats, f.report.skin_pushes, f.losses);
       for (SkinPoints& s : f.skins)
         for (std::size_t v = 0; v < s.places.size(); ++v) s.places[v] += dt * s.velocities[v];
-      move_sources(floats_, water, before, f.memory.floats, f.floats);
+      move_sources(floats_, before, f.memory.floats, f.floats);
       if (!f.feed.empty()) {
         const double share = 1.0 / steps;
         parallel_for(f.eta.size(), 16384, [&](std::size_t b, std::size_t e) {
