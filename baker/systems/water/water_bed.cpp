@@ -49,4 +49,24 @@ WaterBed bed_under(const WaterGrid& grid, std::span<const Vec3> positions, std::
   return out;
 }
 
+std::vector<double> depths_that_stay(const WaterGrid& grid, std::span<const double> bed, double level) {
+  std::vector<double> out;
+  for (const double height : bed) out.push_back(std::max(0.0, level - height));
+  std::vector<std::pair<int, int>> runs_off;
+  const auto drain = [&](int i, int k) {
+    if (i < 0 || k < 0 || i >= grid.nx || k >= grid.nz) return;
+    double& depth = out[at(k) * at(grid.nx) + at(i)];
+    if (depth > 0) runs_off.emplace_back(i, k);
+    depth = 0;
+  };
+  for (int i = 0; i < grid.nx; ++i) drain(i, 0), drain(i, grid.nz - 1);
+  for (int k = 0; k < grid.nz; ++k) drain(0, k), drain(grid.nx - 1, k);
+  while (!runs_off.empty()) {
+    const auto [i, k] = runs_off.back();
+    runs_off.pop_back();
+    drain(i - 1, k), drain(i + 1, k), drain(i, k - 1), drain(i, k + 1);
+  }
+  return out;
+}
+
 }  // namespace ft::inline baker

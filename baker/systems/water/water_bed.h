@@ -16,4 +16,8 @@ struct WaterBed {
 
 WaterBed bed_under(const WaterGrid& grid, std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
+/// Of still water at a level, how deep each cell is [m], without what runs off: cells below the level from which water
+/// finds a way to the edge, over cells that are below it, too.
+std::vector<double> depths_that_stay(const WaterGrid& grid, std::span<const double> bed, double level);
+
 }  // namespace ft::inline baker

@@ -60,6 +60,69 @@ Status find_floats(const WaterSpec& spec, BakePlan& plan, WaterGroup& group, std
   return {};
 }
 
+using Floats = std::vector<std::pair<FloatingBody, RigidMotion>>;
+
+ShallowSetup shallow_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, std::vector<double> bed,
+                           Floats floats) {
+  ShallowSetup out;
+  out.name = spec.name;
+  out.origin = grid.origin, out.cell = grid.cell, out.nx = grid.nx, out.nz = grid.nz;
+  out.bed = bed.empty() ? std::vector<double>(grid.count(), spec.position.y() - spec.depth) : std::move(bed);
+  out.level = spec.position.y();
+  out.edges.fill(spec.edges == "wall" ? ShallowEdge::k_wall : ShallowEdge::k_open);
+  if (spec.edges == "drain") out.depth = depths_that_stay(grid, out.bed, out.level);
+  out.gravity = shot.solver.gravity.norm();
+  out.manning = spec.roughness;
+  out.seed = static_cast<std::uint64_t>(spec.seed);
+  out.splash.on = spec.splash > 0;
+  out.splash.share = std::min(1.0, out.splash.share * spec.splash);
+  for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start});
+  return out;
+}
+
+PondSetup pond_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, double depth, Floats floats) {
+  PondSetup out;
+  out.name = spec.name;
+  out.corner = Vec3(grid.origin.x(), spec.position.y(), grid.origin.y());
+  out.size_x = grid.cell * grid.nx, out.size_z = grid.cell * grid.nz, out.nx = grid.nx, out.nz = grid.nz;
+  out.depth = depth;
+  out.edges = spec.edges == "open" ? PondEdge::k_open : PondEdge::k_wall;
+  out.gravity = shot.solver.gravity.norm();
+  out.seed = static_cast<std::uint64_t>(spec.seed);
+  out.splash.on = spec.splash > 0;
+  out.splash.energy_share = std::min(1.0, out.splash.energy_share * spec.splash);
+  out.splash.cavity_opening *= spec.entry_drag;
+  out.wind = Vec2(shot.wind.velocity.x(), shot.wind.velocity.z());
+  for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start, 0.3});
+  return out;
+}
+
+/// What goes through it: all that `meets` names but what floats, the ground, which is its own affair, and what jumps.
+Status find_visitors(const Shot& shot, const WaterSpec& spec, BakePlan& plan, WaterGroup& group, WaterScene& scene) {
+  const auto named = meets_of(spec.meets, {}, plan.primaries);
+  if (!named) return named.error();
+  for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
+    const PrimaryPlan& body = plan.primaries[p];
+    const auto own = std::ranges::find(shot.primaries, body.name, &PrimarySpec::name);
+    if ((*named)[p] == 0 || (own != shot.primaries.end() && own->shape == k_ground) ||
+        std::ranges::count(group.floats, p) > 0)
+      continue;
+    if (const std::string why = why_alone(shot, body); !why.empty()) {
+      plan.notes.push_back(fmt::format("{} does not meet \"{}\": {}", spec.owner(), body.name, why));
+      continue;
+    }
+    group.meets.push_back(p);
+    if (has_sheets(body.trajectory->surface().parts)) {
+      if (spec.bed.empty())
+        plan.notes.push_back(
+            fmt::format("{}: \"{}\" is a sheet without an inside, and pushes no water away", spec.owner(), body.name));
+      continue;
+    }
+    scene.visitors.push_back({body.name, body.trajectory});
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec& spec, std::size_t primary,
@@ -72,17 +135,7 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   scene.first_frame = shot.first_frame, scene.fps = shot.fps, scene.preroll_frames = shot.preroll;
   std::vector<std::pair<FloatingBody, RigidMotion>> bodies;
   if (const Status found = find_floats(spec, plan, *group, scene.floats, bodies); !found) return place(found.error());
-  std::vector<std::size_t> met;
-  if (const Status found = find_met(spec, spec.meets, plan, met); !found) return place(found.error());
-  for (const std::size_t p : met) {
-    const PrimaryPlan& body = plan.primaries[p];
-    const auto own = std::ranges::find(shot.primaries, body.name, &PrimarySpec::name);
-    // The ground under it is the water's own affair, and a thin sheet pushes none away.
-    if ((own != shot.primaries.end() && own->shape == k_ground) || std::ranges::count(group->floats, p) > 0) continue;
-    if (body.trajectory->surface().triangles.empty()) continue;
-    group->meets.push_back(p);
-    scene.visitors.push_back({body.name, body.trajectory});
-  }
+  if (const Status found = find_visitors(shot, spec, plan, *group, scene); !found) return place(found.error());
   const WaterGrid grid = grid_of(spec);
   std::vector<double> bed;
   double depth = spec.depth;
@@ -106,47 +159,16 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
         "by lot");
   if (shot.preroll > 0) note("stands still during the pre-roll");
 
-  std::unique_ptr<WaterCore> core;
-  if (group->model == "shallow") {
-    ShallowSetup setup;
-    setup.name = spec.name;
-    setup.origin = grid.origin, setup.cell = grid.cell, setup.nx = grid.nx, setup.nz = grid.nz;
-    setup.bed = bed.empty() ? std::vector<double>(grid.count(), spec.position.y() - spec.depth) : std::move(bed);
-    setup.level = spec.position.y();
-    setup.edges.fill(spec.edges == "open" ? ShallowEdge::k_open : ShallowEdge::k_wall);
-    setup.gravity = shot.solver.gravity.norm();
-    setup.manning = spec.roughness;
-    setup.seed = static_cast<std::uint64_t>(spec.seed);
-    setup.splash.on = spec.splash > 0;
-    setup.splash.share = std::min(1.0, setup.splash.share * spec.splash);
-    for (auto& [body, start] : bodies) setup.floats.push_back({std::move(body), start});
-    auto made = shallow_core(std::move(setup));
-    if (!made) return place(made.error());
-    core = std::move(*made);
-  } else {
-    PondSetup setup;
-    setup.name = spec.name;
-    setup.corner = Vec3(grid.origin.x(), spec.position.y(), grid.origin.y());
-    setup.size_x = grid.cell * grid.nx, setup.size_z = grid.cell * grid.nz, setup.nx = grid.nx, setup.nz = grid.nz;
-    setup.depth = depth;
-    setup.edges = spec.edges == "open" ? PondEdge::k_open : PondEdge::k_wall;
-    setup.gravity = shot.solver.gravity.norm();
-    setup.seed = static_cast<std::uint64_t>(spec.seed);
-    setup.splash.on = spec.splash > 0;
-    setup.splash.energy_share = std::min(1.0, setup.splash.energy_share * spec.splash);
-    setup.splash.cavity_opening *= spec.entry_drag;
-    setup.wind = Vec2(shot.wind.velocity.x(), shot.wind.velocity.z());
-    for (auto& [body, start] : bodies) setup.floats.push_back({std::move(body), start});
-    auto made = pond_core(std::move(setup));
-    if (!made) return place(made.error());
-    core = std::move(*made);
-  }
+  auto core = group->model == "shallow"
+                  ? shallow_core(shallow_setup(shot, spec, grid, std::move(bed), std::move(bodies)))
+                  : pond_core(pond_setup(shot, spec, grid, depth, std::move(bodies)));
+  if (!core) return place(core.error());
   group->grid = grid;
   group->depth = depth;
   group->around.include(Vec3(grid.origin.x(), spec.position.y() - depth, grid.origin.y()));
   group->around.include(
       Vec3(grid.origin.x() + grid.cell * grid.nx, spec.position.y(), grid.origin.y() + grid.cell * grid.nz));
-  group->solver = std::make_unique<WaterSolver>(std::move(scene), std::move(core));
+  group->solver = std::make_unique<WaterSolver>(std::move(scene), std::move(*core));
   group->volume = group->solver->core().ledger(group->solver->initial_state()).total();
   SystemOutput& surface = group->outputs.emplace_back();
   surface.primary = primary;

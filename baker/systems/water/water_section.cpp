@@ -21,8 +21,9 @@ std::span<const ShotKey<WaterSpec>> water_keys() {
        "Ground under shallow water, an OBJ in the world: its uppermost surface; where it is above the water it is dry"},
       {"cell", &WaterSpec::cell, 0, 100, "m", "", false, "cell_size resolution grid_size dx",
        "Of the grid: 0.01 a puddle with feet in it, 0.05 a pool; 0: chosen from size and depth"},
-      {"edges", &WaterSpec::edges, 0, 0, "", "wall open", false, "boundary border sides",
-       "Of the rectangle: `wall` sends waves back, `open` lets them leave"},
+      {"edges", &WaterSpec::edges, 0, 0, "", "wall open drain", false, "boundary border sides",
+       "Of the rectangle: `wall` sends waves back, `open` lets them leave; `drain`, of shallow water: what can run off "
+       "over the edge has run off before the shot, so that puddles are left"},
       {"roughness", &WaterSpec::roughness, 0, 0.2, "s/m^(1/3)", "", false, "manning friction",
        "Of the ground under shallow water, Manning's: 0.010 glass, 0.013 concrete, 0.03 gravel"},
       {"splash", &WaterSpec::splash, 0, 4, "1", "", false, "spray droplets",
@@ -36,6 +37,8 @@ std::span<const ShotKey<WaterSpec>> water_keys() {
       {"seed", &WaterSpec::seed, 0, 1'000'000, "", "", false, "random_seed", "Of all that is drawn by lot"},
       {"meets", &WaterSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
        "Primaries that go through it: names with `*` and `?`; `[]`: none"},
+      {"coupling", &WaterSpec::coupling, 0, 0, "", "one-way hybrid", false, "mode",
+       "With the primary that it is on: `hybrid` where that yields to a stand-in for the water before it is baked"},
       {"on", &WaterSpec::on, 0, 0, "", "@name of a primary", false, "primary",
        "The primary under which it is listed; without it the first"},
   };
@@ -59,6 +62,8 @@ class WaterSection final : public SectionOf<WaterSpec> {
     if (depth && bed) fault(depth, "depth does not go with bed, which says how deep it is");
     if (depth && !(own.depth > 0)) fault(depth, "depth is 0: there is no water");
     if (bed && own.model == "pond") fault(bed, "bed is for shallow water; a pond is equally deep everywhere");
+    if (const Member* edges = table->find("edges"); edges && own.edges == "drain" && !bed)
+      fault(edges, "edges = \"drain\" leaves no water on level ground: it needs a bed that holds some back");
     if (const Member* roughness = table->find("roughness"); roughness && own.model == "pond")
       fault(roughness, "roughness is of the ground under shallow water");
     if (const Member* drag = table->find("float_drag"); drag && own.floats.empty())

@@ -17,7 +17,7 @@ struct WaterSpec final : SecondarySpec {
   double depth = 0;              ///< of the still water over level ground [m]; 0: the bed says it
   std::filesystem::path bed;     ///< .obj: ground under shallow water, in the world
   double cell = 0;               ///< of the grid [m]; 0: chosen
-  std::string edges = "wall";    ///< "wall" or "open", on all four sides
+  std::string edges = "wall";    ///< "wall", "open" or "drain", on all four sides
   double roughness = 0.012;      ///< of the bed, Manning's [s/m^(1/3)]
   double splash = 1;             ///< times what theory throws up [1]
   double entry_drag = 1;         ///< times what a body that dives in loses in the air it takes along [1]

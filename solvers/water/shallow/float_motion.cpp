@@ -59,8 +59,8 @@ RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt) {
   return out;
 }
 
-Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions, const ShallowFloatWater& water,
-                   const NearLaws& laws, double dt, NearBody& near) {
+Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions,
+                   const ShallowFloatWater& water, const NearLaws& laws, double dt, NearBody& near) {
   RigidMotion& motion = state.motion;
   const RigidMass& m = model.body.mass;
   double under = 0, deep = 0;

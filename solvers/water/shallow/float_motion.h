@@ -36,8 +36,8 @@ struct ShallowFloatWater {
 
 /// Fills mass and v* of `near`, and the added mass of `state` with the momentum kept; `positions` are those of its pose
 /// at the step's end. Returns the force of the drag on the body.
-Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions, const ShallowFloatWater& water,
-                   const NearLaws& laws, double dt, NearBody& near);
+Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions,
+                   const ShallowFloatWater& water, const NearLaws& laws, double dt, NearBody& near);
 
 /// Ground and walls, as the bed of a flow and the sides of the domain: velocity after a step of dt without a vertex
 /// beyond them, friction included.

@@ -34,8 +34,8 @@ double fastest_in(const std::vector<double>& speeds, int across, const CellBox& 
 
 }  // namespace
 
-ShallowFrame::ShallowFrame(const ShallowSetup& setup, std::span<const ShallowFloatModel> floats, ShallowScratch& scratch,
-                           double frame_time, std::uint64_t number)
+ShallowFrame::ShallowFrame(const ShallowSetup& setup, std::span<const ShallowFloatModel> floats,
+                           ShallowScratch& scratch, double frame_time, std::uint64_t number)
     : setup_(setup),
       models_(floats),
       s_(scratch),

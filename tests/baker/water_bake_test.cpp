@@ -1,0 +1,175 @@
+// [water.NAME] from the shot file to its caches: both models have the same bytes with any number of threads and after
+// interruptions, what floats goes where the water takes it, and what makes no sense is refused with its place.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "baker/commands/compare.h"
+#include "baker/judge/judge_caches.h"
+#include "baker/plan/plan.h"
+#include "baker/record/manifest.h"
+#include "baker/systems/water/water_bed.h"
+#include "baker/systems/water/water_model.h"
+#include "io/cache/cache.h"
+#include "tests/baker/fake_bake.h"
+
+namespace ft::test {
+namespace {
+
+constexpr const char* k_pond =
+    "[water.pond]\nposition = [0, 0, 0]\nsize = [4, 0, 4]\ndepth = 2\ncell = 0.125\nfloats = [\"float*\"]\n";
+constexpr const char* k_puddle =
+    "[water.puddle]\nposition = [0, -0.2, 0]\nsize = [1, 0, 1]\ndepth = 0.02\ncell = 0.05\nmeets = [\"stamp\"]\n";
+
+const Importer& no_files() {
+  static const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> {
+    return input_error("no files here");
+  };
+  return none;
+}
+
+class WaterBakeTest : public testing::Test {
+ protected:
+  /// A block comes down on a puddle, and a ball falls into a pond.
+  void write_shot(const std::string& water, int frames = 12) const {
+    std::ofstream(folder_ / "shot.toml")
+        << "[shot]\nframes = \"1-" << frames
+        << "\"\nfps = 24\npreroll = 0\n[primary.stamp]\nshape = \"box\"\nsize = [0.3, 0.2, 0.3]\n"
+           "position = [0, 0.1, 0]\nvelocity = [0, -1.2, 0]\nrelease = 9999\n"
+           "[primary.float_ball]\nshape = \"sphere\"\nradius = 0.3\nmass = 50\nposition = [0, 0.4, 0]\n"
+        << water << "[cache]\nformats = [\"abc\", \"pc2\"]\n";
+  }
+  BakeResult run(const std::string& name) const { return bake_shot_in(folder_.path(), name); }
+  std::string refusal(const std::string& water) const {
+    write_shot(water);
+    ShotFaults faults;
+    auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
+    if (!inputs) {
+      std::string out = inputs.error().text();
+      for (const std::string& fault : faults.texts) out += "\n" + fault;
+      return out;
+    }
+    const auto made = make_plan(std::move(*inputs), no_files(), {});
+    return made ? "it was planned" : made.error().text();
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(WaterBakeTest, Threads_and_interruptions_change_no_byte) {
+  write_shot(std::string(k_pond) + k_puddle);
+  expect_threads_and_interruptions_change_no_byte(folder_.path(), 7);
+  for (const char* file : {"pond.abc", "pond.pc2", "puddle.abc", "puddle_droplets.abc", "float_ball.abc"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / file)) << file;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "one/puddle_droplets.pc2"))
+      << "PC2 cannot hold points that come and go";
+}
+
+TEST_F(WaterBakeTest, What_floats_goes_where_the_water_takes_it_and_no_water_is_lost) {
+  write_shot(k_pond, 96);
+  ASSERT_EQ(run("out").exit_code, 0);
+  const auto manifest = read_manifest(folder_ / "out");
+  ASSERT_TRUE(manifest) << manifest.error().text();
+  double error = 0;
+  for (const FrameReport& frame : manifest->frames)
+    if (frame.own.contains("water_error")) error = std::max(error, frame.own.at("water_error"));
+  EXPECT_LT(error, 1e-12);
+  auto reader = open_cache(folder_ / "out/float_ball.abc");
+  ASSERT_TRUE(reader) << reader.error().text();
+  std::vector<Vec3f> x;
+  const auto height = [&](int frame) {
+    EXPECT_TRUE((*reader)->read_frame(frame, x));
+    double sum = 0;
+    for (const Vec3f& p : x) sum += p.y() / static_cast<double>(x.size());
+    return sum;
+  };
+  EXPECT_NEAR(height(0), 0.4, 1e-3);
+  // 50 of 113 kg: it swims a little higher than its middle.
+  EXPECT_LT(std::abs(height(95)), 0.15);
+  double lowest = 1;
+  for (int f = 0; f < 96; ++f) lowest = std::min(lowest, height(f));
+  EXPECT_LT(lowest, -0.05) << "it dives in";
+  EXPECT_GT(lowest, -0.6) << "and does not fall through";
+  const auto judged = judge_caches(folder_ / "out");
+  ASSERT_TRUE(judged) << judged.error().text();
+  for (const FrameReport& frame : judged->frames) EXPECT_TRUE(frame.finite);
+}
+
+TEST_F(WaterBakeTest, Droplets_of_two_bakes_are_compared_by_their_ids) {
+  write_shot(k_puddle, 8);
+  ASSERT_EQ(run("a").exit_code, 0);
+  ASSERT_EQ(run("b").exit_code, 0);
+  write_shot(std::string(k_puddle) + "seed = 9\n", 8);
+  ASSERT_EQ(run("c").exit_code, 0);
+  const auto droplets = [&](const char* other) {
+    return compare_paths(folder_ / "a/puddle_droplets.abc", folder_ / other / "puddle_droplets.abc", 0).at(0);
+  };
+  const CompareReport same = droplets("b"), different = droplets("c");
+  EXPECT_EQ(same.verdict, CompareVerdict::k_equal) << same.reason;
+  ASSERT_TRUE(same.points);
+  EXPECT_GT(same.points->common, 10u);
+  EXPECT_EQ(different.verdict, CompareVerdict::k_different);
+}
+
+TEST_F(WaterBakeTest, What_makes_no_sense_is_refused_with_its_place) {
+  const std::string start = "[water.pond]\nposition = [0, 0, 0]\n";
+  for (const auto& [lines, words] :
+       {std::pair("size = [4, 0, 4]\n", "depth is missing"),
+        {"size = [0, 0, 4]\ndepth = 1\n", "size has no area"},
+        {"size = [4, 0, 4]\ndepth = 1\nbed = \"ground.obj\"\n", "depth does not go with bed"},
+        {"size = [4, 0, 4]\nmodel = \"pond\"\nbed = \"ground.obj\"\n", "bed is for shallow water"},
+        {"size = [4, 0, 4]\ndepth = 1\nfloat_drag = 1\n", "floats is empty"},
+        {"size = [4, 0, 4]\ndepth = 1\nfloats = [\"stamp\"]\n", "its mass is missing"},
+        {"size = [4, 0, 4]\ndepth = 1\nfloats = [\"nobody\"]\n", "nobody"},
+        {"size = [0.2, 0, 0.2]\ndepth = 1\nfloats = [\"float_ball\"]\n", "larger"}}) {
+    const std::string said = refusal(start + lines);
+    EXPECT_NE(said.find(words), std::string::npos) << lines << said;
+  }
+}
+
+TEST(WaterModel, Depth_and_size_advise_one) {
+  EXPECT_EQ(advise_water(0.02, 2, 3, false).model, "shallow");
+  EXPECT_EQ(advise_water(5, 20, 10, false).model, "pond");
+  EXPECT_EQ(advise_water(5, 20, 10, true).model, "shallow");
+  EXPECT_NEAR(advise_water(5, 20, 10, false).too_fast, std::sqrt(2 * std::numbers::pi * 5) - 1, 1e-6);
+  EXPECT_NE(doubt_of_model("shallow", advise_water(5, 20, 10, false), 5), "");
+  EXPECT_NE(doubt_of_model("pond", advise_water(0.02, 2, 3, false), 0.02), "");
+  EXPECT_EQ(doubt_of_model("pond", advise_water(5, 20, 10, false), 5), "");
+}
+
+TEST(WaterBed, Is_the_uppermost_surface_under_each_cell) {
+  const WaterGrid grid{{0, 0}, 0.1, 10, 10};
+  // A slope over all of it, and above a part of that a table.
+  const std::vector<Vec3> x{{0, 0, 0},     {1, 1, 0},     {1, 1, 1},     {0, 0, 1},
+                            {0.2, 2, 0.2}, {0.2, 2, 0.4}, {0.4, 2, 0.4}, {0.4, 2, 0.2}};
+  const std::vector<Triangle> t{{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+  const WaterBed bed = bed_under(grid, x, t);
+  EXPECT_EQ(bed.uncovered, 0);
+  for (int k = 0; k < 10; ++k)
+    for (int i = 0; i < 10; ++i) {
+      const bool table = (i == 2 || i == 3) && (k == 2 || k == 3);
+      EXPECT_NEAR(bed.height[at(10 * k + i)], table ? 2 : 0.1 * (i + 0.5), 1e-12) << i << " " << k;
+    }
+  const WaterBed part = bed_under({{0.5, 0}, 0.1, 10, 10}, x, t);
+  EXPECT_EQ(part.uncovered, 50);
+  EXPECT_EQ(part.height[9], 2);
+}
+
+TEST(WaterBed, What_can_run_off_over_the_edge_has_run_off) {
+  const WaterGrid grid{{0, 0}, 0.1, 9, 9};
+  std::vector<double> bed(81, 0.0);
+  // A ring with water in it and water around.
+  for (int k = 2; k <= 6; ++k)
+    for (int i = 2; i <= 6; ++i)
+      if (i == 2 || i == 6 || k == 2 || k == 6) bed[at(9 * k + i)] = 0.3;
+  const std::vector<double> held = depths_that_stay(grid, bed, 0.2);
+  double sum = 0;
+  for (const double depth : held) sum += depth;
+  EXPECT_NEAR(sum, 9 * 0.2, 1e-12);
+  EXPECT_EQ(held[at(9 * 4 + 4)], 0.2);
+  bed[9 * 4 + 2] = 0.1;  // a breach
+  for (const double depth : depths_that_stay(grid, bed, 0.2)) EXPECT_EQ(depth, 0);
+}
+
+}  // namespace
+}  // namespace ft::test
