@@ -98,8 +98,8 @@ std::vector<BodyPoint> body_points(const Surface& surface, std::span<const Vec3>
   return out;
 }
 
-YieldingBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass, int frame_count,
-                       double fps) {
+YieldingBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass,
+                         int frame_count, double fps) {
   CHECK(frame_count > 0 && fps > 0);
   const auto frames = at(frame_count);
   std::vector<Vec3> centres(frames);

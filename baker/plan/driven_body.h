@@ -24,7 +24,7 @@ std::vector<BodyPoint> body_points(const Surface& surface, std::span<const Vec3>
                                    double across, double volume);
 
 /// Its motion over frames from 0 to the last, fps a second; smooth in between. mass: kg, > 0.
-YieldingBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass, int frame_count,
-                       double fps);
+YieldingBody driven_body(const Trajectory& trajectory, const std::vector<BodyPoint>& points, double mass,
+                         int frame_count, double fps);
 
 }  // namespace ft::inline baker

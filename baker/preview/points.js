@@ -33,7 +33,7 @@ function makePoints(s, colour, unpack) {
         float r2 = dot(at, at);
         if (r2 > 1.0) discard;
         vec3 normal = vec3(at, sqrt(1.0 - r2));
-        float sky = 0.6 + 0.4 * normal.y, glint = pow(max(dot(normal, normalize(vec3(0.35, 0.75, 0.6))), 0.0), 40.0);
+        float sky = 0.82 + 0.18 * normal.y, glint = pow(max(dot(normal, normalize(vec3(0.35, 0.75, 0.6))), 0.0), 40.0);
         gl_FragColor = vec4(mix(colour, vec3(1.0), 0.7) * sky + glint, 0.8 * shown);  // a drop is mostly sky
       }`,
   });

@@ -131,12 +131,12 @@ std::vector<ValidationCase> validate_mat() {
     soles[i].normal = Vec3(0, -1, 0), soles[i].area = 0.01;
   }
   YieldingBody body{{mass, 10 * Mat3::Identity()},
-                  [&](double) {
-                    RigidMotion m;
-                    m.pose.position.y() = height;
-                    return m;
-                  },
-                  [&](double) { return std::span<const ShapeSample>(soles); }};
+                    [&](double) {
+                      RigidMotion m;
+                      m.pose.position.y() = height;
+                      return m;
+                    },
+                    [&](double) { return std::span<const ShapeSample>(soles); }};
   DeviationSettings settings;
   settings.gravity = Vec3(0, -k_g, 0);
   double sunk = std::nan("");
