@@ -55,6 +55,7 @@ int run_command_line(int argc, char** argv) {
   add_compare_command(app, exit_code);
   add_check_command(app, exit_code);
   add_preview_command(app, exit_code);
+  add_volumes_command(app, exit_code);
   add_advise_command(app, exit_code);
   add_validate_command(app, exit_code);
   try {

@@ -5,12 +5,15 @@
 #include <fstream>
 
 #include "baker/commands/compare.h"
+#include "baker/commands/volumes.h"
+#include "baker/core/file.h"
 #include "baker/judge/judge_caches.h"
 #include "baker/plan/plan.h"
 #include "baker/record/manifest.h"
 #include "baker/systems/water/water_bed.h"
 #include "baker/systems/water/water_model.h"
 #include "io/cache/cache.h"
+#include "io/volume/vdb_read.h"
 #include "tests/baker/fake_bake.h"
 
 namespace ft::test {
@@ -105,6 +108,32 @@ TEST_F(WaterBakeTest, Droplets_of_two_bakes_are_compared_by_their_ids) {
   ASSERT_TRUE(same.points);
   EXPECT_GT(same.points->common, 10u);
   EXPECT_EQ(different.verdict, CompareVerdict::k_different);
+}
+
+TEST_F(WaterBakeTest, Its_frames_are_written_as_volumes_with_the_same_bytes_whose_velocities_are_read_back) {
+  write_shot(k_pond, 12);
+  ASSERT_EQ(run("out").exit_code, 0);
+  for (const char* name : {"a", "b"}) {
+    const auto lines = write_volumes({.folder = folder_ / "out", .output = folder_ / name});
+    ASSERT_TRUE(lines) << lines.error().text();
+    EXPECT_NE(lines->front().find("pond.0001.vdb"), std::string::npos);
+  }
+  for (const char* file : {"pond.0001.vdb", "pond.0012.vdb"}) {
+    const auto a = read_file(folder_ / "a" / file), b = read_file(folder_ / "b" / file);
+    ASSERT_TRUE(a && b) << file;
+    EXPECT_TRUE(*a == *b) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a/pond.0013.vdb"));
+  const auto fastest = [&](const char* file) {
+    const auto velocity = read_vdb_velocity(folder_ / "a" / file, "vel", {});
+    EXPECT_TRUE(velocity) << velocity.error().text();
+    float out = 0;
+    for (const Vec3f& v : velocity->velocities) out = std::max(out, v.norm());
+    return out;
+  };
+  EXPECT_EQ(fastest("pond.0001.vdb"), 0);
+  EXPECT_GT(fastest("pond.0012.vdb"), 0.05f) << "the ball has come down";
+  EXPECT_NE(write_volumes({.folder = folder_ / "a", .output = {}}).error().text().find("manifest"), std::string::npos);
 }
 
 TEST_F(WaterBakeTest, What_makes_no_sense_is_refused_with_its_place) {

@@ -29,7 +29,8 @@ TEST_F(ShotFile, Faulty_overrides_name_themselves_as_their_place) {
                          "=", "shot.fps=0", "cloth.dress.thickness=3mm", "gate.p99_strain=\n5"}),
       (std::vector<std::string>{
           "--set cloth.drss.fabric=denim: there is no cloth \"drss\" (did you mean \"dress\"?)",
-          "--set foo.x=1: unknown section \"foo\" (known: shot, primary, cloth, cords, follow, leaves, hair, water, standin, "
+          "--set foo.x=1: unknown section \"foo\" (known: shot, primary, cloth, cords, follow, leaves, hair, water, "
+          "standin, "
           "wind, "
           "solver, cache, gate)",
           "--set cloth.dress=1: is not of the form cloth.NAME.key=value",

@@ -128,12 +128,12 @@ crossings = 1
 }
 
 TEST_F(ShotFile, What_is_missing_from_the_file_is_named) {
-  EXPECT_EQ(faults_of(""),
-            (std::vector<std::string>{
-                "shot.toml: has no [shot] section: frames = \"1-100\" is needed",
-                "shot.toml: has no [primary.NAME] section: the character that the cloth is worn by",
-                "shot.toml: has no [cloth.NAME] or [cords.NAME] or [follow.NAME] or [leaves.NAME] or [hair.NAME] or [water.NAME] "
-                "section: there is nothing to bake"}));
+  EXPECT_EQ(faults_of(""), (std::vector<std::string>{
+                               "shot.toml: has no [shot] section: frames = \"1-100\" is needed",
+                               "shot.toml: has no [primary.NAME] section: the character that the cloth is worn by",
+                               "shot.toml: has no [cloth.NAME] or [cords.NAME] or [follow.NAME] or [leaves.NAME] or "
+                               "[hair.NAME] or [water.NAME] "
+                               "section: there is nothing to bake"}));
   EXPECT_NE(fault_with("frames = \"1001-1121\"\n", "").find("shot.toml:1:1: [shot]: frames is missing"),
             std::string::npos);
   EXPECT_NE(fault_with("file = \"mannequin.glb\"\n", "").find("primary \"mannequin\": file is missing"),

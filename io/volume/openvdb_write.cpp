@@ -1,0 +1,156 @@
+// Names and units as Blender, Houdini and Maya find them: see samples/README.md.
+#include "io/volume/openvdb_write.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "baker/core/file.h"
+#include "baker/core/hash.h"
+
+namespace ft::inline io {
+namespace {
+
+namespace vdb = openvdb;
+
+constexpr int k_band = 3;  ///< voxels on both sides of the surface
+/// Where a file has its random identifier, and how long it is.
+constexpr std::size_t k_identifier_at = 21, k_identifier_size = 36;
+
+/// Heights and velocities between the vertices of a surface.
+class Heights {
+ public:
+  explicit Heights(const WaterVolume& water)
+      : water_(water), low_(water.surface.front()), cell_(water.surface[1].x() - low_.x()) {}
+
+  Vec2 low() const { return {low_.x(), low_.z()}; }
+  Vec2 high() const {
+    return {low_.x() + cell_ * static_cast<float>(water_.across - 1),
+            low_.z() + cell_ * static_cast<float>(water_.along - 1)};
+  }
+  /// x, z: brought onto the surface. Height, slope and velocity there.
+  void at_place(double x, double z, double& height, double& slope, Vec3& velocity) const {
+    const double u = std::clamp((x - low_.x()) / cell_, 0.0, water_.across - 1.001),
+                 w = std::clamp((z - low_.z()) / cell_, 0.0, water_.along - 1.001);
+    const int i = static_cast<int>(u), k = static_cast<int>(w);
+    const double a = u - i, b = w - k;
+    const auto vertex = [&](int di, int dk) { return at(k + dk) * at(water_.across) + at(i + di); };
+    const std::size_t v[4] = {vertex(0, 0), vertex(1, 0), vertex(0, 1), vertex(1, 1)};
+    const double share[4] = {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
+    double y[4];
+    height = 0;
+    velocity.setZero();
+    for (int c = 0; c < 4; ++c) {
+      y[c] = water_.surface[v[c]].y();
+      height += share[c] * y[c];
+      if (!water_.velocities.empty()) velocity += share[c] * water_.velocities[v[c]].cast<double>();
+    }
+    slope =
+        std::hypot((1 - b) * (y[1] - y[0]) + b * (y[3] - y[2]), (1 - a) * (y[2] - y[0]) + a * (y[3] - y[1])) / cell_;
+  }
+
+ private:
+  const WaterVolume& water_;
+  Vec3f low_;
+  float cell_;
+};
+
+void fill_surface(const WaterVolume& water, vdb::FloatGrid& surface, vdb::Vec3SGrid& velocity) {
+  const Heights heights(water);
+  const double h = water.voxel, far = k_band * h;
+  const auto index = [&](double place) { return static_cast<int>(std::floor(place / h)); };
+  auto to_surface = surface.getAccessor();
+  auto to_velocity = velocity.getAccessor();
+  for (int iz = index(heights.low().y()) - k_band; iz <= index(heights.high().y()) + k_band + 1; ++iz)
+    for (int ix = index(heights.low().x()) - k_band; ix <= index(heights.high().x()) + k_band + 1; ++ix) {
+      const double x = ix * h, z = iz * h;
+      double height = 0, slope = 0;
+      Vec3 v;
+      heights.at_place(x, z, height, slope, v);
+      const double steep = std::sqrt(1 + slope * slope);
+      const double beside = std::max(std::max(heights.low().x() - x, x - heights.high().x()),
+                                     std::max(heights.low().y() - z, z - heights.high().y()));
+      for (int iy = index(water.floor) - k_band; iy <= index(height + far * steep) + 1; ++iy) {
+        const double y = iy * h, above = (y - height) / steep;
+        const double distance = std::max({above, beside, water.floor - y});
+        if (std::abs(distance) >= far) continue;
+        to_surface.setValue({ix, iy, iz}, static_cast<float>(distance));
+        if (std::abs(above) < far) to_velocity.setValue({ix, iy, iz}, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
+      }
+    }
+  vdb::tools::signedFloodFill(surface.tree());
+}
+
+void fill_spray(const WaterVolume& water, vdb::FloatGrid& spray, vdb::Vec3SGrid& velocity) {
+  struct Drops {
+    double volume = 0;
+    Vec3 momentum = Vec3::Zero();
+  };
+  std::map<vdb::Coord, Drops> all;
+  for (std::size_t i = 0; i < water.droplets.positions.size(); ++i) {
+    const Vec3f& p = water.droplets.positions[i];
+    const double width = water.droplets.widths.empty() ? 0.004 : water.droplets.widths[i];
+    const double volume = std::numbers::pi / 6 * width * width * width;
+    Drops& drops = all[vdb::Coord::round(vdb::Vec3d(p.x(), p.y(), p.z()) / water.voxel)];
+    drops.volume += volume;
+    if (!water.droplets.velocities.empty()) drops.momentum += volume * water.droplets.velocities[i].cast<double>();
+  }
+  auto to_spray = spray.getAccessor();
+  auto to_velocity = velocity.getAccessor();
+  for (const auto& [place, drops] : all) {
+    to_spray.setValue(place, static_cast<float>(std::min(1.0, drops.volume / std::pow(water.voxel, 3))));
+    const Vec3 v = drops.momentum / drops.volume;
+    if (!to_velocity.isValueOn(place)) to_velocity.setValue(place, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
+  }
+}
+
+/// Puts a hash of all others in the place of the identifier.
+Status fix_identifier(const std::filesystem::path& path) {
+  auto bytes = read_file(path);
+  if (!bytes) return bytes.error();
+  if (bytes->size() < k_identifier_at + k_identifier_size) return output_error("is no OpenVDB file", path.string());
+  std::fill_n(bytes->begin() + k_identifier_at, k_identifier_size, std::byte{'0'});
+  const std::string hash = hash_bytes(*bytes).hex();
+  std::string identifier = "00000000-0000-0000-0000-000000000000";
+  for (std::size_t i = 0, from = 0; i < identifier.size() && from < hash.size(); ++i)
+    if (identifier[i] != '-') identifier[i] = hash[from++];
+  std::transform(identifier.begin(), identifier.end(), bytes->begin() + k_identifier_at,
+                 [](char c) { return static_cast<std::byte>(c); });
+  return write_file_durably(path, *bytes);
+}
+
+}  // namespace
+
+Status write_water_vdb(const std::filesystem::path& path, const WaterVolume& water) {
+  vdb::initialize();
+  const auto transform = vdb::math::Transform::createLinearTransform(water.voxel);
+  const auto surface = vdb::FloatGrid::create(static_cast<float>(k_band * water.voxel));
+  const auto velocity = vdb::Vec3SGrid::create(vdb::Vec3s(0));
+  const auto spray = vdb::FloatGrid::create(0);
+  surface->setName("surface"), velocity->setName("vel"), spray->setName("spray");
+  surface->setGridClass(vdb::GRID_LEVEL_SET), spray->setGridClass(vdb::GRID_FOG_VOLUME);
+  velocity->setVectorType(vdb::VEC_CONTRAVARIANT_RELATIVE);
+  velocity->insertMeta("unit", vdb::StringMetadata("m/s"));
+  fill_surface(water, *surface, *velocity);
+  fill_spray(water, *spray, *velocity);
+  vdb::GridPtrVec grids{surface, velocity, spray};
+  for (const auto& grid : grids) {
+    grid->setTransform(transform->copy());
+    grid->insertMeta("fps", vdb::DoubleMetadata(water.fps));
+  }
+  try {
+    vdb::io::File file(path.string());
+    file.setCompression(vdb::io::COMPRESS_BLOSC | vdb::io::COMPRESS_ACTIVE_MASK);
+    file.write(grids);
+    file.close();
+  } catch (const std::exception& e) {
+    return output_error(std::string("cannot be written: ") + e.what(), path.string());
+  }
+  return fix_identifier(path);
+}
+
+}  // namespace ft::inline io

@@ -1,0 +1,26 @@
+// A frame of water as an OpenVDB file: grids `surface` (a level set [m]), `vel` (m/s) and `spray` (a fog: share of a
+// voxel that is water). The same input gives the same bytes: the file's random identifier becomes a hash of it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "baker/core/result.h"
+#include "baker/core/types.h"
+#include "io/cache/frame.h"
+
+namespace ft::inline io {
+
+struct WaterVolume {
+  int across = 0, along = 0;      ///< vertices of the surface in x and z, 2 or more each
+  std::vector<Vec3f> surface;     ///< its vertices, x fastest, over a grid of equal squares [m]
+  std::vector<Vec3f> velocities;  ///< of those [m/s]; may be empty
+  FrameData droplets;             ///< points with velocities and widths; may be empty
+  double floor = 0;               ///< the level set is closed by its sides and, at this height, from below [m]
+  double voxel = 0.05;            ///< m
+  double fps = 24;                ///< kept with the grids
+};
+
+Status write_water_vdb(const std::filesystem::path& path, const WaterVolume& water);
+
+}  // namespace ft::inline io
