@@ -169,6 +169,7 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   group->around.include(
       Vec3(grid.origin.x() + grid.cell * grid.nx, spec.position.y(), grid.origin.y() + grid.cell * grid.nz));
   group->solver = std::make_unique<WaterSolver>(std::move(scene), std::move(*core));
+  group->cost = group->solver->core().cost(1 / shot.fps);
   group->volume = group->solver->core().ledger(group->solver->initial_state()).total();
   SystemOutput& surface = group->outputs.emplace_back();
   surface.primary = primary;
@@ -195,6 +196,8 @@ std::vector<std::string> WaterGroup::lines(const BakePlan& plan) const {
       fmt::format("water \"{}\", {}: {} x {} cells of {:.3g} m, {:.3g} m deep at most, {:.4g} m3; through it go {}",
                   outputs[0].name(), model == "pond" ? "a pond" : "shallow", grid.nx, grid.nz, grid.cell, depth, volume,
                   meets.empty() ? std::string("no bodies") : met_names(plan))};
+  out.push_back(fmt::format("  about {:.0f} MB of memory, and {:.2g} s of one core for a calm frame", cost.bytes / 1e6,
+                            cost.seconds));
   std::vector<std::string> moved;
   for (const std::size_t p : floats) moved.push_back(in_quotes(plan.primaries[p].name));
   if (!moved.empty()) out.push_back("  it moves, and is moved by, " + joined(moved));

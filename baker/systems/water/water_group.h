@@ -16,7 +16,7 @@ class WaterGroup final : public DrawnGroup {
   std::string model;                    ///< "shallow" or "pond"
   double depth = 0;                     ///< of still water at its deepest [m]
   double volume = 0;                    ///< m3
-  double memory = 0;                    ///< bytes
+  WaterCost cost;                       ///< of a frame
   WaterGrid grid;
   std::vector<std::size_t> floats;  ///< primaries that it moves, into BakePlan::primaries
 

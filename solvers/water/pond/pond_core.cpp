@@ -1,11 +1,15 @@
 #include "solvers/water/pond/pond_core.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solvers/water/pond/pond_solver.h"
 
 namespace ft::inline solvers {
 namespace {
+
+/// Waves that a core advances by a step in a second, and bytes of each (tests/bench/RESULTS.md).
+constexpr double k_waves_a_second = 5e7, k_bytes = 80;
 
 class PondCore final : public WaterCore {
  public:
@@ -16,6 +20,10 @@ class PondCore final : public WaterCore {
     return {{setup.corner.x(), setup.corner.z()}, setup.size_x / setup.nx, setup.nx, setup.nz};
   }
   int float_count() const override { return solver_->float_count(); }
+  WaterCost cost(double frame_time) const override {
+    const double waves = static_cast<double>(grid().count());
+    return {k_bytes * waves, waves * std::ceil(frame_time * solver_->setup().steps_per_second) / k_waves_a_second};
+  }
   State initial_state() const override { return solver_->initial_state(); }
   WaterReport advance(State& state, double frame_time, std::span<const DrivenBody> bodies) override {
     const PondReport done = solver_->advance_frame(state, frame_time, bodies);

@@ -1,5 +1,8 @@
 #include "solvers/water/shallow/shallow_core.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "solvers/water/shallow/shallow_solver.h"
 
 namespace ft::inline solvers {
@@ -7,6 +10,8 @@ namespace {
 
 /// A thinner film is no surface to be drawn: the ground is wet [m].
 constexpr double k_film = 3e-4;
+/// Cells that a core advances by a step in a second (tests/bench/RESULTS.md).
+constexpr double k_cells_a_second = 3e7;
 
 class ShallowCore final : public WaterCore {
  public:
@@ -17,6 +22,15 @@ class ShallowCore final : public WaterCore {
     return {setup.origin, setup.cell, setup.nx, setup.nz};
   }
   int float_count() const override { return static_cast<int>(solver_.setup().floats.size()); }
+  WaterCost cost(double frame_time) const override {
+    const ShallowSetup& s = solver_.setup();
+    double deepest = 0;
+    for (std::size_t c = 0; c < s.bed.size(); ++c)
+      deepest = std::max(deepest, s.depth.empty() ? s.level - s.bed[c] : s.depth[c]);
+    const double speed = 0.5 * std::sqrt(s.gravity * deepest);  // of which steps are reckoned
+    const double steps = std::max(1.0, std::ceil(frame_time * speed / (s.cfl * s.cell)));
+    return {shallow_memory(s.nx, s.nz), steps * static_cast<double>(grid().count()) / k_cells_a_second};
+  }
   State initial_state() const override { return solver_.initial_state(); }
   WaterReport advance(State& state, double frame_time, std::span<const DrivenBody> bodies) override {
     const ShallowReport done = solver_.advance_frame(state, frame_time, bodies);
