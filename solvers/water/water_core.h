@@ -50,7 +50,6 @@ struct WaterCost {
 struct WaterSurface {
   std::vector<double> height;  ///< of each cell [m]; where it is dry, of the ground
   std::vector<char> wet;       ///< 1: there is water
-  std::vector<float> foam;     ///< 0 none, 1 white; empty: the model knows of none
 };
 
 class WaterCore {

@@ -32,6 +32,7 @@ struct WaterScene {
   int first_frame = 1;
   double fps = 24;
   int preroll_frames = 0;
+  bool droplets = true;  ///< as a second system; without it nothing flies
   std::vector<WaterVisitor> visitors;
   std::vector<WaterFloat> floats;
 };
@@ -47,7 +48,7 @@ class WaterSolver final : public Solver, public MovesPrimaries {
  public:
   WaterSolver(WaterScene scene, std::unique_ptr<WaterCore> core);
 
-  int system_count() const override { return 2; }
+  int system_count() const override { return scene_.droplets ? 2 : 1; }
   const SystemShape* system_shape(int system) const override { return system == 1 ? &droplets_ : nullptr; }
   const Mesh& system_mesh(int) const override { return mesh_; }
   void system_positions(const State& state, int system, std::span<Vec3> positions) const override;

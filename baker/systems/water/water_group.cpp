@@ -132,6 +132,7 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   auto group = std::make_unique<WaterGroup>(primary);
   WaterScene scene;
   scene.name = spec.name;
+  scene.droplets = spec.splash > 0;
   scene.first_frame = shot.first_frame, scene.fps = shot.fps, scene.preroll_frames = shot.preroll;
   std::vector<std::pair<FloatingBody, RigidMotion>> bodies;
   if (const Status found = find_floats(spec, plan, *group, scene.floats, bodies); !found) return place(found.error());
@@ -174,6 +175,7 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   SystemOutput& surface = group->outputs.emplace_back();
   surface.primary = primary;
   surface.mesh = std::make_shared<const Mesh>(group->solver->system_mesh(0));
+  if (!(spec.splash > 0)) return group;
   SystemOutput& droplets = group->outputs.emplace_back();
   droplets.primary = primary;
   droplets.shape = std::make_shared<const SystemShape>(*group->solver->system_shape(1));

@@ -27,7 +27,7 @@ std::span<const ShotKey<WaterSpec>> water_keys() {
       {"roughness", &WaterSpec::roughness, 0, 0.2, "s/m^(1/3)", "", false, "manning friction",
        "Of the ground under shallow water, Manning's: 0.010 glass, 0.013 concrete, 0.03 gravel"},
       {"splash", &WaterSpec::splash, 0, 4, "1", "", false, "spray droplets",
-       "How much flies, by what theory says: 0 none, 1 as it is, 2 a show"},
+       "How much flies, by what theory says: 0 none, and no cache of it, 1 as it is, 2 a show"},
       {"entry_drag", &WaterSpec::entry_drag, 0, 10, "1", "", false, "dive_splash",
        "How badly a body dives in, by a clean entry: 1 clean, 5 a belly flop's cavity"},
       {"floats", &WaterSpec::floats, 0, 0, "", "", false, "floating bodies bobs",
@@ -73,6 +73,7 @@ class WaterSection final : public SectionOf<WaterSpec> {
     return {{"bed", of(spec).bed}};
   }
   std::vector<std::string> system_names(const SecondarySpec& spec) const override {
+    if (!(of(spec).splash > 0)) return {spec.name};
     return {spec.name, of(spec).droplets_name()};
   }
   std::string_view whom() const override { return "under which primary it is listed"; }

@@ -44,9 +44,6 @@ class PondCore final : public WaterCore {
     out.height.resize(count);
     out.wet.assign(count, 1);
     solver_->surface_heights(state, out.height);
-    std::vector<double> foam(count);
-    solver_->foam(state, foam);
-    out.foam.assign(foam.begin(), foam.end());
   }
   std::vector<Droplet> droplets(const State& state) const override { return solver_->droplets(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_->float_motions(state); }

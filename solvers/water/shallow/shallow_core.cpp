@@ -58,7 +58,6 @@ class ShallowCore final : public WaterCore {
       out.wet[c] = depth[c] > k_film ? 1 : 0;
       if (out.wet[c] == 0) out.height[c] -= depth[c];
     }
-    out.foam.clear();
   }
   std::vector<Droplet> droplets(const State& state) const override { return solver_.droplets(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_.floats(state); }
