@@ -24,7 +24,7 @@ constexpr std::size_t k_identifier_at = 21, k_identifier_size = 36;
 /// Heights and velocities between the vertices of a surface.
 class Heights {
  public:
-  explicit Heights(const WaterVolume& water)
+  explicit Heights(const LiquidFrame& water)
       : water_(water), low_(water.surface.front()), cell_(water.surface[1].x() - low_.x()) {}
 
   Vec2 low() const { return {low_.x(), low_.z()}; }
@@ -54,12 +54,12 @@ class Heights {
   }
 
  private:
-  const WaterVolume& water_;
+  const LiquidFrame& water_;
   Vec3f low_;
   float cell_;
 };
 
-void fill_surface(const WaterVolume& water, vdb::FloatGrid& surface, vdb::Vec3SGrid& velocity) {
+void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SGrid& velocity) {
   const Heights heights(water);
   const double h = water.voxel, far = k_band * h;
   const auto index = [&](double place) { return static_cast<int>(std::floor(place / h)); };
@@ -85,7 +85,7 @@ void fill_surface(const WaterVolume& water, vdb::FloatGrid& surface, vdb::Vec3SG
   vdb::tools::signedFloodFill(surface.tree());
 }
 
-void fill_spray(const WaterVolume& water, vdb::FloatGrid& spray, vdb::Vec3SGrid& velocity) {
+void fill_spray(const LiquidFrame& water, vdb::FloatGrid& spray, vdb::Vec3SGrid& velocity) {
   struct Drops {
     double volume = 0;
     Vec3 momentum = Vec3::Zero();
@@ -125,7 +125,7 @@ Status fix_identifier(const std::filesystem::path& path) {
 
 }  // namespace
 
-Status write_water_vdb(const std::filesystem::path& path, const WaterVolume& water) {
+Status write_liquid_vdb(const std::filesystem::path& path, const LiquidFrame& water) {
   vdb::initialize();
   const auto transform = vdb::math::Transform::createLinearTransform(water.voxel);
   const auto surface = vdb::FloatGrid::create(static_cast<float>(k_band * water.voxel));

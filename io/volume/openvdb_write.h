@@ -1,5 +1,6 @@
-// A frame of water as an OpenVDB file: grids `surface` (a level set [m]), `vel` (m/s) and `spray` (a fog: share of a
-// voxel that is water). The same input gives the same bytes: the file's random identifier becomes a hash of it.
+// A frame of a liquid with a level field for its surface, and of its droplets, as an OpenVDB file: grids `surface` (a
+// level set [m]), `vel` (m/s) and `spray` (a fog: share of a voxel that is water). The same input gives the same bytes:
+// the file's random identifier becomes a hash of it.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,7 @@
 
 namespace ft::inline io {
 
-struct WaterVolume {
+struct LiquidFrame {
   int across = 0, along = 0;      ///< vertices of the surface in x and z, 2 or more each
   std::vector<Vec3f> surface;     ///< its vertices, x fastest, over a grid of equal squares [m]
   std::vector<Vec3f> velocities;  ///< of those [m/s]; may be empty
@@ -21,6 +22,6 @@ struct WaterVolume {
   double fps = 24;                ///< kept with the grids
 };
 
-Status write_water_vdb(const std::filesystem::path& path, const WaterVolume& water);
+Status write_liquid_vdb(const std::filesystem::path& path, const LiquidFrame& water);
 
 }  // namespace ft::inline io

@@ -18,7 +18,7 @@ ft::Status write_all(char** argv) {
     if (!opened) return opened.error();
     droplets = std::move(*opened);
   }
-  ft::WaterVolume water;
+  ft::LiquidFrame water;
   water.floor = std::atof(argv[5]), water.voxel = std::atof(argv[6]);
   const ft::CacheInfo& info = (*surface)->info();
   water.fps = info.fps;
@@ -38,7 +38,7 @@ ft::Status write_all(char** argv) {
     char number[16];
     std::snprintf(number, sizeof number, ".%04d.vdb", info.first_frame + i);
     const auto path = std::filesystem::path(argv[3]) / (std::string(argv[4]) + number);
-    if (ft::Status s = ft::write_water_vdb(path, water); !s) return s;
+    if (ft::Status s = ft::write_liquid_vdb(path, water); !s) return s;
   }
   return {};
 }
