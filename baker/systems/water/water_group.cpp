@@ -154,6 +154,15 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   group->model = spec.model.empty() ? advice.model : spec.model;
   if (spec.model.empty()) note(fmt::format("model = \"{}\": {}", advice.model, advice.reason));
   if (const std::string doubt = doubt_of_model(group->model, advice, depth); !doubt.empty()) note(doubt);
+  if (group->model == "pond")
+    note("its waves are linear and do not break, its ground is even, and drag of bodies pushes no water back");
+  if (group->model == "pond" && spec.roughness != WaterSpec().roughness)
+    note("roughness is not used: it is of the ground under shallow water");
+  if (group->model == "shallow" && spec.entry_drag != WaterSpec().entry_drag)
+    note("entry_drag is not used: it is of cavities behind what dives into a pond");
+  if (group->model == "shallow" && scene.floats.size() > 1) note("what floats in it does not meet one another");
+  if (group->model == "shallow")
+    note("water in whose place a body stands in the first frame is taken away, and booked as outflow");
   if (group->model == "shallow")
     note(
         "bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn "

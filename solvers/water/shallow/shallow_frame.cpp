@@ -175,6 +175,7 @@ bool ShallowFrame::step(StepPlan& plan) {
   const bool alone = plan.box.size() >= static_cast<double>(f.nx) * f.nz;
   double out = 0;
   std::vector<double> speeds;
+  if (plan.box.empty()) s_.near.clear();  // else what was near in an earlier step would be reported
   if (!alone) {
     step_velocities(f, laws_, plan.dt);
     step_depths(f, laws_, plan.dt, &speeds);

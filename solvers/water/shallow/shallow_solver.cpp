@@ -37,10 +37,6 @@ ShallowSolver::ShallowSolver(ShallowSetup setup)
   for (const ShallowFloat& f : setup_.floats) floats_.push_back(float_model(f.body));
 }
 
-double ShallowSolver::outside_level() const {
-  return setup_.level;
-}
-
 State ShallowSolver::initial_state() const {
   State state;
   std::vector<double> h = model_.h, lift(h.size(), 0.0), floats;

@@ -70,7 +70,6 @@ class ShallowSolver {
 
  private:
   explicit ShallowSolver(ShallowSetup setup);
-  double outside_level() const;
 
   ShallowSetup setup_;
   Flow model_;  ///< bed, sides and levels beyond open ones; its water is nobody's

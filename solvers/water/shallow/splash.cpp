@@ -1,4 +1,4 @@
-// See splash.h. The rate at a rim is that of a prototype whose share did not depend on the cells' size:
+// See splash.h. The rate at a rim, whose share of the water under a foot does not depend on the cells' size:
 //   dV/dt = share (1 - threshold^2/u^2) u depth dx
 #include "solvers/water/shallow/splash.h"
 
