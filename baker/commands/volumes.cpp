@@ -93,6 +93,7 @@ Result<std::vector<std::string>> write_volumes(const VolumesOptions& options) {
                     output.string(), system.name, manifest->first_written, voxel));
   }
   if (out.empty()) return usage_error("there is no water in this bake", options.folder.string());
+  out.push_back("vel has how the surface goes up and down, and droplets whole; not how water goes along");
   out.push_back(
       "Blender: Sequence on, Velocity Unit = Second (its default, Frame, blurs by fps times too much); it finds "
       "`vel` by itself");

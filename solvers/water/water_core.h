@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "baker/core/state.h"
 #include "baker/core/wrench.h"
@@ -28,13 +29,15 @@ struct WaterOnBody {
 
 struct WaterReport {
   WaterLedger ledger;                 ///< at the frame's end
-  double kinetic = 0, potential = 0;  ///< of columns, droplets and what floats; potential against the still water [J]
+  double kinetic = 0, potential = 0;  ///< of columns, droplets and what floats; potential of columns against the
+                                      ///< start's, of what floats against y = 0 or the level [J]
   int steps = 0;                      ///< of the whole domain
   int local_steps = 0;                ///< of parts of it, beyond those
   int iterations = 0;                 ///< of implicit solves, all steps
   int unsettled = 0;                  ///< steps whose solve did not settle
   int thrown = 0;                     ///< droplets in this frame
-  double fastest = 0;                 ///< of the water in columns [m/s]
+  int airborne = 0;                   ///< droplets in the air at its end
+  std::optional<double> fastest;      ///< of the water in columns [m/s]
   std::vector<WaterOnBody> forces;    ///< on each driven body
   bool dry = false;                   ///< water was pushed down to its ground, and the model cannot leave that dry
   bool finite = true;

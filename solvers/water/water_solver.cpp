@@ -170,8 +170,8 @@ FrameReport WaterSolver::advance_frame(State& state) {
     report.own["water_airborne"] = done.ledger.droplets + done.ledger.pending;
     report.own["water_outflow"] = done.ledger.outflow;
     report.own["water_energy"] = done.kinetic + done.potential;
-    report.own["water_droplets"] = static_cast<double>(core_->droplets(state).size());
-    report.own["water_fastest"] = done.fastest;
+    report.own["water_droplets"] = done.airborne;
+    if (done.fastest) report.own["water_fastest"] = *done.fastest;
     report.own["water_steps"] = done.steps + done.local_steps;
   }
   if (done.unsettled > 0)

@@ -32,6 +32,7 @@ class PondCore final : public WaterCore {
     out.potential = done.energy.total();
     out.steps = done.steps;
     out.thrown = done.thrown;
+    out.airborne = done.in_air;
     out.finite = done.finite;
     out.dry = done.dry;
     for (const DrivenReport& body : done.driven)

@@ -15,7 +15,13 @@ constexpr double k_cells_a_second = 3e7;
 
 class ShallowCore final : public WaterCore {
  public:
-  explicit ShallowCore(ShallowSolver solver) : solver_(std::move(solver)) {}
+  explicit ShallowCore(ShallowSolver solver) : solver_(std::move(solver)) {
+    const ShallowSetup& s = solver_.setup();
+    const State start = solver_.initial_state();
+    const std::vector<double> depth = solver_.depths(start), surface = solver_.surface(start);
+    for (std::size_t c = 0; c < depth.size(); ++c)
+      still_ += s.density * s.gravity * s.cell * s.cell * depth[c] * (surface[c] - 0.5 * depth[c]);
+  }
 
   WaterGrid grid() const override {
     const ShallowSetup& setup = solver_.setup();
@@ -37,12 +43,13 @@ class ShallowCore final : public WaterCore {
     WaterReport out;
     out.ledger = done.ledger;
     out.kinetic = done.kinetic;
-    out.potential = done.potential + done.floats_energy;
+    out.potential = done.potential - still_ + done.floats_energy;
     out.steps = done.steps;
     out.local_steps = done.patch_steps;
     out.iterations = done.newton_iterations;
     out.unsettled = done.failed_solves;
     out.thrown = done.droplets_thrown;
+    out.airborne = done.droplets;
     out.fastest = done.fastest;
     out.finite = done.finite;
     for (const WaterForce& force : done.driven)
@@ -64,6 +71,7 @@ class ShallowCore final : public WaterCore {
 
  private:
   ShallowSolver solver_;
+  double still_ = 0;  ///< potential of the columns at the start [J]
 };
 
 }  // namespace
