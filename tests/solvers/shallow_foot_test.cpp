@@ -67,7 +67,7 @@ TEST(ShallowFoot, A_foot_in_a_puddle_throws_as_much_whatever_the_cells_slow) {
     EXPECT_GE(s->lowest, 0);
     EXPECT_EQ(s->failed, 0);
     EXPECT_LT(s->worst_volume, 1e-12);
-    EXPECT_NEAR(s->rim, 14, 0.4 * 14);
+    EXPECT_GT(s->rim, 0.6 * 14);  // faster than what the contact bears it is never
     EXPECT_GT(s->thrown / under, 0.05);
   }
   EXPECT_NEAR(coarse.thrown / fine.thrown, 1, 0.2);
