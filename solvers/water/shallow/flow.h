@@ -83,6 +83,9 @@ double passed_flux(const Flow& flow, std::size_t c, bool along_x, double dt);
 /// What has gone out over open sides in the step that is not finished yet [m3].
 double step_outflow(const Flow& flow, double dt);
 
+/// The highest place of the water; far below everything where all is dry [m].
+double highest_water(const Flow& flow);
+
 /// Makes the step's end its start, ghosts included.
 void finish_step(Flow& flow);
 

@@ -60,6 +60,16 @@ double step_outflow(const Flow& f, double dt) {
   return out * f.cell * dt;
 }
 
+double highest_water(const Flow& f) {
+  double top = -1e300;
+  for (int k = 0; k < f.nz; ++k)
+    for (int i = 0; i < f.nx; ++i) {
+      const std::size_t c = f.of(i, k);
+      if (f.h[c] > k_dry) top = std::max(top, f.bed[c] + f.h[c]);
+    }
+  return top;
+}
+
 void flow_speeds(const Flow& f, const FlowLaws& laws, std::vector<double>& speeds) {
   const int across = speed_tiles(f.nx);
   speeds.assign(at(across) * at(speed_tiles(f.nz)), 0.0);

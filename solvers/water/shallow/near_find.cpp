@@ -16,13 +16,7 @@ void NearWater::find(const Flow& flow, std::span<const NearBody> bodies, double 
                      const NearLaws& laws) {
   cells_.clear();
   ni_ = nk_ = 0;
-  double top = -k_infinite;
-  for (int k = 0; k < flow.nz; ++k)
-    for (int i = 0; i < flow.nx; ++i) {
-      const std::size_t c = flow.of(i, k);
-      if (flow.h[c] > k_dry) top = std::max(top, flow.bed[c] + flow.h[c]);
-    }
-  top += flow.cell;
+  const double top = highest_water(flow) + flow.cell;
   Box box;
   std::vector<BodySurface> surfaces;
   for (const NearBody& b : bodies) {

@@ -10,16 +10,6 @@ namespace {
 /// Driven triangles that stay so far above the highest water are left out [m].
 constexpr double k_above = 0.25;
 
-double highest_water(const Flow& f) {
-  double top = -1e300;
-  for (int k = 0; k < f.nz; ++k) {
-    const std::size_t c = f.of(0, k);
-    for (std::size_t i = 0; i < at(f.nx); ++i)
-      top = std::max(top, f.h[c + i] > k_dry ? f.bed[c + i] + f.h[c + i] : -1e300);
-  }
-  return top;
-}
-
 }  // namespace
 
 ShallowReport ShallowSolver::advance_frame(State& state, double frame_time, std::span<const DrivenBody> driven) {

@@ -115,11 +115,7 @@ CellBox ShallowFrame::near_box(double dt, double top, double& speed) const {
 StepPlan ShallowFrame::plan() const {
   const Flow& f = s_.flow;
   const double left = frame_time_ - time_, fastest = *std::max_element(s_.speeds.begin(), s_.speeds.end());
-  double top = -1e300;
-  if (!s_.bodies.empty())
-    for (int k = 0; k < f.nz; ++k)
-      for (int i = 0; i < f.nx; ++i)
-        if (f.h[f.of(i, k)] > k_dry) top = std::max(top, f.bed[f.of(i, k)] + f.h[f.of(i, k)]);
+  const double top = s_.bodies.empty() ? 0 : highest_water(f);
   const auto steps_of = [&](double dt) { return left / std::max(1.0, std::ceil(left / dt - 1e-9)); };
   const int across = speed_tiles(f.nx), along = speed_tiles(f.nz);
   StepPlan best;
@@ -222,14 +218,10 @@ bool ShallowFrame::step_patch(const StepPlan& plan, bool alone, double& elapsed)
   patch.begin(f, plan.box, alone);
   Flow& p = patch.flow;
   const double x = setup_.origin.x() + f.cell * plan.box.i0, z = setup_.origin.y() + f.cell * plan.box.k0;
-  double body_speed = 0, deepest = 0, top = -1e300;
+  double body_speed = 0, deepest = 0;
   for (int k = 0; k < p.nz; ++k)
-    for (int i = 0; i < p.nx; ++i) {
-      const std::size_t c = p.of(i, k);
-      deepest = std::max(deepest, p.h[c]);
-      if (p.h[c] > k_dry) top = std::max(top, p.bed[c] + p.h[c]);
-    }
-  near_box(plan.dt, top, body_speed);
+    for (int i = 0; i < p.nx; ++i) deepest = std::max(deepest, p.h[p.of(i, k)]);
+  near_box(plan.dt, highest_water(p), body_speed);
   const double wave = k_wave_share * std::sqrt(setup_.gravity * deepest);
   double speed = fastest_in(s_.speeds, speed_tiles(f.nx), plan.box);
   elapsed = 0;
