@@ -142,6 +142,19 @@ std::string CompareReport::element(int index) const {
   return "instance " + (index < 0 ? std::string("-") : std::to_string(instances->ids[at(index)]));
 }
 
+void CompareReport::add(const FrameDifference& frame, std::vector<Vec3f> places, std::vector<float> distances,
+                        bool is_last) {
+  const int index = static_cast<int>(frames.size());
+  const bool is_worst = frame.max > (worst < 0 ? 0 : frames[at(worst)].max);
+  if (is_worst) worst = index;
+  if (is_worst || (worst < 0 && is_last)) {
+    picture_positions = std::move(places);
+    picture_distances = std::move(distances);
+  }
+  if (first_diverging < 0 && diverges(frame)) first_diverging = index;
+  frames.push_back(frame);
+}
+
 CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, double degrees) {
   const CacheInfo &info_a = a.info(), &info_b = b.info();
   CompareReport r;
@@ -173,8 +186,8 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, d
     return r;
   }
 
-  double square_sum = 0, worst = 0;
-  std::vector<Vec3f> x_a, x_b;
+  double square_sum = 0;
+  std::vector<Vec3f> x_a, x_b, v_a, v_b;
   std::vector<float> distances;
   for (int i = 0; i < info_a.frame_count; ++i) {
     if (const Status s = a.read_frame(i, x_a); !s) return give_up(s.error().text());
@@ -186,21 +199,14 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, d
     f.rms = x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size()));
     f.vertex = d.vertex;
     square_sum += d.square_sum;
-    if (d.max > worst) r.worst = i;
-    if (d.max > worst || (r.worst < 0 && i + 1 == info_a.frame_count)) {
-      r.picture_positions = x_b;
-      r.picture_distances = distances;
-    }
-    worst = std::max(worst, d.max);
     if (r.velocities) {
-      if (const Status s = a.read_velocities(i, x_a); !s) return give_up(s.error().text());
-      if (const Status s = b.read_velocities(i, x_b); !s) return give_up(s.error().text());
-      const Difference v = difference(x_a, x_b, nullptr);
+      if (const Status s = a.read_velocities(i, v_a); !s) return give_up(s.error().text());
+      if (const Status s = b.read_velocities(i, v_b); !s) return give_up(s.error().text());
+      const Difference v = difference(v_a, v_b, nullptr);
       f.max_speed = v.max;
       f.speed_vertex = v.vertex;
     }
-    if (r.first_diverging < 0 && r.diverges(f)) r.first_diverging = i;
-    r.frames.push_back(f);
+    r.add(f, x_b, distances, i + 1 == info_a.frame_count);
   }
   const double count = static_cast<double>(r.frames.size()) * r.vertex_count;
   r.rms = count > 0 ? std::sqrt(square_sum / count) : 0;

@@ -73,6 +73,9 @@ struct CompareReport {
     return f.max > tolerance || f.max_speed > speed_tolerance || f.turn > turn_tolerance || f.spin > spin_tolerance ||
            f.scale > tolerance;
   }
+  /// The next frame; places: of b, the distances of each from a. Keeps the picture of the worst frame, of the last
+  /// where nothing differs.
+  void add(const FrameDifference& frame, std::vector<Vec3f> places, std::vector<float> distances, bool is_last);
   /// "vertex 12", or "instance 4031" by its id, "point 77", or "strand 1004, vertex 7".
   std::string element(int index) const;
   int diverging_count() const;

@@ -129,7 +129,7 @@ Status compare_curves(CacheReader& a, CacheReader& b, CompareReport& r) {
   const std::vector<VertexPair> pairs = vertices_of(strands.both, set_a, set_b, out);
   Lengths lengths_a(set_a, out.ids), lengths_b(set_b, ids_b);
   std::vector<double> distances;
-  double square_sum = 0, worst = 0;
+  double square_sum = 0;
   FrameData x, y;
   for (int i = 0; i < a.info().frame_count; ++i) {
     if (const Status s = a.read(i, x); !s) return s;
@@ -155,14 +155,7 @@ Status compare_curves(CacheReader& a, CacheReader& b, CompareReport& r) {
     }
     f.rms = pairs.empty() ? 0 : std::sqrt(frame_sum / static_cast<double>(pairs.size()));
     square_sum += frame_sum;
-    if (f.max > worst) r.worst = i;
-    if (f.max > worst || (r.worst < 0 && i + 1 == a.info().frame_count)) {
-      r.picture_positions = std::move(places);
-      r.picture_distances = std::move(offs);
-    }
-    worst = std::max(worst, f.max);
-    if (r.first_diverging < 0 && r.diverges(f)) r.first_diverging = i;
-    r.frames.push_back(f);
+    r.add(f, std::move(places), std::move(offs), i + 1 == a.info().frame_count);
   }
   const double count = static_cast<double>(distances.size());
   r.rms = count > 0 ? std::sqrt(square_sum / count) : 0;

@@ -44,7 +44,7 @@ Status compare_instances(CacheReader& a, CacheReader& b, CompareReport& r) {
   const bool scales = info_a.content.scales && info_b.content.scales;
   const bool spins = info_a.content.angular_velocities && info_b.content.angular_velocities;
   std::vector<double> distances, turns;
-  double square_sum = 0, turn_square_sum = 0, worst = 0;
+  double square_sum = 0, turn_square_sum = 0;
   FrameData x, y;
   for (int i = 0; i < info_a.frame_count; ++i) {
     if (const Status s = a.read(i, x); !s) return s;
@@ -73,16 +73,9 @@ Status compare_instances(CacheReader& a, CacheReader& b, CompareReport& r) {
     }
     f.rms = pairs.empty() ? 0 : std::sqrt(frame_sum / static_cast<double>(pairs.size()));
     square_sum += frame_sum;
-    if (f.max > worst) r.worst = i;
-    if (f.max > worst || (r.worst < 0 && i + 1 == info_a.frame_count)) {
-      r.picture_positions = std::move(places);
-      r.picture_distances = std::move(offs);
-    }
-    worst = std::max(worst, f.max);
     out.turn_max = std::max(out.turn_max, f.turn);
     out.scale_max = std::max(out.scale_max, f.scale);
-    if (r.first_diverging < 0 && r.diverges(f)) r.first_diverging = i;
-    r.frames.push_back(f);
+    r.add(f, std::move(places), std::move(offs), i + 1 == info_a.frame_count);
   }
   const double count = static_cast<double>(distances.size());
   r.rms = count > 0 ? std::sqrt(square_sum / count) : 0;

@@ -14,7 +14,7 @@ namespace ft::inline baker {
 Status compare_points(CacheReader& a, CacheReader& b, CompareReport& r) {
   PointDifference& out = r.points.emplace();
   std::vector<double> distances;
-  double square_sum = 0, worst = 0;
+  double square_sum = 0;
   FrameData x, y;
   for (int i = 0; i < a.info().frame_count; ++i) {
     if (const Status s = a.read(i, x); !s) return s;
@@ -47,14 +47,7 @@ Status compare_points(CacheReader& a, CacheReader& b, CompareReport& r) {
     f.vertex = listed(at_most), f.speed_vertex = listed(at_speed);
     f.rms = pairs.both.empty() ? 0 : std::sqrt(frame_sum / static_cast<double>(pairs.both.size()));
     square_sum += frame_sum;
-    if (f.max > worst) r.worst = i;
-    if (f.max > worst || (r.worst < 0 && i + 1 == a.info().frame_count)) {
-      r.picture_positions = std::move(places);
-      r.picture_distances = std::move(offs);
-    }
-    worst = std::max(worst, f.max);
-    if (r.first_diverging < 0 && r.diverges(f)) r.first_diverging = i;
-    r.frames.push_back(f);
+    r.add(f, std::move(places), std::move(offs), i + 1 == a.info().frame_count);
   }
   r.rms = distances.empty() ? 0 : std::sqrt(square_sum / static_cast<double>(distances.size()));
   out.p95 = percentile(std::move(distances), 95);
