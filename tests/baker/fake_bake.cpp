@@ -171,6 +171,24 @@ std::string text(const BakeResult& result) {
   return out;
 }
 
+namespace {
+
+const Importer& no_files() {
+  static const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> {
+    return input_error("no files here");
+  };
+  return none;
+}
+
+}  // namespace
+
+Result<BakePlan> plan_shot_in(const std::filesystem::path& folder) {
+  ShotFaults faults;
+  auto inputs = read_inputs(folder / "shot.toml", {}, {}, faults);
+  if (!inputs) return inputs.error();
+  return make_plan(std::move(*inputs), no_files(), {});
+}
+
 BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& name, int threads,
                         int interrupted_after, bool resume) {
   BakeOptions options;
@@ -181,8 +199,7 @@ BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& 
   RecordedProgress progress;
   int count = 0;
   progress.on_frame = [&](int) { ++count == interrupted_after ? void(std::raise(SIGINT)) : void(); };
-  const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> { return input_error("no files here"); };
-  return bake(options, {none, make_group_solver}, progress);
+  return bake(options, {no_files(), make_group_solver}, progress);
 }
 
 void expect_threads_and_interruptions_change_no_byte(const std::filesystem::path& folder, int interrupted_after) {

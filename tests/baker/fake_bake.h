@@ -81,6 +81,8 @@ class RecordedProgress : public Progress {
   std::function<void(int)> on_frame;
 };
 
+/// The plan of folder/shot.toml, which reads no primary from a file.
+Result<BakePlan> plan_shot_in(const std::filesystem::path& folder);
 /// A bake of folder/shot.toml, which reads no primary from a file, into folder/name. interrupted_after: frames, by
 /// SIGINT.
 BakeResult bake_shot_in(const std::filesystem::path& folder, const std::string& name, int threads = 1,

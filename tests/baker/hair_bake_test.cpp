@@ -16,13 +16,6 @@ namespace {
 constexpr int k_last_frame = 10;
 constexpr const char* k_hair = "[hair.tuft]\non = \"ball\"\nguides = \"tuft.obj\"\nvertices = 12\n";
 
-const Importer& no_files() {
-  static const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> {
-    return input_error("no files here");
-  };
-  return none;
-}
-
 class HairBakeTest : public testing::Test {
  protected:
   /// A ball that flies past with a tuft of nine strands on its top, and a beam across their way.
@@ -49,10 +42,7 @@ class HairBakeTest : public testing::Test {
   }
   std::string refusal(const std::string& lines) const {
     write_shot(lines);
-    ShotFaults faults;
-    auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
-    if (!inputs) return inputs.error().text();
-    const auto made = make_plan(std::move(*inputs), no_files(), {});
+    const auto made = plan_shot_in(folder_.path());
     return made ? "it was planned" : made.error().text();
   }
 
@@ -109,10 +99,7 @@ TEST_F(HairBakeTest, Strands_follow_their_roots_and_check_finds_them_outside_unt
 
 TEST_F(HairBakeTest, A_share_of_the_guides_is_chosen_evenly_and_material_comes_from_the_shot) {
   write_shot(std::string(k_hair) + "count = 3\nstiffness = 4\nwidth = 2e-4\nposition = [0, 0.001, 0]\n");
-  ShotFaults faults;
-  auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
-  ASSERT_TRUE(inputs) << inputs.error().text();
-  auto made = make_plan(std::move(*inputs), no_files(), {});
+  auto made = plan_shot_in(folder_.path());
   ASSERT_TRUE(made) << made.error().text();
   const auto& own = dynamic_cast<const HairSpec&>(*made->shot().secondaries.at(0));
   const auto read = hair_setup(made->shot(), own, 0, *made);
@@ -131,10 +118,7 @@ TEST_F(HairBakeTest, A_share_of_the_guides_is_chosen_evenly_and_material_comes_f
 
 TEST_F(HairBakeTest, Strands_are_left_out_by_their_numbers) {
   write_shot(std::string(k_hair) + "leave_out = \"0, 2-7\"\n");
-  ShotFaults faults;
-  auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
-  ASSERT_TRUE(inputs) << inputs.error().text();
-  auto made = make_plan(std::move(*inputs), no_files(), {});
+  auto made = plan_shot_in(folder_.path());
   ASSERT_TRUE(made) << made.error().text();
   const auto setup = hair_setup(made->shot(), dynamic_cast<const HairSpec&>(*made->shot().secondaries.at(0)), 0, *made);
   ASSERT_TRUE(setup) << setup.error().text();

@@ -24,13 +24,6 @@ constexpr const char* k_pond =
 constexpr const char* k_puddle =
     "[water.puddle]\nposition = [0, -0.2, 0]\nsize = [1, 0, 1]\ndepth = 0.02\ncell = 0.05\nmeets = [\"stamp\"]\n";
 
-const Importer& no_files() {
-  static const Importer none = [](const ImportRequest&) -> Result<ImportedPrimary> {
-    return input_error("no files here");
-  };
-  return none;
-}
-
 class WaterBakeTest : public testing::Test {
  protected:
   /// A block comes down on a puddle, and a ball falls into a pond.
@@ -45,10 +38,7 @@ class WaterBakeTest : public testing::Test {
   BakeResult run(const std::string& name) const { return bake_shot_in(folder_.path(), name); }
   std::string refusal(const std::string& water) const {
     write_shot(water);
-    ShotFaults faults;
-    auto inputs = read_inputs(folder_ / "shot.toml", {}, {}, faults);
-    if (!inputs) return inputs.error().text();
-    const auto made = make_plan(std::move(*inputs), no_files(), {});
+    const auto made = plan_shot_in(folder_.path());
     return made ? "it was planned" : made.error().text();
   }
 

@@ -3,6 +3,7 @@
 #include "baker/systems/hair/hair_group.h"
 #include "baker/systems/hair/hair_section.h"
 #include "baker/systems/hair/judge_hair.h"
+#include "baker/systems/interface/each_system.h"
 
 namespace ft::inline baker {
 namespace {
@@ -11,26 +12,14 @@ class HairKind final : public SystemKind {
  public:
   const SecondarySection& section() const override { return hair_section(); }
   Result<SystemGroups> plan(const Shot& shot, BakePlan& plan) const override {
-    SystemGroups out;
-    for (const HairSpec* spec : specs_of<HairSpec>(shot.secondaries))
-      for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-        if (plan.primaries[p].name != spec->on) continue;
-        auto group = plan_hair(shot, *spec, p, plan);
-        if (!group) return group.error();
-        out.push_back(std::move(*group));
-      }
-    return out;
+    return plan_each<HairSpec>(shot, plan,
+                               [&](const HairSpec& spec, std::size_t p) { return plan_hair(shot, spec, p, plan); });
   }
   Result<std::vector<std::unique_ptr<JudgedGroup>>> judge(const CachedBake& bake) const override {
-    std::vector<std::unique_ptr<JudgedGroup>> out;
-    for (const ManifestSystem& system : bake.manifest.systems) {
-      // A mesh that rides on its strands is where they are.
-      if (system.role != name() || system.shape != OutputShape::k_curves || !bake.has_cache(system)) continue;
-      auto one = judged_hair(bake, system);
-      if (!one) return one.error();
-      out.push_back(std::move(*one));
-    }
-    return out;
+    // A mesh that rides on its strands is where they are.
+    return judge_each(
+        bake, name(), [](const ManifestSystem& system) { return system.shape == OutputShape::k_curves; },
+        [&](const ManifestSystem& system) { return judged_hair(bake, system); });
   }
   std::uint32_t colour() const override { return 0x4a2f1d; }
   std::span<const Metric> metrics() const override {

@@ -1,5 +1,6 @@
 #include "baker/systems/water/water_kind.h"
 
+#include "baker/systems/interface/each_system.h"
 #include "baker/systems/water/judge_water.h"
 #include "baker/systems/water/water_group.h"
 #include "baker/systems/water/water_section.h"
@@ -11,25 +12,13 @@ class WaterKind final : public SystemKind {
  public:
   const SecondarySection& section() const override { return water_section(); }
   Result<SystemGroups> plan(const Shot& shot, BakePlan& plan) const override {
-    SystemGroups out;
-    for (const WaterSpec* spec : specs_of<WaterSpec>(shot.secondaries))
-      for (std::size_t p = 0; p < plan.primaries.size(); ++p) {
-        if (plan.primaries[p].name != spec->on) continue;
-        auto group = plan_water(shot, *spec, p, plan);
-        if (!group) return group.error();
-        out.push_back(std::move(*group));
-      }
-    return out;
+    return plan_each<WaterSpec>(shot, plan,
+                                [&](const WaterSpec& spec, std::size_t p) { return plan_water(shot, spec, p, plan); });
   }
   Result<std::vector<std::unique_ptr<JudgedGroup>>> judge(const CachedBake& bake) const override {
-    std::vector<std::unique_ptr<JudgedGroup>> out;
-    for (const ManifestSystem& system : bake.manifest.systems) {
-      if (system.role != name() || !bake.has_cache(system)) continue;
-      auto one = judged_water(bake, system);
-      if (!one) return one.error();
-      out.push_back(std::move(*one));
-    }
-    return out;
+    return judge_each(
+        bake, name(), [](const ManifestSystem&) { return true; },
+        [&](const ManifestSystem& system) { return judged_water(bake, system); });
   }
   bool is_liquid() const override { return true; }
   bool is_sheet() const override { return true; }
