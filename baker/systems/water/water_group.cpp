@@ -91,7 +91,7 @@ PondSetup pond_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& g
   out.seed = static_cast<std::uint64_t>(spec.seed);
   out.splash.on = spec.splash > 0;
   out.splash.energy_share = std::min(1.0, out.splash.energy_share * spec.splash);
-  out.splash.cavity_opening *= spec.entry_drag;
+  out.splash.cavity_opening *= spec.cavity;
   out.wind = Vec2(shot.wind.velocity.x(), shot.wind.velocity.z());
   for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start, 0.3});
   return out;
@@ -158,8 +158,8 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
     note("its waves are linear and do not break, its ground is even, and drag of bodies pushes no water back");
   if (group->model == "pond" && spec.roughness != WaterSpec().roughness)
     note("roughness is not used: it is of the ground under shallow water");
-  if (group->model == "shallow" && spec.entry_drag != WaterSpec().entry_drag)
-    note("entry_drag is not used: it is of cavities behind what dives into a pond");
+  if (group->model == "shallow" && spec.cavity != WaterSpec().cavity)
+    note("cavity is not used: it is of cavities behind what dives into a pond");
   if (group->model == "shallow" && scene.floats.size() > 1) note("what floats in it does not meet one another");
   if (group->model == "shallow")
     note("water in whose place a body stands in the first frame is taken away, and booked as outflow");

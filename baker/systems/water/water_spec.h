@@ -20,7 +20,7 @@ struct WaterSpec final : SecondarySpec {
   std::string edges = "wall";    ///< "wall", "open" or "drain", on all four sides
   double roughness = 0.012;      ///< of the bed, Manning's [s/m^(1/3)]
   double splash = 1;             ///< times what theory throws up [1]
-  double entry_drag = 1;         ///< times what a body that dives in loses in the air it takes along [1]
+  double cavity = 1;             ///< how fast it widens behind what dives in, by a clean entry [1]
   double float_drag = 0.47;      ///< coefficient of what floats [1]
   int seed = 1;
   std::vector<std::string> floats;  ///< primaries that the water moves

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "baker/core/check.h"
+#include "solvers/water/droplet_numbers.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -25,7 +26,7 @@ std::vector<T> structs(const std::vector<double>* from) {
   return out;
 }
 
-constexpr std::size_t k_float_width = 18, k_droplet_width = 8;
+constexpr std::size_t k_float_width = 18;
 
 }  // namespace
 
@@ -36,7 +37,7 @@ PondMemory take(const State& state, std::size_t float_count, std::size_t part_co
   const auto* droplets = state.find("droplets");
   CHECK(floats && floats->size() == k_float_width * float_count);
   CHECK(volumes && volumes->size() == part_count);
-  CHECK(droplets && droplets->size() % k_droplet_width == 0);
+  CHECK(droplets && droplets->size() % k_droplet_numbers == 0);
   for (std::size_t i = 0; i < float_count; ++i) {
     const double* f = floats->data() + i * k_float_width;
     RigidMotion m;
@@ -48,10 +49,7 @@ PondMemory take(const State& state, std::size_t float_count, std::size_t part_co
     out.floats.wake.push_back(Vec3(f[15], f[16], f[17]));
   }
   out.floats.volume = *volumes;
-  for (std::size_t i = 0; i < droplets->size(); i += k_droplet_width) {
-    const double* d = droplets->data() + i;
-    out.droplets.push_back({static_cast<std::uint64_t>(d[0]), Vec3(d[1], d[2], d[3]), Vec3(d[4], d[5], d[6]), d[7]});
-  }
+  out.droplets = read_droplets(*droplets);
   out.cavities = structs<CavitySlice>(state.find("cavities"));
   out.crossings = structs<Crossing>(state.find("driven"));
   out.account = structs<PondAccount>(state.find("account")).at(0);
@@ -59,7 +57,7 @@ PondMemory take(const State& state, std::size_t float_count, std::size_t part_co
 }
 
 void put(const PondMemory& memory, State& state) {
-  std::vector<double> floats, droplets;
+  std::vector<double> floats;
   for (std::size_t i = 0; i < memory.floats.motion.size(); ++i) {
     const RigidMotion& m = memory.floats.motion[i];
     const Vec3 &x = m.pose.position, &v = m.velocity, &w = m.spin, &k = memory.floats.wake[i];
@@ -67,12 +65,9 @@ void put(const PondMemory& memory, State& state) {
     floats.insert(floats.end(), {x[0], x[1], x[2], q[0], q[1], q[2], q[3], v[0], v[1], v[2], w[0], w[1], w[2],
                                  memory.floats.splash_energy[i], memory.floats.splash_speed[i], k[0], k[1], k[2]});
   }
-  for (const Droplet& d : memory.droplets)
-    droplets.insert(droplets.end(), {static_cast<double>(d.id), d.place[0], d.place[1], d.place[2], d.velocity[0],
-                                     d.velocity[1], d.velocity[2], d.volume});
   state.set("floats", std::move(floats));
   state.set("volumes", memory.floats.volume);
-  state.set("droplets", std::move(droplets));
+  state.set("droplets", write_droplets(memory.droplets));
   state.set("cavities", numbers(memory.cavities));
   state.set("driven", numbers(memory.crossings));
   state.set("account", numbers(std::vector<PondAccount>{memory.account}));

@@ -2,19 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "solvers/water/body_columns.h"
 
 namespace ft::inline solvers {
 namespace {
-
-struct Hit {
-  std::int64_t ray;
-  double height;
-  int enters;
-};
-
-double turn(const Vec2& a, const Vec2& b, const Vec2& p) {
-  return (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x();
-}
 
 /// The part of a ray between two heights below the level, in pieces that grow with depth.
 void add_column(double x, double z, double lo, double hi, double area, double least, SkinUnderWater& out) {
@@ -40,49 +33,25 @@ SkinUnderWater skin_under_water(std::span<const Vec3> positions, std::span<const
   for (const Vec3& p : positions)
     if (p.y() == out.top) out.top_x = p.x(), out.top_z = p.z();
   if (out.bottom >= 0) return out;
-  // Rays of the world, off the round numbers, so that a skin at rest gives the same volume.
-  const double off = 0.5137 * spacing;
-  const auto columns = static_cast<std::int64_t>((box.hi.x() - box.lo.x()) / spacing) + 3;
-  const auto first_x = static_cast<std::int64_t>(std::floor(box.lo.x() / spacing)) - 1;
-  const auto first_z = static_cast<std::int64_t>(std::floor(box.lo.z() / spacing)) - 1;
-  std::vector<Hit> hits;
-  for (const Triangle& t : triangles) {
-    const Vec3 &a = positions[at(t[0])], &b = positions[at(t[1])], &c = positions[at(t[2])];
-    const Vec2 p(a.x(), a.z()), q(b.x(), b.z()), r(c.x(), c.z());
-    const double area = turn(p, q, r);
-    if (area == 0) continue;
-    const Vec2 lo = p.cwiseMin(q).cwiseMin(r), hi = p.cwiseMax(q).cwiseMax(r);
-    const auto cell = [&](double value) { return static_cast<std::int64_t>(std::ceil((value - off) / spacing)); };
-    for (std::int64_t k = cell(lo.y()); static_cast<double>(k) * spacing + off <= hi.y(); ++k)
-      for (std::int64_t i = cell(lo.x()); static_cast<double>(i) * spacing + off <= hi.x(); ++i) {
-        const Vec2 ray(static_cast<double>(i) * spacing + off, static_cast<double>(k) * spacing + off);
-        const double u = turn(q, r, ray) / area, v = turn(r, p, ray) / area, w = 1 - u - v;
-        if (u < 0 || v < 0 || w < 0) continue;
-        hits.push_back({(k - first_z) * columns + (i - first_x), u * a.y() + v * b.y() + w * c.y(), area > 0 ? 1 : -1});
-      }
-  }
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
-    return a.ray != b.ray ? a.ray < b.ray : a.height != b.height ? a.height < b.height : a.enters > b.enters;
-  });
-  const double area = spacing * spacing;
+  // Columns of the world, so that a skin at rest gives the same volume.
+  const double cell = k_columns * spacing, area = spacing * spacing;
+  const auto first = [&](double low) { return cell * std::floor(low / cell); };
+  ColumnGrid grid{first(box.lo.x()), first(box.lo.z()), cell, 0, 0};
+  grid.nx = static_cast<int>((box.hi.x() - grid.x) / cell) + 1;
+  grid.nz = static_cast<int>((box.hi.z() - grid.z) / cell) + 1;
+  const BodySurface surface{triangles, positions};
+  BodyColumns columns;
+  columns.find(grid, {&surface, 1}, std::numeric_limits<double>::infinity());
   double moment_x = 0, moment_z = 0;
-  for (std::size_t begin = 0, end = 0; begin < hits.size(); begin = end) {
-    int balance = 0;
-    for (end = begin; end < hits.size() && hits[end].ray == hits[begin].ray; ++end) balance += hits[end].enters;
-    if (balance != 0) continue;  // through a crack
-    const double x = static_cast<double>(hits[begin].ray % columns + first_x) * spacing + off;
-    const double z = static_cast<double>(hits[begin].ray / columns + first_z) * spacing + off;
-    int winding = 0;
-    double from = 0;
-    for (std::size_t h = begin; h < end; ++h) {
-      const int before = winding;
-      winding += hits[h].enters;
-      if (before <= 0 && winding > 0) from = hits[h].height;
-      if (before <= 0 || winding > 0) continue;
-      if (from < 0) add_column(x, z, from, hits[h].height, area, spacing, out);
-      if (from < 0 && hits[h].height >= 0) out.section += area, moment_x += area * x, moment_z += area * z;
+  for (int c = 0; c < grid.nx * grid.nz; ++c)
+    for (int n = columns.start[at(c)]; n < columns.start[at(c) + 1]; ++n) {
+      const ColumnSpan& span = columns.spans[at(n)];
+      if (span.bottom >= 0 || !std::isfinite(span.top)) continue;  // above the water; through a crack
+      const double x = grid.x + cell * (c % grid.nx) + (span.column % k_columns + 0.5) * spacing;
+      const double z = grid.z + cell * (c / grid.nx) + (span.column / k_columns + 0.5) * spacing;
+      add_column(x, z, span.bottom, span.top, area, spacing, out);
+      if (span.top >= 0) out.section += area, moment_x += area * x, moment_z += area * z;
     }
-  }
   if (out.section > 0) out.section_x = moment_x / out.section, out.section_z = moment_z / out.section;
   return out;
 }

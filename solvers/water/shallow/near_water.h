@@ -12,7 +12,7 @@
 
 #include "baker/core/rigid.h"
 #include "baker/core/wrench.h"
-#include "solvers/water/shallow/body_columns.h"
+#include "solvers/water/body_columns.h"
 #include "solvers/water/shallow/flow.h"
 #include "solvers/water/shallow/near_system.h"
 

@@ -1,6 +1,7 @@
 // What a frame of shallow water works with and forgets, and how its states are read. For shallow_*.cpp only.
 #pragma once
 
+#include "solvers/water/droplet_numbers.h"
 #include "solvers/water/shallow/driven_near.h"
 #include "solvers/water/shallow/float_motion.h"
 #include "solvers/water/shallow/patch.h"
@@ -9,12 +10,8 @@
 
 namespace ft::inline solvers {
 
-inline constexpr std::size_t k_droplet_numbers = 8;
 /// Ground under more than this is wet [m].
 inline constexpr double k_wet_depth = 1e-5;
-
-std::vector<Droplet> read_droplets(std::span<const double> numbers);
-std::vector<double> write_droplets(std::span<const Droplet> droplets);
 
 inline NearLaws near_laws(const ShallowSetup& s) {
   return {s.gravity, s.density, s.contact_pressure / (s.density * s.gravity)};

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/water/shallow/body_columns.h"
+#include "solvers/water/body_columns.h"
 
 namespace ft::inline solvers {
 namespace {

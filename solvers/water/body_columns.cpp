@@ -1,5 +1,5 @@
 // See body_columns.h.
-#include "solvers/water/shallow/body_columns.h"
+#include "solvers/water/body_columns.h"
 
 #include <algorithm>
 #include <cmath>
