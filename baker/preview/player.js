@@ -98,6 +98,10 @@
   }
 
   const secondary = (s) => s.role !== 'body' && s.role !== 'collider';
+  function clothMaterial(s) {
+    return new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
+      side: s.sheet ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true, wireframe: secondary(s) && $('wireframe').checked });
+  }
   function meshes(systems) {
     const group = new THREE.Group();
     let garment = 0;
@@ -117,9 +121,7 @@
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * s.vertices).fill(1), 3));
       geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
       s.plain = secondary(s) ? colour_of(s) : 0xc4beb4;
-      const material = s.liquid ? makeWaterMaterial(s.plain, scene.background) : new THREE.MeshStandardMaterial({ color: s.plain, roughness: secondary(s) ? 0.82 : 0.62, metalness: 0, flatShading: !!s.stands,
-        side: s.sheet ? THREE.DoubleSide : THREE.FrontSide, vertexColors: true,
-        wireframe: secondary(s) && $('wireframe').checked });
+      const material = s.liquid ? makeWaterMaterial(s.plain, scene.background) : clothMaterial(s);
       s.mesh = new THREE.Mesh(geometry, material);
       s.mesh.castShadow = !s.stands && !s.liquid;
       s.mesh.receiveShadow = !s.liquid;

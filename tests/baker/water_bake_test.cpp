@@ -4,7 +4,9 @@
 
 #include <fstream>
 
+#include "baker/commands/base64.h"
 #include "baker/commands/compare.h"
+#include "baker/commands/preview_bake.h"
 #include "baker/commands/volumes.h"
 #include "baker/core/file.h"
 #include "baker/judge/judge_caches.h"
@@ -98,6 +100,35 @@ TEST_F(WaterBakeTest, Droplets_of_two_bakes_are_compared_by_their_ids) {
   ASSERT_TRUE(same.points);
   EXPECT_GT(same.points->common, 10u);
   EXPECT_EQ(different.verdict, CompareVerdict::k_different);
+}
+
+TEST_F(WaterBakeTest, The_page_has_as_many_droplets_in_each_frame_as_the_cache) {
+  write_shot(k_puddle, 8);
+  ASSERT_EQ(run("out").exit_code, 0);
+  const auto page = preview_bake(folder_ / "out", 1e6);
+  ASSERT_TRUE(page) << page.error().text();
+  auto cache = open_cache_of_any_shape(folder_ / "out/puddle_droplets.abc");
+  ASSERT_TRUE(cache) << cache.error().text();
+  std::vector<std::uint32_t> counts;
+  std::size_t most = 0;
+  FrameData frame;
+  for (int f = 0; f < 8; ++f) {
+    ASSERT_TRUE((*cache)->read(f, frame));
+    counts.push_back(static_cast<std::uint32_t>(frame.positions.size()));
+    most = std::max(most, frame.positions.size());
+  }
+  EXPECT_GT(most, 10u);
+  bool found = false;
+  for (const Json& system : (*page)["systems"]) {
+    if (system["name"] == "puddle") {
+      EXPECT_TRUE(system["liquid"].get<bool>());
+    }
+    if (system["name"] != "puddle_droplets") continue;
+    found = true;
+    EXPECT_EQ(system["vertices"].get<std::size_t>(), most);
+    EXPECT_EQ(system["points"]["counts"].get<std::string>(), base64_of(counts));
+  }
+  EXPECT_TRUE(found);
 }
 
 TEST_F(WaterBakeTest, Its_frames_are_written_as_volumes_with_the_same_bytes_whose_velocities_are_read_back) {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "baker/core/smooth_step.h"
 
@@ -39,7 +40,7 @@ ShallowFloatModel float_model(const FloatingBody& body) {
   ShallowFloatModel m{body, 0, 0};
   for (const Triangle& t : body.triangles)
     m.volume += body.positions[at(t[0])].dot(body.positions[at(t[1])].cross(body.positions[at(t[2])])) / 6;
-  const double r = std::cbrt(std::max(0.0, m.volume) * 0.75 / 3.14159265358979323846);
+  const double r = std::cbrt(std::max(0.0, m.volume) * 0.75 / std::numbers::pi);
   m.spin_drag = 0.05 * body.drag * std::pow(r, 5);
   return m;
 }

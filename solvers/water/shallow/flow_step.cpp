@@ -52,8 +52,16 @@ void copy_out(const Flow& f, const double* from, int i0, int k0, std::vector<dou
 }
 
 void slopes(Tile& t) {
-  const double* __restrict h = t.h, * __restrict eta = t.eta, * __restrict u = t.u, * __restrict w = t.w;
-  double* __restrict ex = t.eta_x, * __restrict ez = t.eta_z, * __restrict ux = t.u_x, * __restrict uz = t.u_z, * __restrict wx = t.w_x, * __restrict wz = t.w_z;
+  const double* __restrict h = t.h;
+  const double* __restrict eta = t.eta;
+  const double* __restrict u = t.u;
+  const double* __restrict w = t.w;
+  double* __restrict ex = t.eta_x;
+  double* __restrict ez = t.eta_z;
+  double* __restrict ux = t.u_x;
+  double* __restrict uz = t.u_z;
+  double* __restrict wx = t.w_x;
+  double* __restrict wz = t.w_z;
   constexpr int s = k_cols;
   for (int c = s + 1; c < k_all - s - 1; ++c) {
     const double wet_x = std::min(std::min(h[c - 1], h[c]), h[c + 1]);
@@ -105,7 +113,17 @@ void momentum(const Tile& t, bool along_x, double dt, double cell, double gravit
               const double* __restrict root, double* __restrict v1, double* __restrict q1) {
   constexpr int s = k_cols;
   const int a = along_x ? 1 : s, o = along_x ? s : 1;
-  const double* __restrict b = along_x ? t.bx : t.bz, * __restrict h = t.h, * __restrict eta = t.eta, * __restrict head = t.head, * __restrict v = along_x ? t.u : t.w, * __restrict va = along_x ? t.u_x : t.w_z, * __restrict vo = along_x ? t.u_z : t.w_x, * __restrict qa = along_x ? t.qx : t.qz, * __restrict qo = along_x ? t.qz : t.qx, * __restrict ea = along_x ? t.eta_x : t.eta_z, * __restrict other = along_x ? t.w : t.u;
+  const double* __restrict b = along_x ? t.bx : t.bz;
+  const double* __restrict h = t.h;
+  const double* __restrict eta = t.eta;
+  const double* __restrict head = t.head;
+  const double* __restrict v = along_x ? t.u : t.w;
+  const double* __restrict va = along_x ? t.u_x : t.w_z;
+  const double* __restrict vo = along_x ? t.u_z : t.w_x;
+  const double* __restrict qa = along_x ? t.qx : t.qz;
+  const double* __restrict qo = along_x ? t.qz : t.qx;
+  const double* __restrict ea = along_x ? t.eta_x : t.eta_z;
+  const double* __restrict other = along_x ? t.w : t.u;
   const double by_cell = dt / cell;
   for (int c = 3 * s; c < k_all - 2 * s; ++c) {
     const double speed = v[c];
@@ -230,7 +248,10 @@ double step_depths(Flow& f, const FlowLaws& laws, double dt, std::vector<double>
       const int ni = std::min(k_tile, f.nx - i0), nk = std::min(k_tile, f.nz - k0);
       for (int k = -1; k <= nk; ++k) {
         const std::size_t c0 = f.of(i0, k0 + k) - 1;
-        const double* __restrict h = &f.h[c0], * __restrict qx = &f.qx1[c0], * __restrict qz = &f.qz1[c0], * __restrict qz_above = &f.qz1[c0 + f.row];
+        const double* __restrict h = &f.h[c0];
+        const double* __restrict qx = &f.qx1[c0];
+        const double* __restrict qz = &f.qz1[c0];
+        const double* __restrict qz_above = &f.qz1[c0 + f.row];
         double* __restrict out = factor + (k + 1) * s;
         for (int i = 0; i < ni + 2; ++i) {
           const double leaves =
@@ -248,8 +269,15 @@ double step_depths(Flow& f, const FlowLaws& laws, double dt, std::vector<double>
       alignas(64) double column_fastest[k_tile] = {};
       for (int k = 0; k < nk; ++k) {
         const std::size_t c0 = f.of(i0, k0 + k);
-        const double* __restrict h = &f.h[c0], * __restrict qx = &f.qx1[c0], * __restrict qz = &f.qz1[c0], * __restrict qz_above = &f.qz1[c0 + f.row], * __restrict u = &f.u1[c0], * __restrict w = &f.w1[c0];
-        const double* __restrict own = factor + (k + 1) * s + 1, * __restrict below = own - s, * __restrict above = own + s;
+        const double* __restrict h = &f.h[c0];
+        const double* __restrict qx = &f.qx1[c0];
+        const double* __restrict qz = &f.qz1[c0];
+        const double* __restrict qz_above = &f.qz1[c0 + f.row];
+        const double* __restrict u = &f.u1[c0];
+        const double* __restrict w = &f.w1[c0];
+        const double* __restrict own = factor + (k + 1) * s + 1;
+        const double* __restrict below = own - s;
+        const double* __restrict above = own + s;
         double* __restrict h1 = &f.h1[c0];
         for (int i = 0; i < ni; ++i) {
           const double f_low = own[i - 1], f_own = own[i], f_high = own[i + 1], f_left = below[i], f_right = above[i];

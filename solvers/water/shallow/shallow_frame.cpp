@@ -12,7 +12,8 @@ constexpr int k_margin = 8;
 /// Of these next to the rim, so many must stay slow enough for the long step, as a multiple of dx/dt.
 constexpr int k_rim = 3;
 constexpr double k_rim_cfl = 0.45;
-/// A step of a patch's cell costs so many of the whole's; and beside it so many for a step near bodies.
+/// What steps cost, in cells of the whole's: a cell of a patch, and a step near bodies beside its cells. Only which
+/// steps are taken hangs on it.
 constexpr double k_patch_cost = 1.3, k_near_cost = 20000;
 /// Candidates for the long step: each is for water half as fast as that of the one before.
 constexpr int k_candidates = 10;

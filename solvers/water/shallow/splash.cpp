@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "baker/core/parallel.h"
 
 namespace ft::inline solvers {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
+constexpr double k_pi = std::numbers::pi;
 /// A throw leaves at least so much of a cell's water [1].
 constexpr double k_left = 0.5;
 /// Elevations of throws [rad], 25 to 70 degrees, and how far they scatter to both sides.
