@@ -1,9 +1,10 @@
 #include "baker/systems/hair/hair_kind.h"
 
+#include "baker/plan/plan_each.h"
+#include "baker/record/judge_each.h"
 #include "baker/systems/hair/hair_group.h"
 #include "baker/systems/hair/hair_section.h"
 #include "baker/systems/hair/judge_hair.h"
-#include "baker/systems/interface/each_system.h"
 
 namespace ft::inline baker {
 namespace {

@@ -1,6 +1,7 @@
 #include "baker/systems/water/water_kind.h"
 
-#include "baker/systems/interface/each_system.h"
+#include "baker/plan/plan_each.h"
+#include "baker/record/judge_each.h"
 #include "baker/systems/water/judge_water.h"
 #include "baker/systems/water/water_group.h"
 #include "baker/systems/water/water_section.h"
