@@ -117,7 +117,8 @@ int run(const CheckArguments& a) {
         totals.absent_frames, totals.absent_vertices);
   if (totals.crossings_absent > 0)
     std::printf(
-        "absent: %d crossings are with what is left out, or lie where a body overlaps itself, and do not count\n",
+        "absent: %d crossings are with what is left out, lie where a body overlaps itself, or are of tied hair with a "
+        "sheet, and do not count\n",
         totals.crossings_absent);
   std::printf(
       "%s: %zu frames, %d crossings with the feasible collider, %d among cloths, deepest %.2f mm in the drawn body, "

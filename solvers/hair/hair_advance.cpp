@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "solvers/hair/hair_group.h"
+#include "solvers/hair/sheet_passage.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -18,6 +19,7 @@ constexpr double k_slow = 2e-3;
 constexpr double k_look = 2e-3, k_farthest = 0.06;
 constexpr double k_hold = 10;     ///< of what is tied, by a strand's stiffness along [1]
 constexpr int k_most_pieces = 8;  ///< of a step that does not settle
+constexpr int k_most_rounds = 8;  ///< in which a step is done again because segments went through a sheet
 
 Vec3 vec(const double* p) {
   return {p[0], p[1], p[2]};
@@ -122,32 +124,34 @@ void HairSolver::add_contacts(const Step& step, std::size_t group, int lane, Wor
   }
 }
 
+/// The plane of a place on a body as a contact of the segment before a vertex, whose ends were at a and b.
+void HairSolver::put_segment_contact(std::size_t group, int lane, std::size_t i, int slot, const NearSurface& surface,
+                                     double share, const Vec3& a, const Vec3& b, Work& w) const {
+  const double thickness = setup_.material.thickness;
+  const PlaneAfter plane = plane_after(bodies_, surface);
+  const double keeps = std::clamp(0.98 * segment_gaps_[strand_of(group, lane) * at(n_) + i], k_least_reach, thickness);
+  const std::size_t own = at(k_segment_contacts) * i + at(slot);
+  SegmentContact<Lanes>& contact = w.segments[own];
+  set_lane(contact.normal, lane, plane.normal);
+  contact.share[lane] = share;
+  contact.offset[lane] = plane.normal.dot(plane.place);
+  contact.reach[lane] = keeps;
+  contact.stiffness[lane] = k_stiffness * thickness / std::max(keeps, k_firm) * rods_[group].mass[i][lane];
+  const Vec3 place = a + share * (b - a);
+  set_lane(w.segments_moved[own], lane, plane.place + plane.turn * (place - plane.from) - place);
+  w.around.touches = true;
+}
+
 /// A plane for the segment before a vertex, where it is near an edge over which it could cut; and where both its ends
 /// lie on a body, one for its middle: a flat ridge could be in it.
 void HairSolver::add_segment_contact(std::size_t group, int lane, std::size_t i, const Vec3& before_goes,
                                      const Vec3& goes, bool lies, Work& w) const {
-  const std::size_t n = at(n_), s = strand_of(group, lane);
-  const HairMaterial& material = setup_.material;
   const Vec3 &a = w.strands[at(lane)].x[i - 1], &b = w.strands[at(lane)].x[i];
-  const auto meet = [&](int slot, const NearSurface& surface, double share) {
-    const PlaneAfter plane = plane_after(bodies_, surface);
-    const double keeps = std::clamp(0.98 * segment_gaps_[s * n + i], k_least_reach, material.thickness);
-    SegmentContact<Lanes>& contact = w.segments[k_segment_contacts * i + at(slot)];
-    set_lane(contact.normal, lane, plane.normal);
-    contact.share[lane] = share;
-    contact.offset[lane] = plane.normal.dot(plane.place);
-    contact.reach[lane] = keeps;
-    contact.stiffness[lane] = k_stiffness * material.thickness / std::max(keeps, k_firm) * rods_[group].mass[i][lane];
-    const Vec3 place = a + share * (b - a);
-    set_lane(w.segments_moved[k_segment_contacts * i + at(slot)], lane,
-             plane.place + plane.turn * (place - plane.from) - place);
-    w.around.touches = true;
-  };
-  if (const auto edge = find_nearest_edge(bodies_, a, b, material.thickness + k_look, &before_goes, &goes))
-    meet(0, edge->surface, edge->share);
+  if (const auto edge = find_nearest_edge(bodies_, a, b, setup_.material.thickness + k_look, &before_goes, &goes))
+    put_segment_contact(group, lane, i, 0, edge->surface, edge->share, a, b, w);
   NearSurface near;
-  if (lies && find_nearest(bodies_, w.candidates, 0.5 * (a + b), material.thickness, 1, &near, &goes) > 0)
-    meet(1, near, 0.5);
+  if (lies && find_nearest(bodies_, w.candidates, 0.5 * (a + b), setup_.material.thickness, 1, &near, &goes) > 0)
+    put_segment_contact(group, lane, i, 1, near, 0.5, a, b, w);
 }
 
 /// Of the strands in the work, from where they are; they are where it ends after it.
@@ -237,28 +241,21 @@ RodStepReport HairSolver::run_piece(const Step& step, const Piece& piece, std::s
   return report;
 }
 
-void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
+/// Of the strands that are open, from the start of the step, with the contacts in the work: where it ends.
+void HairSolver::solve_step(const Step& step, std::size_t g, std::array<bool, k_lanes> open, Work& w) const {
   load(step, g, w);
-  w.contacts.assign(at(k_contacts * n_), HairContact<Lanes>());
-  w.moved.assign(at(k_contacts * n_), V3<Lanes>());
-  w.segments.assign(at(k_segment_contacts * n_), SegmentContact<Lanes>());
-  w.segments_moved.assign(at(k_segment_contacts * n_), V3<Lanes>());
-  w.around.touches = false;
-  for (int lane = 0; lane < k_lanes; ++lane) add_contacts(step, g, lane, w);
   RodStepReport report = run_piece(step, {.h = step.h, .first = step.first}, g, w);
   step.iterations[g] += report.iterations;
-  bool open[k_lanes];  // neither settled nor given up; of the padding, no lane is
   const auto settle = [&](bool last) {
     bool any = false;
-    for (int lane = 0; lane < k_lanes; ++lane) {
-      if (open[lane] && (report.settled[lane] || last)) w.settled[at(lane)] = w.strands[at(lane)];
+    for (std::size_t lane = 0; lane < k_lanes; ++lane) {
+      if (open[lane] && (report.settled[lane] || last)) w.settled[lane] = w.strands[lane];
       if (open[lane] && !report.settled[lane] && last) ++step.unsettled[g];
       open[lane] = open[lane] && !report.settled[lane] && !last;
       any = any || open[lane];
     }
     return any;
   };
-  for (int lane = 0; lane < k_lanes; ++lane) open[lane] = k_lanes * g + at(lane) < setup_.strands.size();
   for (int pieces = 2; settle(pieces > k_most_pieces); pieces *= 2) {
     load(step, g, w);
     report = RodStepReport();
@@ -269,8 +266,46 @@ void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
       for (int lane = 0; lane < k_lanes; ++lane) report.settled[lane] = report.settled[lane] && one.settled[lane];
     }
   }
-  for (int lane = 0; lane < k_lanes && k_lanes * g + at(lane) < setup_.strands.size(); ++lane)
-    store(step, g, lane, w.settled[at(lane)]);
+}
+
+/// A plane where each segment of a strand went through a sheet in the step, if any did.
+int HairSolver::bar_passages(const Step& step, std::size_t g, int lane, int round, Work& w) const {
+  const std::size_t n = at(n_), s = strand_of(g, lane), base = s * n;
+  const StrandNow& end = w.settled[at(lane)];
+  int found = 0;
+  for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i) {
+    const auto before = [&](std::size_t k) { return vec(step.x + 3 * (base + k)); };
+    const auto passage = find_sheet_passage(bodies_, {before(i - 1), before(i), end.x[i - 1], end.x[i]});
+    if (!passage) continue;
+    ++found;
+    put_segment_contact(g, lane, i, k_near_contacts + round % k_passages, passage->surface, passage->share,
+                        before(i - 1), before(i), w);
+  }
+  return found;
+}
+
+void HairSolver::advance_group(const Step& step, std::size_t g, Work& w) const {
+  load(step, g, w);
+  w.contacts.assign(at(k_contacts * n_), HairContact<Lanes>());
+  w.moved.assign(at(k_contacts * n_), V3<Lanes>());
+  w.segments.assign(at(k_segment_contacts * n_), SegmentContact<Lanes>());
+  w.segments_moved.assign(at(k_segment_contacts * n_), V3<Lanes>());
+  w.around.touches = false;
+  for (int lane = 0; lane < k_lanes; ++lane) add_contacts(step, g, lane, w);
+  std::array<bool, k_lanes> open;
+  for (int lane = 0; lane < k_lanes; ++lane) open[at(lane)] = k_lanes * g + at(lane) < setup_.strands.size();
+  const std::array<bool, k_lanes> own = open;
+  for (int round = 0; std::ranges::count(open, true) > 0; ++round) {
+    solve_step(step, g, open, w);
+    if (!bodies_.has_sheets()) break;
+    for (int lane = 0; lane < k_lanes; ++lane) {
+      const int passages = open[at(lane)] ? bar_passages(step, g, lane, round, w) : 0;
+      open[at(lane)] = passages > 0 && round < k_most_rounds;
+      if (round == k_most_rounds) step.passages[g] += passages;
+    }
+  }
+  for (int lane = 0; lane < k_lanes; ++lane)
+    if (own[at(lane)]) store(step, g, lane, w.settled[at(lane)]);
 }
 
 }  // namespace ft::inline solvers

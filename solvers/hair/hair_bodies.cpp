@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/check/crossings.h"
 #include "collision/check/penetration.h"
 #include "collision/geometry/pair_geometry.h"
 
@@ -101,6 +102,23 @@ bool HairBodies::rays_inside(const Vec3& point) const {
     return body.surface && body.surface->closed(0) &&
            rays_say_inside(point, body.tree.tree(), body.before, body.triangles);
   });
+}
+
+bool HairBodies::has_sheets() const {
+  return std::ranges::any_of(given_, &HairBody::sheet);
+}
+
+bool HairBodies::through_sheet(const Vec3& a, const Vec3& b) const {
+  bool out = false;
+  for (int k = 0; k < count(); ++k) {
+    if (!sheet(k)) continue;
+    const auto x = before(k);
+    tree(k).tree().for_each_near(TreeBox::around(a.cwiseMin(b), a.cwiseMax(b)), [&](int t) {
+      const Triangle& corner = triangles(k)[at(t)];
+      out = out || edge_crosses_triangle(a, b, x[at(corner[0])], x[at(corner[1])], x[at(corner[2])]);
+    });
+  }
+  return out;
 }
 
 std::optional<HairBodies::Nearest> HairBodies::nearest(const Vec3& point, double look) const {

@@ -50,6 +50,9 @@ class HairBodies {
   /// How far a point is inside of the body that it is deepest in, at the start; below 0: how far
   /// it is outside of all, at most `look` [m].
   double depth(const Vec3& point, double look) const;
+  bool has_sheets() const;
+  /// Whether a segment goes through a sheet at the start.
+  bool through_sheet(const Vec3& a, const Vec3& b) const;
   /// The farthest that a vertex of any body goes in the step [m].
   double way() const { return way_; }
 

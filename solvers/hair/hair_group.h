@@ -16,6 +16,7 @@ struct HairSolver::Step {
   double *x = nullptr, *x_before = nullptr, *v = nullptr, *v_before = nullptr, *m = nullptr, *tension = nullptr;
   int* iterations = nullptr;  ///< of each group
   int* unsettled = nullptr;
+  int* passages = nullptr;  ///< of segments through sheets, that were not kept back
 };
 
 /// What moves of one strand.

@@ -132,6 +132,10 @@ void HairSolver::measure_gaps() {
       }
     }
   });
+  combed_through_ = 0;
+  for (std::size_t s = 0; s < count && bodies_.has_sheets(); ++s)
+    for (std::size_t i = at(std::max(2, setup_.strands[s].held + 1)); i < n; ++i)
+      combed_through_ += bodies_.through_sheet(groom_[s][i - 1], groom_[s][i]) ? 1 : 0;
   // What is deep inside, too.
   std::vector<Vec3> all;
   for (const std::vector<Vec3>& strand : groom_) all.insert(all.end(), strand.begin(), strand.end());

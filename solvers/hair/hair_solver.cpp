@@ -172,7 +172,7 @@ FrameReport HairSolver::advance_frame(State& state) {
   const bool goes_on = std::abs(state.find("step")->at(0) - h) < 1e-9 * h;
   before = jumps_into(state.frame) ? now : roots_at(t0 - h);
   std::vector<Vec3> push, flow;
-  std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0);
+  std::vector<int> iterations(rods_.size(), 0), unsettled(rods_.size(), 0), passages(rods_.size(), 0);
   for (int k = 0; k < steps; ++k) {
     const double end = k + 1 == steps ? t1 : t0 + h * (k + 1);
     after = roots_at(end);
@@ -190,6 +190,7 @@ FrameReport HairSolver::advance_frame(State& state) {
     step.v = state.block("v").data(), step.v_before = state.block("v_before").data();
     step.m = state.block("m").data(), step.tension = state.block("tension").data();
     step.iterations = iterations.data(), step.unsettled = unsettled.data();
+    step.passages = passages.data();
     parallel_for(rods_.size(), 1, [&](std::size_t begin, std::size_t finish) {
       thread_local Work work;
       for (std::size_t g = begin; g < finish; ++g) advance_group(step, g, work);
@@ -205,7 +206,8 @@ FrameReport HairSolver::advance_frame(State& state) {
   report.substeps = steps;
   add_force(impulses, h, t1, report);
   double sum = 0, rest = 0;
-  for (std::size_t g = 0; g < rods_.size(); ++g) sum += iterations[g], rest += unsettled[g];
+  int passed = 0;
+  for (std::size_t g = 0; g < rods_.size(); ++g) sum += iterations[g], rest += unsettled[g], passed += passages[g];
   report.newton_iterations = static_cast<int>(sum);
   report.own["hair_steps"] = steps;
   report.own["hair_iterations"] = sum / (steps * static_cast<double>(rods_.size()));
@@ -223,6 +225,7 @@ FrameReport HairSolver::advance_frame(State& state) {
         "a body or a root goes {:.2g} m in this frame, {:.0f} mm in each of {} steps: strands may not keep up "
         "with it; more frames per second help",
         way, 1e3 * way / steps, steps));
+  if (passed > 0) say(fmt::format("{} segments of strands went through a sheet", passed));
   if (rest > 0) say(fmt::format("{:.0f} times a strand did not settle in a step, nor in pieces of it", rest));
   certify(state, report);
   report.profile.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

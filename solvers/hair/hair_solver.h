@@ -59,6 +59,8 @@ class HairSolver final : public Solver {
   /// Of all hairs that the strands stand for [kg].
   double mass() const;
   CombedInside combed_inside() const;
+  /// Segments that were combed through a sheet; what is tied does not count.
+  int combed_through() const { return combed_through_; }
 
   /// The guides; what is between them and a mesh that rides on them, if there are such.
   int system_count() const override { return 1 + (between_ ? 1 : 0) + (ridden_ ? 1 : 0); }
@@ -93,6 +95,10 @@ class HairSolver final : public Solver {
   void add_contacts(const Step& step, std::size_t group, int lane, Work& work) const;
   void add_segment_contact(std::size_t group, int lane, std::size_t vertex, const Vec3& before_goes, const Vec3& goes,
                            bool lies, Work& work) const;
+  void put_segment_contact(std::size_t group, int lane, std::size_t vertex, int slot, const NearSurface& surface,
+                           double share, const Vec3& a, const Vec3& b, Work& work) const;
+  void solve_step(const Step& step, std::size_t group, std::array<bool, k_lanes> open, Work& work) const;
+  int bar_passages(const Step& step, std::size_t group, int lane, int round, Work& work) const;
   RodStepReport run_piece(const Step& step, const Piece& piece, std::size_t group, Work& work) const;
   bool is_ridden(int system) const { return ridden_ && system == system_count() - 1; }
   bool jumps_into(int frame) const;
@@ -111,6 +117,7 @@ class HairSolver final : public Solver {
   std::vector<Vec3> directors_;           ///< of all strands' edges, in the bind pose
   std::vector<double> gaps_;              ///< of each vertex as combed, to what it meets [m]
   std::vector<double> segment_gaps_;  ///< of the segment before each vertex, to sharp edges of it, or of its middle [m]
+  int combed_through_ = 0;
   std::vector<double> lengths_, stiffened_;
   double hairs_ = 1;  ///< that a strand stands for
   SystemShape shape_, between_shape_;

@@ -36,8 +36,9 @@ struct SegmentContact {
 template <class T>
 void contact_force(const T& gap, const T& reach, const T& stiffness, T& force, T& slope, T& energy);
 
-inline constexpr int k_contacts = 3;          ///< of a vertex, at most
-inline constexpr int k_segment_contacts = 2;  ///< of a segment
+inline constexpr int k_contacts = 3;  ///< of a vertex, at most
+/// Of a segment: with what is near at the start of a step, and where it would have gone through a sheet in it.
+inline constexpr int k_near_contacts = 2, k_passages = 4, k_segment_contacts = k_near_contacts + k_passages;
 
 /// What is around four strands in a step.
 template <class T>

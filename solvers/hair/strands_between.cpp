@@ -18,6 +18,7 @@ constexpr double k_aside = 0.01;  ///< farther than this from its guide a strand
 constexpr int k_rounds = 3;       ///< of pushing out and giving the length back
 /// Guides that part: where one would have a strand so far from where the nearest has it, it counts by a half [m].
 constexpr double k_parted = 0.01;
+constexpr int k_halvings = 3;    ///< of the way from a guide, until a strand is on it
 constexpr double k_gap = 3e-4;   ///< to which strands are pushed out of bodies [m]
 constexpr double k_look = 0.06;  ///< how far from a guide a body is looked for [m]
 
@@ -96,6 +97,36 @@ bool StrandsBetween::push_out(const Plane& of_guide, const Vec3& guide, double k
   return true;
 }
 
+/// Of a segment that goes through a sheet both ends go nearer to the nearest guide, by halves, and in the end onto it;
+/// what that puts into a body, too.
+/// What is that near to a guide that goes through itself is where that is.
+void StrandsBetween::clear_sheets(const GuidesNow& guides, std::span<const Plane> planes, std::size_t strand,
+                                  std::span<Vec3> p) const {
+  const std::size_t first = at(strands_[strand].guides[0]) * n_;
+  const auto may_reach = [&](std::size_t i) {
+    const double way = (p[i] - guides.x[first + i]).norm() + lengths_[strand * n_ + i];
+    return planes[first + i].gap >= 1 ? way > k_look : planes[first + i].gap < way;
+  };
+  thread_local std::vector<int> halved;
+  halved.assign(n_, 0);
+  bool again = true;
+  const auto nearer = [&](std::size_t k) {
+    if (k == 0 || halved[k] > k_halvings) return;
+    again = true;
+    const double share = ++halved[k] > k_halvings ? 0 : 0.5;
+    p[k] = guides.x[first + k] + share * (p[k] - guides.x[first + k]);
+  };
+  while (again) {
+    again = false;
+    for (std::size_t i = 1; i < n_; ++i) {
+      if (may_reach(i) && bodies_.through_sheet(p[i - 1], p[i]))
+        nearer(i - 1), nearer(i);
+      else if (halved[i] > 0 && bodies_.depth(p[i], k_look) > 0)
+        nearer(i);
+    }
+  }
+}
+
 void StrandsBetween::place(const GuidesNow& guides, double time, std::vector<Vec3f>& x, std::vector<Vec3f>& v) const {
   const std::lock_guard guard(busy_);
   bodies_.start_at(time);
@@ -106,7 +137,9 @@ void StrandsBetween::place(const GuidesNow& guides, double time, std::vector<Vec
   const std::vector<Mat3> frames = frames_of(guides, n_);
   const std::vector<Plane> planes = planes_near(guides);
   x.resize(offsets_.size()), v.resize(offsets_.size());
+  const bool sheets = bodies_.has_sheets();
   parallel_for(strands_.size(), 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3> places(n_);
     for (std::size_t s = begin; s < end; ++s) {
       const Strand& strand = strands_[s];
       Vec3 before = Vec3::Zero(), before_free = Vec3::Zero();
@@ -149,9 +182,11 @@ void StrandsBetween::place(const GuidesNow& guides, double time, std::vector<Vec
           }
         }
         before = p, before_free = free;
-        x[to] = p.cast<float>();
+        places[i] = p;
         v[to] = speed.cast<float>();
       }
+      if (sheets) clear_sheets(guides, planes, s, places);
+      for (std::size_t i = 0; i < n_; ++i) x[s * n_ + i] = places[i].cast<float>();
     }
   });
 }

@@ -1,6 +1,7 @@
 // Strands that are not solved: each goes with up to three guides, from between them at its root to beside the nearest
 // of them farther out, in the guides' own frames. Then its segments get their lengths back, and what that has put into
-// a body is pushed out. What they are is a function of the guides and the bodies at a time.
+// a body is pushed out, and what goes through a sheet goes nearer to its guide, which does not. What they are is a
+// function of the guides and the bodies at a time.
 #pragma once
 
 #include <array>
@@ -45,6 +46,8 @@ class StrandsBetween {
   };
   std::vector<Plane> planes_near(const GuidesNow& guides) const;
   bool push_out(const Plane& of_guide, const Vec3& guide, double keeps, Vec3& p) const;
+  void clear_sheets(const GuidesNow& guides, std::span<const Plane> planes, std::size_t strand,
+                    std::span<Vec3> p) const;
 
   std::size_t n_ = 0;
   std::shared_ptr<const Trajectory> scalp_;

@@ -102,7 +102,7 @@ TEST_F(HairBakeTest, A_share_of_the_guides_is_chosen_evenly_and_material_comes_f
   auto made = plan_shot_in(folder_.path());
   ASSERT_TRUE(made) << made.error().text();
   const auto& own = dynamic_cast<const HairSpec&>(*made->shot().secondaries.at(0));
-  const auto read = hair_setup(made->shot(), own, 0, *made);
+  const auto read = hair_setup(made->shot(), own, 0, {}, *made);
   ASSERT_TRUE(read) << read.error().text();
   const HairSetup& setup = *read;
   ASSERT_EQ(setup.strands.size(), 3u);
@@ -120,7 +120,8 @@ TEST_F(HairBakeTest, Strands_are_left_out_by_their_numbers) {
   write_shot(std::string(k_hair) + "leave_out = \"0, 2-7\"\n");
   auto made = plan_shot_in(folder_.path());
   ASSERT_TRUE(made) << made.error().text();
-  const auto setup = hair_setup(made->shot(), dynamic_cast<const HairSpec&>(*made->shot().secondaries.at(0)), 0, *made);
+  const auto setup =
+      hair_setup(made->shot(), dynamic_cast<const HairSpec&>(*made->shot().secondaries.at(0)), 0, {}, *made);
   ASSERT_TRUE(setup) << setup.error().text();
   ASSERT_EQ(setup->strands.size(), 2u);
   EXPECT_EQ(setup->strands[0].id, 1u);

@@ -21,11 +21,9 @@ void add_notes(const HairSpec& spec, const HairGroup& group, BakePlan& plan) {
   const auto note = [&](const std::string& text) { plan.notes.push_back(spec.owner() + ": " + text); };
   const HairSolver& solver = *group.solver;
   for (const std::size_t p : group.meets)
-    if (has_sheets(plan.primaries[p].trajectory->surface().parts))
-      note(
-          fmt::format("vertices stay on their side of \"{}\", but its rims and folds may cut through between them; "
-                      "check counts where",
-                      plan.primaries[p].name));
+    if (spec.tie_radius > 0 && has_sheets(plan.primaries[p].trajectory->surface().parts))
+      note(fmt::format("\"{}\" may go through what is tied, which stays with its root: check does not count it",
+                       plan.primaries[p].name));
   const auto stiff = solver.stiffened();
   const auto stiffer = std::count_if(stiff.begin(), stiff.end(), [](double factor) { return factor > 1; });
   if (stiffer > 0)
@@ -38,6 +36,8 @@ void add_notes(const HairSpec& spec, const HairGroup& group, BakePlan& plan) {
         "{} vertices are combed up to {:.1f} mm inside of what it meets, and {} segments between vertices cut "
         "through it: they may stay so",
         inside.vertices, 1e3 * inside.deepest, inside.segments));
+  if (const int through = solver.combed_through(); through > 0)
+    note(fmt::format("{} segments are combed through a garment: they may stay so", through));
   if (solver.farthest_root() > k_root_off)
     note(
         fmt::format("roots are up to {:.1f} mm off the surface, and keep that distance", 1e3 * solver.farthest_root()));
@@ -45,7 +45,8 @@ void add_notes(const HairSpec& spec, const HairGroup& group, BakePlan& plan) {
 
 }  // namespace
 
-Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t primary, BakePlan& plan) {
+Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t primary,
+                             std::span<const std::size_t> meets, BakePlan& plan) {
   HairSetup setup;
   setup.name = spec.name;
   take_from_shot(shot, plan.wind, setup);
@@ -61,7 +62,11 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
   setup.hairs = spec.hairs;
   setup.scalp = plan.primaries[primary].trajectory;
   for (const Teleport& jump : plan.primaries[primary].scan.teleports) setup.teleports.push_back(jump.frame);
-  auto source = hair_source(spec, *setup.scalp);
+  for (const std::size_t p : meets) {
+    const PrimaryPlan& met = plan.primaries[p];
+    setup.bodies.push_back({met.name, met.trajectory, 1, has_sheets(met.trajectory->surface().parts)});
+  }
+  auto source = hair_source(spec, *setup.scalp, setup.bodies);
   if (!source) return located(source.error(), shot, spec.owner());
   for (const std::string& note : source->notes) plan.notes.push_back(spec.owner() + ": " + note);
   setup.strands = std::move(source->strands);
@@ -78,14 +83,10 @@ Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t
 Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& spec, std::size_t primary,
                                              BakePlan& plan) {
   auto group = std::make_unique<HairGroup>(primary);
-  auto setup = hair_setup(shot, spec, primary, plan);
-  if (!setup) return setup.error();
   if (const Status found = find_met(spec, spec.meets, plan, group->meets); !found)
     return located(found.error(), shot, spec.owner());
-  for (const std::size_t p : group->meets) {
-    const PrimaryPlan& met = plan.primaries[p];
-    setup->bodies.push_back({met.name, met.trajectory, 1, has_sheets(met.trajectory->surface().parts)});
-  }
+  auto setup = hair_setup(shot, spec, primary, group->meets, plan);
+  if (!setup) return setup.error();
   for (const HairStrand& strand : setup->strands)
     for (const Vec3& p : strand.positions) group->around.include(setup->scalp->bind_to_start() * p);
   const auto add_output = [&](SystemShape shape) {

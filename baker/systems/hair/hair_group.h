@@ -22,7 +22,8 @@ class HairGroup final : public DrawnGroup {
 };
 
 /// What the shot says of a solver's setup, all but what it meets. Errors say where; notes go into the plan.
-Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t primary, BakePlan& plan);
+Result<HairSetup> hair_setup(const Shot& shot, const HairSpec& spec, std::size_t primary,
+                             std::span<const std::size_t> meets, BakePlan& plan);
 
 /// Errors say where; notes go into the plan.
 Result<std::unique_ptr<HairGroup>> plan_hair(const Shot& shot, const HairSpec& spec, std::size_t primary,

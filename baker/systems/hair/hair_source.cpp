@@ -113,7 +113,15 @@ std::vector<double> painted_red(const Mesh& mesh) {
   return out;
 }
 
-Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body, std::span<const Triangle> triangles) {
+void add_surface(std::span<const Vec3> x, std::span<const Triangle> triangles, std::vector<Vec3>& all,
+                 std::vector<Triangle>& all_triangles) {
+  const int first = static_cast<int>(all.size());
+  all.insert(all.end(), x.begin(), x.end());
+  for (const Triangle& t : triangles) all_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body, std::span<const Triangle> triangles,
+                               std::span<const HairBody> bodies) {
   HairSource out;
   Mesh own;
   std::vector<Triangle> own_triangles;
@@ -150,7 +158,12 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
                     least, spec.region_radius),
         {}, "region is a place on the body as garments lie on it, in its bind pose");
   }
-  auto strands = grown(growth, body, triangles, region);
+  // A garment is so nearly closed around what it covers that winding numbers tell its inside.
+  std::vector<Vec3> covered(body.begin(), body.end());
+  std::vector<Triangle> cover(triangles.begin(), triangles.end());
+  for (const HairBody& met : bodies)
+    if (met.sheet) add_surface(bind_pose_of(*met.trajectory), met.trajectory->surface().triangles, covered, cover);
+  auto strands = grown(growth, covered, cover, region);
   if (!strands) return strands.error();
   const auto wanted = static_cast<std::size_t>(std::llround(area * growth.density));
   if (strands->size() < wanted)
@@ -168,9 +181,9 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
 
 }  // namespace
 
-Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp) {
+Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp, std::span<const HairBody> bodies) {
   const std::vector<Vec3> bind = bind_pose_of(scalp);
-  auto out = spec.grows() ? from_region(spec, bind, scalp.surface().triangles) : from_file(spec, bind);
+  auto out = spec.grows() ? from_region(spec, bind, scalp.surface().triangles, bodies) : from_file(spec, bind);
   if (!out) return out;
   const auto bent =
       std::ranges::count_if(out->strands, [](const HairStrand& s) { return sharpest(s.positions) > k_sharp; });

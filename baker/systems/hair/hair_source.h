@@ -15,7 +15,8 @@ struct HairSource {
   std::vector<MeshRider> riders;  ///< of its vertices, by `strands`
 };
 
-/// On the scalp's bind pose. Errors: of the file, of the region.
-Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp);
+/// On the scalp's bind pose; what grows lies outside of the garments among the bodies, too. Errors: of the file, of the
+/// region.
+Result<HairSource> hair_source(const HairSpec& spec, const Trajectory& scalp, std::span<const HairBody> bodies);
 
 }  // namespace ft::inline baker

@@ -136,6 +136,8 @@ class JudgedHair final : public JudgedGroup {
                    FrameReport& report) const {
     std::vector<int> found = segments_through(x, first_, sheet, y);
     std::erase_if(found, [&](int v) { return through_[at(v)] != 0; });
+    // What is tied goes with its root, wherever the sheet is.
+    report.crossings_absent += static_cast<int>(std::erase_if(found, [&](int v) { return is_held(v); }));
     if (found.empty()) return;
     report.crossings_body += static_cast<int>(found.size());
     report.incidents.push_back({Incident::Kind::k_crossing, report.frame, track_.name, strand_of(found[0]),
