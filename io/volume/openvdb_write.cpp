@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
@@ -18,6 +19,9 @@ namespace {
 namespace vdb = openvdb;
 
 constexpr int k_band = 3;  ///< voxels on both sides of the surface
+/// Motion blur looks up the velocity where something may come from or go to, not only where it is: so far both ways
+/// [frames]. Half a frame is a shutter that is open for all of it, about its middle.
+constexpr double k_shutter = 0.5;
 /// Where a file has its random identifier, and how long it is.
 constexpr std::size_t k_identifier_at = 21, k_identifier_size = 36;
 
@@ -74,38 +78,75 @@ void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SG
       const double steep = std::sqrt(1 + slope * slope);
       const double beside = std::max(std::max(heights.low().x() - x, x - heights.high().x()),
                                      std::max(heights.low().y() - z, z - heights.high().y()));
-      for (int iy = index(water.floor) - k_band; iy <= index(height + far * steep) + 1; ++iy) {
+      const double blurred = far + k_shutter / water.fps * std::abs(v.y());
+      for (int iy = index(water.floor) - k_band; iy <= index(height + blurred * steep) + 1; ++iy) {
         const double y = iy * h, above = (y - height) / steep;
         const double distance = std::max({above, beside, water.floor - y});
-        if (std::abs(distance) >= far) continue;
-        to_surface.setValue({ix, iy, iz}, static_cast<float>(distance));
-        if (std::abs(above) < far) to_velocity.setValue({ix, iy, iz}, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
+        if (std::abs(distance) < far) to_surface.setValue({ix, iy, iz}, static_cast<float>(distance));
+        if (std::abs(above) < blurred && beside < far && water.floor - y < far)
+          to_velocity.setValue({ix, iy, iz}, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
       }
     }
   vdb::tools::signedFloodFill(surface.tree());
 }
 
-void fill_spray(const LiquidFrame& water, vdb::FloatGrid& spray, vdb::Vec3SGrid& velocity) {
-  struct Drops {
-    double volume = 0;
-    Vec3 momentum = Vec3::Zero();
-  };
-  std::map<vdb::Coord, Drops> all;
+/// Of droplets together.
+struct Drops {
+  double volume = 0;
+  Vec3 momentum = Vec3::Zero();  ///< over density
+
+  void add(const Drops& other) { volume += other.volume, momentum += other.momentum; }
+  vdb::Vec3s velocity() const {
+    const Vec3 v = momentum / volume;
+    return vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z()));
+  }
+};
+
+std::map<vdb::Coord, Drops> drops_by_voxel(const LiquidFrame& water) {
+  std::map<vdb::Coord, Drops> out;
   for (std::size_t i = 0; i < water.droplets.positions.size(); ++i) {
     const Vec3f& p = water.droplets.positions[i];
     const double width = water.droplets.widths.empty() ? 0.004 : water.droplets.widths[i];
-    const double volume = std::numbers::pi / 6 * width * width * width;
-    Drops& drops = all[vdb::Coord::round(vdb::Vec3d(p.x(), p.y(), p.z()) / water.voxel)];
-    drops.volume += volume;
-    if (!water.droplets.velocities.empty()) drops.momentum += volume * water.droplets.velocities[i].cast<double>();
+    Drops drop{std::numbers::pi / 6 * width * width * width};
+    if (!water.droplets.velocities.empty()) drop.momentum = drop.volume * water.droplets.velocities[i].cast<double>();
+    out[vdb::Coord::round(vdb::Vec3d(p.x(), p.y(), p.z()) / water.voxel)].add(drop);
   }
+  return out;
+}
+
+/// Voxels about the ways on which drops come and go while the shutter is open, one voxel wider all round, since
+/// velocities are looked up between voxels.
+std::map<vdb::Coord, Drops> ways_of(const std::map<vdb::Coord, Drops>& all, const LiquidFrame& water) {
+  std::map<vdb::Coord, Drops> out;
+  for (const auto& [place, drops] : all) {
+    const vdb::Vec3d way = vdb::Vec3d(drops.velocity()) * (k_shutter / water.fps / water.voxel);
+    const int steps = static_cast<int>(std::ceil(way.length()));
+    std::set<vdb::Coord> near;
+    for (int n = -steps; n <= steps; ++n) {
+      const vdb::Coord there = vdb::Coord::round(place.asVec3d() + way * (static_cast<double>(n) / std::max(1, steps)));
+      for (int k = 0; k < 27; ++k) near.insert(there.offsetBy(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+    }
+    for (const vdb::Coord& c : near) out[c].add(drops);
+  }
+  return out;
+}
+
+void fill_spray(const LiquidFrame& water, const vdb::FloatGrid& surface, vdb::FloatGrid& spray,
+                vdb::Vec3SGrid& velocity) {
+  const auto all = drops_by_voxel(water);
+  const auto to_surface = surface.getConstAccessor();
   auto to_spray = spray.getAccessor();
   auto to_velocity = velocity.getAccessor();
+  // More than a voxel above the surface nothing asks how that moves: there it is the droplets that matter.
+  const auto is_free = [&](const vdb::Coord& c) {
+    return !to_velocity.isValueOn(c) || to_surface.getValue(c) > water.voxel;
+  };
   for (const auto& [place, drops] : all) {
     to_spray.setValue(place, static_cast<float>(std::min(1.0, drops.volume / std::pow(water.voxel, 3))));
-    const Vec3 v = drops.momentum / drops.volume;
-    if (!to_velocity.isValueOn(place)) to_velocity.setValue(place, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
+    if (is_free(place)) to_velocity.setValue(place, drops.velocity());
   }
+  for (const auto& [place, drops] : ways_of(all, water))
+    if (!to_spray.isValueOn(place) && is_free(place)) to_velocity.setValue(place, drops.velocity());
 }
 
 /// Puts a hash of all others in the place of the identifier.
@@ -136,7 +177,7 @@ Status write_liquid_vdb(const std::filesystem::path& path, const LiquidFrame& wa
   velocity->setVectorType(vdb::VEC_CONTRAVARIANT_RELATIVE);
   velocity->insertMeta("unit", vdb::StringMetadata("m/s"));
   fill_surface(water, *surface, *velocity);
-  fill_spray(water, *spray, *velocity);
+  fill_spray(water, *surface, *spray, *velocity);
   vdb::GridPtrVec grids{surface, velocity, spray};
   for (const auto& grid : grids) {
     grid->setTransform(transform->copy());

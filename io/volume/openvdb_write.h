@@ -1,6 +1,7 @@
 // A frame of a liquid whose surface is a height field, and of its droplets, as an OpenVDB file: grids `surface` (a
-// level set [m]), `vel` (m/s) and `spray` (a fog: share of a voxel that is water). The same input gives the same bytes:
-// the file's random identifier becomes a hash of it.
+// level set [m]), `vel` (m/s) and `spray` (a fog: share of a voxel that is water). `vel` goes on beside what moves, as
+// far as it comes in half a frame, since that is where renderers look it up. The same input gives the same bytes: the
+// file's random identifier becomes a hash of it.
 #pragma once
 
 #include <filesystem>

@@ -138,6 +138,7 @@ TEST_F(WaterBakeTest, Its_frames_are_written_as_volumes_with_the_same_bytes_whos
     const auto lines = write_volumes({.folder = folder_ / "out", .output = folder_ / name});
     ASSERT_TRUE(lines) << lines.error().text();
     EXPECT_NE(lines->front().find("pond.0001.vdb"), std::string::npos);
+    EXPECT_NE(lines->at(1).find("in Blender: Rotation X = 90"), std::string::npos);
   }
   for (const char* file : {"pond.0001.vdb", "pond.0012.vdb"}) {
     const auto a = read_file(folder_ / "a" / file), b = read_file(folder_ / "b" / file);

@@ -5,27 +5,29 @@
 #   tests/bench/run.sh size [--frames N] [CELLS ...]
 #   tests/bench/run.sh rumba_dress [--keep FOLDER] [-- BAKE ARGUMENTS]
 #   tests/bench/run.sh hair [--threads N] [--keep FOLDER] [-- BAKE ARGUMENTS]
+#   tests/bench/run.sh splash [CELLS ...] [--keep FOLDER]
 #   tests/bench/run.sh jumps SHOT.toml [POSES A SECOND] [MILLIMETRES]
 # SCENE     S1 (a square of N x N vertices on a swinging sphere), S2 (a skirt on a motion-captured capsule character)
 # torture   the scenes of tests/support/torture, without a peer, each for at most FOLLOWTHROUGH_TORTURE_SECONDS (600)
 # size      what S1 costs as N grows, without a peer: 50, 100, 200 and 400
 # rumba_dress  samples/sewn_dress, sewn and danced, without a peer; then the dress in its authors' fabric beside their drape
 # hair      200 strands of 32 vertices on a head that stands still for two seconds, then turns to and fro; three times in turn
+# splash    a ball falls into a pool three times; beside Blender's liquid (Mantaflow), with 32 and 48 cells along the pool
 # jumps     where the feasible collider of a shot moves by more than 4 mm against the drawn body within 2 ms
 # --preset  of the peer: default, hq, hqfit. --peer FOLDER takes the peer's result of an earlier run with --keep instead of
 #           running it: good for looking, not for claims of speed.
 # Every clip of every character: tests/bench/sweep.sh.
-# Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH), but for hair. The last line is "RESULT scene=.. n=.. ...".
+# Needs the scenes and the judge of ../shared/bench (or FOLLOWTHROUGH_BENCH), but for hair and splash. The last line is "RESULT scene=.. n=.. ...".
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../samples/setup.sh"
 
-usage() { sed -n '2,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,21s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 scene=${1:-}
 case $scene in
   -h | --help) usage; exit 0 ;;
   size | jumps) shift ;;
   torture) [ $# -ge 2 ] || { usage >&2; exit 2; }; shift ;;
-  S1 | S2 | rumba_dress | hair) shift ;;
+  S1 | S2 | rumba_dress | hair | splash) shift ;;
   *) usage >&2; exit 2 ;;
 esac
 
@@ -50,7 +52,7 @@ if [ "$scene" = torture ]; then
   done
   exit $failed
 fi
-n=100 frames=100 preset=default keep="" peer="" bake_arguments=()
+n=100 frames=100 preset=default keep="" peer="" bake_arguments=() cells=()
 while [ $# -gt 0 ]; do
   case $1 in
     --n | --frames | --preset | --threads | --keep | --peer) [ $# -gt 1 ] || fail "$1 needs a value" ;;&
@@ -61,6 +63,7 @@ while [ $# -gt 0 ]; do
     --keep) keep=$2; shift ;;
     --peer) peer=$(cd "$2" && pwd); shift ;;
     --) shift; bake_arguments+=("$@"); break ;;
+    [1-9]*) [ "$scene" = splash ] || fail "cells are splash's"; cells+=("$1") ;;
     *) fail "what is \"$1\"?" ;;
   esac
   shift
@@ -70,12 +73,18 @@ bench=${FOLLOWTHROUGH_BENCH:-$root/../shared/bench}
 tools=(followthrough case_tool)
 [ "$scene" != rumba_dress ] || tools+=(test_baker)
 [ "$scene" != hair ] || tools=(followthrough hair_tool)
-[ "$scene" = hair ] || [ -f "$bench/judge.cpp" ] || fail "the scenes and the judge are not at $bench; set FOLLOWTHROUGH_BENCH"
+[ "$scene" != splash ] || tools=(followthrough splash_tool)
+[ "$scene" = hair ] || [ "$scene" = splash ] || [ -f "$bench/judge.cpp" ] || fail "the scenes and the judge are not at $bench; set FOLLOWTHROUGH_BENCH"
 # shellcheck disable=SC2086
-install_packages $packages_build $packages_tests $packages_bench
+if [ "$scene" = splash ]; then
+  install_packages $packages_build $packages_tests
+  (install_packages $packages_bench) || command -v blender >/dev/null || { echo "skipped: splash: blender is not installed"; exit 0; }
+else
+  install_packages $packages_build $packages_tests $packages_bench
+fi
 build release "${tools[@]}"
 bin=$root/build/release/bin
-if [ "$scene" != hair ] && { [ ! -x "$bin/judge" ] || [ "$bench/judge.cpp" -nt "$bin/judge" ]; }; then
+if [ "$scene" != hair ] && [ "$scene" != splash ] && { [ ! -x "$bin/judge" ] || [ "$bench/judge.cpp" -nt "$bin/judge" ]; }; then
   g++ -O2 -o "$bin/judge" "$bench/judge.cpp"
 fi
 if [ -n "$keep" ]; then
@@ -125,6 +134,24 @@ if [ "$scene" = hair ]; then
     echo "$our_cpu" >"$round/cpu.txt"
   done
   "$bin/hair_tool" result "${rounds[@]}"
+  exit
+fi
+
+if [ "$scene" = splash ]; then
+  [ ${#cells[@]} -gt 0 ] || cells=(32 48)
+  "$bin/splash_tool" scene "$work/scene" "${cells[@]}"
+  for n in "${cells[@]}"; do
+    round=$work/cells$n
+    rm -rf "$round"
+    mkdir -p "$round/peer"
+    say "$n x $n cells: Blender's liquid, and ours"
+    blender -b --factory-startup -P "$root/tests/bench/splash_peer.py" -- "$work/scene" "$n" "$round/peer" >"$round/peer.log" 2>&1 || true
+    grep RESULT "$round/peer.log" || { tail -20 "$round/peer.log" >&2; fail "Blender gave no result (see above)"; }
+    bake "$work/scene/shot$n.toml"
+    mv "$work/bake" "$round/bake"
+    echo "$our_cpu" >"$round/cpu.txt"
+    "$bin/splash_tool" result "$n" "$round"
+  done
   exit
 fi
 
