@@ -13,7 +13,7 @@ packages_samples="assimp-testmodels"
 # benchmarks, is 500 MB: tests that want it skip when it is absent.
 packages_tests="assimp-testmodels libgtest-dev chromium clang-format"
 packages_clang="clang-14"
-packages_bench="assimp-testmodels blender"
+packages_bench="assimp-testmodels blender python3-numpy"
 
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf '\n%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
