@@ -64,12 +64,12 @@ std::vector<std::string> limits_of_model(const std::string& model, std::size_t f
       "by lot");
   if (model != "paper") return out;
   note(
-      "water carries no momentum along: a dam that breaks keeps 0.56 of its depth at its place in the place of 4/9, "
-      "and "
-      "its front is less than half as fast; ground falls dry and is flooded, but run-up and bores are wrong");
+      "water carries no momentum along: a dam that breaks keeps 0.56 of its depth at its place, not 4/9, and its front "
+      "is less than half as fast; ground falls dry and is flooded, but run-up and bores are wrong");
   note(
-      "bodies press on columns that give a little, drag of bodies pushes no water back, and what droplets move along "
-      "is lost where they land");
+      "bodies press on columns that give a little, drag of bodies pushes no water back, and the momentum of droplets "
+      "is "
+      "lost where they land");
   return out;
 }
 

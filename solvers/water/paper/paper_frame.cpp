@@ -40,7 +40,6 @@ void PaperFrame::meet(double share) {
   }
   s_.under.find(s_.water.met(), surfaces, s_.water.highest(), setup_.stiffness);
   s_.water.find_heads(s_.under);
-  s_.under.find_free(s_.water.head);
 }
 
 double PaperFrame::make_room() {
@@ -80,7 +79,6 @@ double PaperFrame::step_time() const {
 }
 
 void PaperFrame::go() {
-  s_.falls.assign(s_.water.depth.size(), 0.0);
   meet(0);
   std::uint64_t number = 0;
   while (frame_time_ - time_ > 1e-9 * frame_time_) {
@@ -98,15 +96,9 @@ void PaperFrame::step(double dt, std::uint64_t number) {
   PipeWater& w = s_.water;
   push_driven(dt);
   move_floats(dt);
-  // What has landed presses for a step.
   if (!s_.droplets.empty()) {
     fly(s_.droplets, setup_.splash.air, setup_.gravity, setup_.density, dt);
-    outflow_ += land(s_.droplets, w, setup_.origin, setup_.level, s_.falls);
-    for (std::size_t c = 0; c < s_.falls.size(); ++c) {
-      if (s_.falls[c] == 0) continue;
-      w.head[c] += s_.falls[c] / (w.cell * w.cell * setup_.gravity * dt);
-      s_.falls[c] = 0;
-    }
+    outflow_ += land(s_.droplets, w, setup_.origin, setup_.level);
   }
   outflow_ += w.step(s_.under, dt);
   if (setup_.splash.on)

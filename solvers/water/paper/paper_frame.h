@@ -17,7 +17,6 @@ struct PaperScratch {
   std::vector<FloatState> floats;
   std::vector<std::vector<Vec3>> places;  ///< of floats
   std::vector<Droplet> droplets;
-  std::vector<double> falls;
   std::uint64_t next_id = 1;
 };
 

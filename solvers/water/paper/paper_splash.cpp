@@ -15,12 +15,24 @@ constexpr double k_pi = std::numbers::pi;
 constexpr double k_smallest_share = 0.1, k_largest_share = 0.4;  ///< of a cell, where the setup says no sizes [1]
 /// A throw leaves at least so much of a column [1].
 constexpr double k_left = 0.5;
-/// Under bodies nothing flies: so much of a column has to be free [1].
-constexpr double k_free = 0.5;
 /// Of the energy in a column's pipes, that a step's droplets may take [1].
 constexpr double k_paid = 0.5;
 constexpr double k_no_droplet = 1e-12;  ///< m3
 constexpr int k_most_of_cell = 64;
+
+/// Of the free columns of three by three, so that ripples of the grid's own throw nothing [m/s].
+double mean_rise(const PipeWater& w, const UnderBodies& under, std::size_t c) {
+  const int i = static_cast<int>(c % at(w.nx)), k = static_cast<int>(c / at(w.nx));
+  double sum = 0;
+  int count = 0;
+  for (int z = std::max(0, k - 1); z <= std::min(w.nz - 1, k + 1); ++z)
+    for (int x = std::max(0, i - 1); x <= std::min(w.nx - 1, i + 1); ++x) {
+      if (under.of(w.of(x, z)) >= 0) continue;
+      sum += w.rise[w.of(x, z)];
+      ++count;
+    }
+  return sum / count;
+}
 
 }  // namespace
 
@@ -31,9 +43,9 @@ int throw_droplets(PipeWater& w, const UnderBodies& under, const PaperSplash& sp
   const double smallest = splash.smallest > 0 ? splash.smallest : k_smallest_share * w.cell;
   const double largest = splash.largest > 0 ? splash.largest : k_largest_share * w.cell;
   for (std::size_t c = 0; c < w.depth.size(); ++c) {
-    const double rise = w.rise[c];
+    if (under.of(c) >= 0 || !(w.rise[c] > splash.threshold)) continue;  // in a body depth is no height
+    const double rise = mean_rise(w, under, c);
     if (!(rise > splash.threshold)) continue;
-    if (const int n = under.of(c); n >= 0 && under.cells()[at(n)].free < k_free) continue;
     const RandomKey key{when.seed, 0x9a9e, when.frame, mix64(when.step) ^ c};
     const double speed = std::min(rise, splash.fastest);
     const Vec2 along = w.velocity(c);
@@ -71,8 +83,7 @@ int throw_droplets(PipeWater& w, const UnderBodies& under, const PaperSplash& sp
   return static_cast<int>(droplets.size() - before);
 }
 
-double land(std::vector<Droplet>& droplets, PipeWater& w, const Vec2& origin, double level_outside,
-            std::vector<double>& falls) {
+double land(std::vector<Droplet>& droplets, PipeWater& w, const Vec2& origin, double level_outside) {
   const double area = w.cell * w.cell;
   double outside = 0;
   std::size_t kept = 0;
@@ -93,7 +104,6 @@ double land(std::vector<Droplet>& droplets, PipeWater& w, const Vec2& origin, do
       continue;
     }
     w.depth[c] += d.volume / area;
-    falls[c] -= d.volume * d.velocity.y();
   }
   droplets.resize(kept);
   return outside;

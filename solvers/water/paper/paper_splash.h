@@ -1,7 +1,6 @@
 // Droplets: thrown up where a column rises faster than a threshold (O'Brien and Hodgins 1995), flying with the drag of
-// the air, given back where they land: their volume to the column, their fall as a pressure on it. Their energy is
-// taken from the pipes of their column, and no more than half of that; what they move along is given to nobody. They
-// pass through bodies.
+// the air, given back where they land. Their energy is taken from the pipes of their column, and no more than half of
+// that; their momentum is lost where they land. They pass through bodies.
 #pragma once
 
 #include "baker/core/random.h"
@@ -18,9 +17,7 @@ struct PaperThrow {
 int throw_droplets(PipeWater& water, const UnderBodies& under, const PaperSplash& splash, const PaperThrow& when,
                    double dt, const Vec2& origin, std::uint64_t& next_id, std::vector<Droplet>& droplets);
 
-/// Gives back what has come down, and takes it away. `falls`: of each cell, volume by speed [m4/s], added to. Returns
-/// the volume that came down outside [m3].
-double land(std::vector<Droplet>& droplets, PipeWater& water, const Vec2& origin, double level_outside,
-            std::vector<double>& falls);
+/// Gives back what has come down, and takes it away. Returns the volume that came down outside [m3].
+double land(std::vector<Droplet>& droplets, PipeWater& water, const Vec2& origin, double level_outside);
 
 }  // namespace ft::inline solvers

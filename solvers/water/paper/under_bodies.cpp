@@ -86,7 +86,7 @@ void UnderBodies::find(const ColumnsMet& water, std::span<const BodySurface> bod
         }
         if (static_cast<int>(spans_.size()) == begin) continue;
         of_[c] = static_cast<int>(cells_.size());
-        cells_.push_back({c, begin, static_cast<int>(spans_.size()), 1});
+        cells_.push_back({c, begin, static_cast<int>(spans_.size())});
       }
   }
 }
@@ -126,19 +126,6 @@ double UnderBodies::work(int cell, double head) const {
     taken += 0.5 * (b * b - t * t);
   }
   return head * holds(cell, head, true) - 0.5 * open * open + (1 - softness_) * taken / k_columns_a_cell;
-}
-
-void UnderBodies::find_free(std::span<const double> head) {
-  for (Cell& cell : cells_) {
-    int covered = 0, last = -1;
-    for (int n = cell.begin; n < cell.end; ++n) {
-      const ColumnSpan& span = spans_[at(n)];
-      if (span.column == last || !(span.bottom < head[cell.c])) continue;
-      last = span.column;
-      ++covered;
-    }
-    cell.free = 1 - static_cast<double>(covered) / k_columns_a_cell;
-  }
 }
 
 void UnderBodies::forces(std::span<const double> head, double weight, const double* level, int only,

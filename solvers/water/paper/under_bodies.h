@@ -29,7 +29,6 @@ class UnderBodies {
   struct Cell {
     std::size_t c = 0;
     int begin = 0, end = 0;  ///< spans
-    double free = 1;         ///< share of its columns without a body below its head [1]
   };
 
   /// Which columns are in bodies. Bodies wholly above `ceiling` [m] are nowhere.
@@ -44,8 +43,6 @@ class UnderBodies {
   double head_of(int cell, double depth);
   /// Integral of head over depth, from an empty cell to a head [m2].
   double work(int cell, double head) const;
-  /// Notes which cells are free at these heads.
-  void find_free(std::span<const double> head);
 
   /// On each body [N], torques about the world's origin; with `level` in place of all heads if given.
   void forces(std::span<const double> head, double weight, const double* level, int only, std::span<Wrench> out) const;

@@ -10,6 +10,7 @@
 
 #include "baker/core/state.h"
 #include "solvers/water/float_motion.h"
+#include "solvers/water/shallow/flow.h"
 #include "solvers/water/shallow/shallow_setup.h"
 
 namespace ft::inline solvers {
