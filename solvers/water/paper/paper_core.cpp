@@ -35,11 +35,12 @@ class PaperCore final : public WaterCore {
   }
   WaterLedger ledger(const State& state) const override { return solver_.ledger(state); }
   void surface(const State& state, WaterSurface& out) const override {
-    out.height = solver_.depths(state);
-    out.wet.resize(out.height.size());
-    for (std::size_t c = 0; c < out.height.size(); ++c) {
-      out.wet[c] = out.height[c] > k_film ? 1 : 0;
-      out.height[c] = solver_.bed(c) + (out.wet[c] != 0 ? out.height[c] : 0);
+    out.height = solver_.tops(state);
+    const std::vector<double> depth = solver_.depths(state);
+    out.wet.resize(depth.size());
+    for (std::size_t c = 0; c < depth.size(); ++c) {
+      out.wet[c] = depth[c] > k_film ? 1 : 0;
+      if (out.wet[c] == 0) out.height[c] = solver_.bed(c);
     }
   }
   std::vector<Droplet> droplets(const State& state) const override { return solver_.droplets(state); }

@@ -106,6 +106,16 @@ void PaperFrame::step(double dt, std::uint64_t number) {
                                      s_.next_id, s_.droplets);
 }
 
+std::vector<double> PaperFrame::tops() const {
+  std::vector<double> out = s_.water.head;
+  const auto cells = s_.under.cells();
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const std::size_t c = cells[n].c;
+    if (s_.under.covered(static_cast<int>(n), out[c])) out[c] = s_.water.bed[c] + s_.water.depth[c];
+  }
+  return out;
+}
+
 double PaperFrame::potential() const {
   const PipeWater& w = s_.water;
   double sum = 0;

@@ -34,6 +34,8 @@ class PaperFrame {
   void go();
   WaterReport report() const;
   double outflow() const { return outflow_; }
+  /// Of each cell: the water's top, under bodies and above them [m].
+  std::vector<double> tops() const;
   /// Of the columns, by density and gravity [m4].
   double potential() const;
 

@@ -48,12 +48,15 @@ State PaperSolver::initial_state() const {
   scratch_->floats = scratch.floats;
   PipeWater& w = scratch.water;
   const std::vector<double> head = w.head;
-  PaperFrame(setup_, floats_, scratch, 1, 0).meet(0);
+  PaperFrame frame(setup_, floats_, scratch, 1, 0);
+  frame.meet(0);
   const auto cells = scratch.under.cells();
   for (std::size_t n = 0; n < cells.size(); ++n) {
     double& depth = w.depth[cells[n].c];
     if (depth > 0) depth = std::clamp(scratch.under.holds(static_cast<int>(n), head[cells[n].c], true), 0.0, depth);
   }
+  frame.meet(0);
+  state.set("tops", frame.tops());
   state.set("depth", std::move(w.depth));
   for (std::size_t way = 0; way < k_pipes; ++way) state.set(k_blocks[way], std::move(w.carries[way]));
   state.set("floats", std::move(floats));
@@ -84,6 +87,7 @@ WaterReport PaperSolver::advance_frame(State& state, double frame_time, std::spa
   if (account[3] == 0) account[0] += frame.make_room();
   frame.go();
   WaterReport report = frame.report();
+  state.set("tops", frame.tops());
   report.potential -= setup_.density * setup_.gravity * still_;
 
   account[0] += frame.outflow();
@@ -104,6 +108,10 @@ WaterReport PaperSolver::advance_frame(State& state, double frame_time, std::spa
 
 std::vector<double> PaperSolver::depths(const State& state) const {
   return *state.find("depth");
+}
+
+std::vector<double> PaperSolver::tops(const State& state) const {
+  return *state.find("tops");
 }
 
 double PaperSolver::bed(std::size_t cell) const {

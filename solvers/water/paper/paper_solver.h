@@ -18,8 +18,9 @@ namespace ft::inline solvers {
 
 struct PaperScratch;
 
-/// Blocks of its states: "depth" of cells, "pipes_x", "pipes_z", "pipes_xz", "pipes_zx" of cells (pipes.h), "floats"
-/// (14 numbers a body), "droplets" (8 each), "account" (outflow [m3], next id, frames, whether it has begun).
+/// Blocks of its states: "depth" of cells, "pipes_x", "pipes_z", "pipes_xz", "pipes_zx" of cells (pipes.h), "tops" of
+/// cells, "floats" (14 numbers a body), "droplets" (8 each), "account" (outflow [m3], next id, frames, whether it has
+/// begun).
 class PaperSolver {
  public:
   /// Refuses, by a usage error that says all, what check_paper_setup() finds.
@@ -36,7 +37,9 @@ class PaperSolver {
   WaterReport advance_frame(State& state, double frame_time, std::span<const DrivenBody> driven = {});
 
   std::vector<double> depths(const State& state) const;  ///< of each cell, x fastest [m]
-  double bed(std::size_t cell) const;                    ///< m
+  /// Height of the water's top: in open water its surface, under a body what reaches up to it [m].
+  std::vector<double> tops(const State& state) const;
+  double bed(std::size_t cell) const;  ///< m
   std::vector<Droplet> droplets(const State& state) const;
   std::vector<RigidMotion> floats(const State& state) const;
   WaterLedger ledger(const State& state) const;

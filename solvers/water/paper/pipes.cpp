@@ -18,7 +18,7 @@ constexpr double k_straight = 2.0 / 3, k_corner = 1.0 / 6;
 /// Pipes are closed where less stands above their sill [m].
 constexpr double k_closed = 1e-7;
 /// A film has no speed of its own [m].
-constexpr double k_film = 1e-4;
+constexpr double k_film = 1e-3;
 
 }  // namespace
 

@@ -117,6 +117,18 @@ double UnderBodies::head_of(int cell, double depth) {
   return height + (depth - held) / slope;
 }
 
+bool UnderBodies::covered(int cell, double head) const {
+  const Cell& own = cells_[at(cell)];
+  int count = 0, last = -1;
+  for (int n = own.begin; n < own.end; ++n) {
+    const ColumnSpan& span = spans_[at(n)];
+    if (!(span.bottom < head && head <= span.top) || span.column == last) continue;
+    last = span.column;
+    ++count;
+  }
+  return count == k_columns_a_cell;
+}
+
 double UnderBodies::work(int cell, double head) const {
   const Cell& own = cells_[at(cell)];
   const double open = head - water_.bed[own.c];

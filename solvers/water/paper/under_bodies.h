@@ -41,6 +41,8 @@ class UnderBodies {
   double holds(int cell, double head, bool soft) const;
   /// The head at which a cell holds so much [m].
   double head_of(int cell, double depth);
+  /// Whether bodies stand on all of a cell's water at a head, none of it open.
+  bool covered(int cell, double head) const;
   /// Integral of head over depth, from an empty cell to a head [m2].
   double work(int cell, double head) const;
 
