@@ -1,4 +1,4 @@
-// What both kinds of water share: who is in it, what flies out of it, and the account of where all the water is.
+// What all kinds of water share: who is in it, what flies out of it, and the account of where all the water is.
 // World axes: y is up, water lies in x and z.
 #pragma once
 
@@ -11,6 +11,9 @@
 #include "baker/core/rigid.h"
 
 namespace ft::inline solvers {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// A body whose motion is known: its vertices go in straight lines from the frame's start to its end.
 struct DrivenBody {
@@ -25,6 +28,12 @@ struct FloatingBody {
   std::vector<Triangle> triangles;
   RigidMass mass;
   double drag = 0.47;  ///< coefficient on the area that faces the flow [1]; 0.47 ball, about 1 box
+};
+
+/// A body that floats, and where it starts.
+struct PlacedFloat {
+  FloatingBody body;
+  RigidMotion start;
 };
 
 /// Water that flies.

@@ -1,5 +1,5 @@
 // What all models of water have in common: a rectangle of columns over x and z, in which bodies go and float, and
-// droplets that fly above it. Each keeps its own numbers in the blocks of a State; see shallow/ and pond/.
+// droplets that fly above it. Each keeps its own numbers in the blocks of a State; see shallow/, pond/ and paper/.
 #pragma once
 
 #include <memory>

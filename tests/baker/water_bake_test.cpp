@@ -1,4 +1,4 @@
-// [water.NAME] from the shot file to its caches: both models have the same bytes with any number of threads and after
+// [water.NAME] from the shot file to its caches: all models have the same bytes with any number of threads and after
 // interruptions, what floats goes where the water takes it, and what makes no sense is refused with its place.
 #include <gtest/gtest.h>
 
@@ -25,6 +25,10 @@ constexpr const char* k_pond =
     "[water.pond]\nposition = [0, 0, 0]\nsize = [4, 0, 4]\ndepth = 2\ncell = 0.125\nfloats = [\"float*\"]\n";
 constexpr const char* k_puddle =
     "[water.puddle]\nposition = [0, -0.2, 0]\nsize = [1, 0, 1]\ndepth = 0.02\ncell = 0.05\nmeets = [\"stamp\"]\n";
+
+constexpr const char* k_paper =
+    "[water.ripples]\nmodel = \"paper\"\nposition = [0, 0, 0]\nsize = [3, 0, 3]\ndepth = 0.6\ncell = 0.1\n"
+    "floats = [\"float*\"]\n";
 
 class WaterBakeTest : public testing::Test {
  protected:
@@ -84,6 +88,19 @@ TEST_F(WaterBakeTest, What_floats_goes_where_the_water_takes_it_and_no_water_is_
   const auto judged = judge_caches(folder_ / "out");
   ASSERT_TRUE(judged) << judged.error().text();
   for (const FrameReport& frame : judged->frames) EXPECT_TRUE(frame.finite);
+}
+
+TEST_F(WaterBakeTest, The_water_of_the_paper_is_baked_where_it_is_named_and_says_what_it_gets_wrong) {
+  write_shot(k_paper, 8);
+  const auto plan = plan_shot_in(folder_.path());
+  ASSERT_TRUE(plan) << plan.error().text();
+  std::string notes;
+  for (const std::string& note : plan->notes) notes += note + "\n";
+  EXPECT_NE(notes.find("carries no momentum along"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("too fast in the paper's water of 0.6 m"), std::string::npos) << notes;
+  expect_threads_and_interruptions_change_no_byte(folder_.path(), 5);
+  for (const char* file : {"ripples.abc", "ripples_droplets.abc", "float_ball.abc"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / file)) << file;
 }
 
 TEST_F(WaterBakeTest, Droplets_of_two_bakes_are_compared_by_their_ids) {
@@ -182,6 +199,8 @@ TEST(WaterModel, Depth_and_size_advise_one) {
   EXPECT_NE(doubt_of_model("shallow", advise_water(5, 20, 10, false), 5), "");
   EXPECT_NE(doubt_of_model("pond", advise_water(0.02, 2, 3, false), 0.02), "");
   EXPECT_EQ(doubt_of_model("pond", advise_water(5, 20, 10, false), 5), "");
+  EXPECT_NE(doubt_of_model("paper", advise_water(5, 20, 10, false), 5), "");
+  EXPECT_GT(limits_of_model("paper", 2).size(), limits_of_model("shallow", 2).size());
 }
 
 TEST(WaterBed, Is_the_uppermost_surface_under_each_cell) {

@@ -12,6 +12,7 @@
 #include "io/shot/mesh_file.h"
 #include "io/shot/patterns.h"
 #include "io/shot/words.h"
+#include "solvers/water/paper/paper_core.h"
 #include "solvers/water/pond/pond_core.h"
 #include "solvers/water/shallow/shallow_core.h"
 
@@ -22,6 +23,9 @@ namespace {
 constexpr double k_cells = 256;
 /// And no smaller than this [m].
 constexpr double k_smallest_cell = 0.005;
+
+/// Of water, kinematic [m2/s].
+constexpr double k_viscosity = 1e-6;
 
 /// Of the whole rectangle: cells are square and an even number, so that it may grow by a cell or two.
 WaterGrid grid_of(const WaterSpec& spec) {
@@ -76,6 +80,24 @@ ShallowSetup shallow_setup(const Shot& shot, const WaterSpec& spec, const WaterG
   out.seed = static_cast<std::uint64_t>(spec.seed);
   out.splash.on = spec.splash > 0;
   out.splash.share = std::min(1.0, out.splash.share * spec.splash);
+  for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start});
+  return out;
+}
+
+PaperSetup paper_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, std::vector<double> bed,
+                       Floats floats) {
+  PaperSetup out;
+  out.name = spec.name;
+  out.origin = grid.origin, out.cell = grid.cell, out.nx = grid.nx, out.nz = grid.nz;
+  out.bed = bed.empty() ? std::vector<double>(grid.count(), spec.position.y() - spec.depth) : std::move(bed);
+  out.level = spec.position.y();
+  out.edges.fill(spec.edges == "wall" ? PaperEdge::k_wall : PaperEdge::k_open);
+  if (spec.edges == "drain") out.depth = depths_that_stay(grid, out.bed, out.level);
+  out.gravity = shot.solver.gravity.norm();
+  out.manning = spec.roughness, out.viscosity = k_viscosity;
+  out.seed = static_cast<std::uint64_t>(spec.seed);
+  out.splash.on = spec.splash > 0;
+  if (spec.splash > 0) out.splash.threshold /= spec.splash;
   for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start});
   return out;
 }
@@ -154,24 +176,17 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   group->model = spec.model.empty() ? advice.model : spec.model;
   if (spec.model.empty()) note(fmt::format("model = \"{}\": {}", advice.model, advice.reason));
   if (const std::string doubt = doubt_of_model(group->model, advice, depth); !doubt.empty()) note(doubt);
-  if (group->model == "pond")
-    note("its waves are linear and do not break, its ground is even, and drag of bodies pushes no water back");
+  for (const std::string& limit : limits_of_model(group->model, scene.floats.size())) note(limit);
   if (group->model == "pond" && spec.roughness != WaterSpec().roughness)
     note("roughness is not used: it is of the ground under shallow water");
-  if (group->model == "shallow" && spec.cavity != WaterSpec().cavity)
+  if (group->model != "pond" && spec.cavity != WaterSpec().cavity)
     note("cavity is not used: it is of cavities behind what dives into a pond");
-  if (group->model == "shallow" && scene.floats.size() > 1) note("what floats in it does not meet one another");
-  if (group->model == "shallow")
-    note("water in whose place a body stands in the first frame is taken away, and booked as outflow");
-  if (group->model == "shallow")
-    note(
-        "bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn "
-        "by lot");
   if (shot.preroll > 0) note("stands still during the pre-roll");
 
-  auto core = group->model == "shallow"
-                  ? shallow_core(shallow_setup(shot, spec, grid, std::move(bed), std::move(bodies)))
-                  : pond_core(pond_setup(shot, spec, grid, depth, std::move(bodies)));
+  auto core = group->model == "pond" ? pond_core(pond_setup(shot, spec, grid, depth, std::move(bodies)))
+              : group->model == "paper"
+                  ? paper_core(paper_setup(shot, spec, grid, std::move(bed), std::move(bodies)))
+                  : shallow_core(shallow_setup(shot, spec, grid, std::move(bed), std::move(bodies)));
   if (!core) return place(core.error());
   group->grid = grid;
   group->depth = depth;
@@ -203,10 +218,13 @@ Result<std::unique_ptr<Solver>> WaterGroup::make_solver() {
 }
 
 std::vector<std::string> WaterGroup::lines(const BakePlan& plan) const {
-  std::vector<std::string> out{
-      fmt::format("water \"{}\", {}: {} x {} cells of {:.3g} m, {:.3g} m deep at most, {:.4g} m3; through it go {}",
-                  outputs[0].name(), model == "pond" ? "a pond" : "shallow", grid.nx, grid.nz, grid.cell, depth, volume,
-                  meets.empty() ? std::string("no bodies") : met_names(plan))};
+  std::vector<std::string> out{fmt::format(
+      "water \"{}\", {}: {} x {} cells of {:.3g} m, {:.3g} m deep at most, {:.4g} m3; through it go {}",
+      outputs[0].name(),
+      model == "pond"    ? "a pond"
+      : model == "paper" ? "the paper's"
+                         : "shallow",
+      grid.nx, grid.nz, grid.cell, depth, volume, meets.empty() ? std::string("no bodies") : met_names(plan))};
   out.push_back(fmt::format("  about {:.0f} MB of memory, and {:.2g} s of one core for a calm frame", cost.bytes / 1e6,
                             cost.seconds));
   std::vector<std::string> moved;

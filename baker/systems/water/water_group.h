@@ -13,7 +13,7 @@ class WaterGroup final : public DrawnGroup {
   using DrawnGroup::DrawnGroup;
 
   std::unique_ptr<WaterSolver> solver;  ///< until make_solver()
-  std::string model;                    ///< "shallow" or "pond"
+  std::string model;                    ///< "shallow", "pond" or "paper"
   double depth = 0;                     ///< of still water at its deepest [m]
   double volume = 0;                    ///< m3
   WaterCost cost;                       ///< of a frame

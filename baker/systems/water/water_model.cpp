@@ -42,12 +42,35 @@ WaterAdvice advise_water(double depth, double along, double across, bool has_bed
 }
 
 std::string doubt_of_model(const std::string& model, const WaterAdvice& advice, double depth) {
-  if (model == "shallow" && advice.too_fast >= k_most_fast)
-    return fmt::format("waves of {:.2g} m are {:.0f} % too fast in shallow water of {:.2g} m, and all have one speed",
-                       advice.wave, 100 * advice.too_fast, depth);
+  if (model != "pond" && advice.too_fast >= k_most_fast)
+    return fmt::format("waves of {:.2g} m are {:.0f} % too fast in {} of {:.2g} m, and all have one speed", advice.wave,
+                       100 * advice.too_fast, model == "paper" ? "the paper's water" : "shallow water", depth);
   if (model == "pond" && depth < k_puddle)
     return fmt::format("a pond never runs dry, and {:.3g} cm of water would", 100 * depth);
   return {};
+}
+
+std::vector<std::string> limits_of_model(const std::string& model, std::size_t floats) {
+  std::vector<std::string> out;
+  const auto note = [&](const char* text) { out.emplace_back(text); };
+  if (model == "pond") {
+    note("its waves are linear and do not break, its ground is even, and drag of bodies pushes no water back");
+    return out;
+  }
+  if (floats > 1) note("what floats in it does not meet one another");
+  note("water in whose place a body stands in the first frame is taken away, and booked as outflow");
+  note(
+      "bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn "
+      "by lot");
+  if (model != "paper") return out;
+  note(
+      "water carries no momentum along: a dam that breaks keeps 0.56 of its depth at its place, not 4/9, and its front "
+      "is less than half as fast; ground falls dry and is flooded, but run-up and bores are wrong");
+  note(
+      "bodies press on columns that give a little, drag of bodies pushes no water back, and the momentum of droplets "
+      "is "
+      "lost where they land");
+  return out;
 }
 
 }  // namespace ft::inline baker

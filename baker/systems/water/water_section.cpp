@@ -8,9 +8,10 @@ namespace {
 
 std::span<const ShotKey<WaterSpec>> water_keys() {
   static const ShotKey<WaterSpec> keys[] = {
-      {"model", &WaterSpec::model, 0, 0, "", "shallow pond", false, "type solver kind",
+      {"model", &WaterSpec::model, 0, 0, "", "shallow pond paper", false, "type solver kind",
        "`shallow`: puddles and shores, which become dry and wet; `pond`: deep water, where long waves are faster than "
-       "short ones. Without it the one that its depth and size advise, and a note says why"},
+       "short ones; `paper`: columns joined by pipes, after O'Brien and Hodgins (1995), for ripples, and wrong where "
+       "water rushes. Without it the one that its depth and size advise, and a note says why; never `paper`"},
       {"position", &WaterSpec::position, -1e4, 1e4, "m", "", true, "center centre place location level",
        "Middle of the still surface"},
       {"size", &WaterSpec::size, 0, 1e4, "m", "", true, "extents dimensions width",
@@ -18,14 +19,15 @@ std::span<const ShotKey<WaterSpec>> water_keys() {
       {"depth", &WaterSpec::depth, 0, 1e4, "m", "", false, "water_depth",
        "Of the still water over level ground; not where `bed` says it"},
       {"bed", &WaterSpec::bed, 0, 0, "", "", false, "ground terrain floor_mesh",
-       "Ground under shallow water, an OBJ in the world: its uppermost surface; where it is above the water it is dry"},
+       "Ground under `shallow` and `paper` water, an OBJ in the world: its uppermost surface; where it is above the "
+       "water it is dry"},
       {"cell", &WaterSpec::cell, 0, 100, "m", "", false, "cell_size resolution grid_size dx",
        "Of the grid: 0.01 a puddle with feet in it, 0.05 a pool; 0: chosen from size and depth"},
       {"edges", &WaterSpec::edges, 0, 0, "", "wall open drain", false, "boundary border sides",
-       "Of the rectangle: `wall` sends waves back, `open` lets them leave; `drain`, of shallow water: what can run off "
+       "Of the rectangle: `wall` sends waves back, `open` lets them leave; `drain`, over a bed: what can run off "
        "over the edge has run off before the shot, so that puddles are left"},
       {"roughness", &WaterSpec::roughness, 0, 0.2, "s/m^(1/3)", "", false, "manning friction",
-       "Of the ground under shallow water, Manning's: 0.010 glass, 0.013 concrete, 0.03 gravel"},
+       "Of the ground under `shallow` and `paper` water, Manning's: 0.010 glass, 0.013 concrete, 0.03 gravel"},
       {"splash", &WaterSpec::splash, 0, 4, "1", "", false, "spray droplets",
        "How much flies, by what theory says: 0 none, and no cache of it, 1 as it is, 2 a show"},
       {"cavity", &WaterSpec::cavity, 0, 10, "1", "", false, "dive_splash entry",
@@ -61,7 +63,8 @@ class WaterSection final : public SectionOf<WaterSpec> {
     if (!depth && !bed) fault(nullptr, "depth is missing, or the bed that says how deep it is");
     if (depth && bed) fault(depth, "depth does not go with bed, which says how deep it is");
     if (depth && !(own.depth > 0)) fault(depth, "depth is 0: there is no water");
-    if (bed && own.model == "pond") fault(bed, "bed is for shallow water; a pond is equally deep everywhere");
+    if (bed && own.model == "pond")
+      fault(bed, "bed is for shallow water and that of the paper; a pond is equally deep everywhere");
     if (const Member* edges = table->find("edges"); edges && own.edges == "drain" && !bed)
       fault(edges, "edges = \"drain\" leaves no water on level ground: it needs a bed that holds some back");
     if (const Member* roughness = table->find("roughness"); roughness && own.model == "pond")

@@ -11,11 +11,11 @@
 namespace ft::inline baker {
 
 struct WaterSpec final : SecondarySpec {
-  std::string model;             ///< "shallow" or "pond"; empty: as its depth and size advise
+  std::string model;             ///< "shallow", "pond" or "paper"; empty: as its depth and size advise
   Vec3 position = Vec3::Zero();  ///< middle of the still surface [m]
   Vec3 size = Vec3::Zero();      ///< along x and z [m]
   double depth = 0;              ///< of the still water over level ground [m]; 0: the bed says it
-  std::filesystem::path bed;     ///< .obj: ground under shallow water, in the world
+  std::filesystem::path bed;     ///< .obj: ground under the water, in the world; not of a pond
   double cell = 0;               ///< of the grid [m]; 0: chosen
   std::string edges = "wall";    ///< "wall", "open" or "drain", on all four sides
   double roughness = 0.012;      ///< of the bed, Manning's [s/m^(1/3)]

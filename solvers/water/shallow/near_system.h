@@ -6,12 +6,9 @@
 #include <array>
 #include <vector>
 
-#include "baker/core/types.h"
+#include "solvers/water/water_body.h"
 
 namespace ft::inline solvers {
-
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 struct NearSystem {
   /// Rows: neighbours at lower x, higher x, lower z, higher z; -1 where there is none. Lower ones come earlier.

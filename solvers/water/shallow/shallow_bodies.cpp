@@ -71,15 +71,16 @@ void ShallowFrame::step_bodies(double dt, double share1) {
     s_.near.find(p, s_.bodies, x, z, near_);
     for (std::size_t b = 0; b < models_.size(); ++b) {
       NearBody& body = s_.bodies[driven + b];
-      ShallowFloatWater water;
+      FloatSurroundings water;
       water.any = s_.near.level_around(driven + b, p, water.level);
       if (pass == 0) {
         const Box box = bounds(s_.float_places[b]);
         if (water.any) water.velocity = water_velocity(p, box, x, z);
-        const Vec3 through = s_.floats[b].motion.velocity - water.velocity, about = body.about;
-        const Vec3 drag = prepare_float(models_[b], s_.floats[b], s_.float_places[b], water, near_, dt, body);
-        body.about = about;
-        if (water.any) push_water(p, box, x, z, -dt * drag, setup_.density, 0.5 * through.norm());
+        const Vec3 through = s_.floats[b].motion.velocity - water.velocity;
+        const FloatStep free =
+            prepare_float(models_[b], s_.floats[b], s_.float_places[b], water, setup_.gravity, setup_.density, dt);
+        body.mass = free.mass, body.free = free.free;
+        if (water.any) push_water(p, box, x, z, -dt * free.drag, setup_.density, 0.5 * through.norm());
       }
       body.rest_force.setZero();
       if (!water.any) continue;
@@ -99,16 +100,14 @@ void ShallowFrame::step_bodies(double dt, double share1) {
     for (std::size_t b = 0; b < models_.size(); ++b) s_.bodies[driven + b].posed = s_.bodies[driven + b].velocity;
   }
   report_.near_cells = std::max(report_.near_cells, static_cast<int>(s_.near.cells().size()));
-  Box walls;
-  walls.include(Vec3(setup_.origin.x(), -1e300, setup_.origin.y()));
-  walls.include(Vec3(setup_.origin.x() + p.cell * s_.flow.nx, 1e300, setup_.origin.y() + p.cell * s_.flow.nz));
+  const Flow& f = s_.flow;
+  const GroundCells ground{setup_.origin.x(), setup_.origin.y(), f.cell, f.nx, f.nz, f.bed, f.of(0, 0), f.row};
   for (std::size_t b = 0; b < models_.size(); ++b) {
     const NearBody& body = s_.bodies[driven + b];
     RigidMotion& m = s_.floats[b].motion;
     std::vector<Vec3> places;
     float_positions(models_[b], m.pose, places);
-    const Vec6 v = keep_above(s_.flow, setup_.origin.x(), setup_.origin.y(), walls, places, m.pose.position, body.mass,
-                              body.velocity, dt);
+    const Vec6 v = keep_above(ground, places, m.pose.position, body.mass, body.velocity, dt);
     m.velocity = v.head<3>();
     m.spin = v.tail<3>();
     m.pose = moved(m.pose, v, dt);

@@ -35,8 +35,8 @@ double fastest_in(const std::vector<double>& speeds, int across, const CellBox& 
 
 }  // namespace
 
-ShallowFrame::ShallowFrame(const ShallowSetup& setup, std::span<const ShallowFloatModel> floats,
-                           ShallowScratch& scratch, double frame_time, std::uint64_t number)
+ShallowFrame::ShallowFrame(const ShallowSetup& setup, std::span<const FloatingHull> floats, ShallowScratch& scratch,
+                           double frame_time, std::uint64_t number)
     : setup_(setup),
       models_(floats),
       s_(scratch),
@@ -159,7 +159,7 @@ void ShallowFrame::go() {
     ++s_.step;
     ++report_.steps;
     if (s_.droplets.empty()) continue;
-    fly(s_.droplets, setup_.splash, setup_.gravity, setup_.density, p.dt);
+    fly(s_.droplets, {setup_.splash.air_density, setup_.splash.drag}, setup_.gravity, setup_.density, p.dt);
     outflow_ += land(s_.droplets, s_.flow, setup_.origin.x(), setup_.origin.y(), setup_.level);
     fill_ghosts(s_.flow, s_.flow.h, -1);
     fill_ghosts(s_.flow, s_.flow.u, 0);

@@ -8,7 +8,7 @@ namespace ft::inline solvers {
 
 class ShallowFrame {
  public:
-  ShallowFrame(const ShallowSetup& setup, std::span<const ShallowFloatModel> floats, ShallowScratch& scratch,
+  ShallowFrame(const ShallowSetup& setup, std::span<const FloatingHull> floats, ShallowScratch& scratch,
                double frame_time, std::uint64_t number);
   /// Takes away the water in whose place driven bodies stand at the frame's start; how much [m3].
   double make_room();
@@ -28,7 +28,7 @@ class ShallowFrame {
   void add_forces(double dt);
 
   const ShallowSetup& setup_;
-  std::span<const ShallowFloatModel> models_;
+  std::span<const FloatingHull> models_;
   ShallowScratch& s_;
   FlowLaws laws_;
   NearLaws near_;

@@ -1,9 +1,10 @@
 // What a frame of shallow water works with and forgets, and how its states are read. For shallow_*.cpp only.
 #pragma once
 
+#include "solvers/water/driven_near.h"
+#include "solvers/water/droplet_flight.h"
 #include "solvers/water/droplet_numbers.h"
-#include "solvers/water/shallow/driven_near.h"
-#include "solvers/water/shallow/float_motion.h"
+#include "solvers/water/float_motion.h"
 #include "solvers/water/shallow/patch.h"
 #include "solvers/water/shallow/shallow_solver.h"
 #include "solvers/water/shallow/splash.h"

@@ -6,38 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/water/body_columns.h"
+#include "solvers/water/float_checks.h"
 
 namespace ft::inline solvers {
 namespace {
 
 /// Whole-domain arrays of doubles: the flow's, what is kept of wet ground, and a patch as large as the domain.
 constexpr double k_arrays = 2 * 13 + 1;
-/// Columns in which two bodies are compared, along each side of where their boxes meet.
-constexpr int k_overlap_cells = 24;
-
-bool overlap(const std::vector<Vec3>& a, const std::vector<Triangle>& a_triangles, const std::vector<Vec3>& b,
-             const std::vector<Triangle>& b_triangles) {
-  const Box box_a = bounds(a), box_b = bounds(b);
-  if (!box_a.overlaps(box_b)) return false;
-  const Vec3 lo = box_a.lo.cwiseMax(box_b.lo), hi = box_a.hi.cwiseMin(box_b.hi);
-  const double size = std::max(hi.x() - lo.x(), hi.z() - lo.z());
-  if (!(size > 0)) return false;
-  const ColumnGrid grid{lo.x(), lo.z(), size / k_overlap_cells, k_overlap_cells, k_overlap_cells};
-  BodyColumns in_a, in_b;
-  const BodySurface surface_a{a_triangles, a}, surface_b{b_triangles, b};
-  const double ceiling = std::max(box_a.hi.y(), box_b.hi.y()) + 1;
-  in_a.find(grid, {&surface_a, 1}, ceiling);
-  in_b.find(grid, {&surface_b, 1}, ceiling);
-  for (std::size_t c = 0; c + 1 < in_a.start.size(); ++c)
-    for (int s = in_a.start[c]; s < in_a.start[c + 1]; ++s)
-      for (int t = in_b.start[c]; t < in_b.start[c + 1]; ++t) {
-        const ColumnSpan &p = in_a.spans[at(s)], &q = in_b.spans[at(t)];
-        if (p.column == q.column && p.bottom < q.top && q.bottom < p.top) return true;
-      }
-  return false;
-}
-
 }  // namespace
 
 double shallow_memory(int nx, int nz) {
@@ -81,35 +56,7 @@ Status check_shallow_setup(const ShallowSetup& s) {
       fault(
           fmt::format("no water: the bed, {} m at its lowest, is nowhere below the surface at {} m", lowest, s.level));
   }
-  std::vector<std::vector<Vec3>> placed;
-  for (const ShallowFloat& f : s.floats) {
-    std::vector<Vec3> x;
-    for (const Vec3& v : f.body.positions) x.push_back(f.start.pose * v);
-    placed.push_back(x);
-    const std::string& name = f.body.name;
-    bool indices = !f.body.triangles.empty();
-    for (const Triangle& t : f.body.triangles)
-      for (const int v : t) indices = indices && v >= 0 && at(v) < x.size();
-    if (!indices || !all_finite(x)) {
-      fault(fmt::format("\"{}\" has no triangles, or names a vertex that is not there", name));
-      placed.back().clear();
-      continue;
-    }
-    if (!(f.body.mass.mass > 0)) fault(fmt::format("\"{}\" weighs {} kg: must be above 0", name, f.body.mass.mass));
-    const Box box = bounds(x);
-    const double wide = s.cell * s.nx, deep = s.cell * s.nz, slack = 1e-9 * (wide + deep);
-    if (box.size().x() > wide + slack || box.size().z() > deep + slack)
-      fault(fmt::format("\"{}\" is {:.3g} x {:.3g} m, larger than the domain of {:.3g} x {:.3g} m", name,
-                        box.size().x(), box.size().z(), wide, deep));
-    else if (box.lo.x() < s.origin.x() - slack || box.lo.z() < s.origin.y() - slack ||
-             box.hi.x() > s.origin.x() + wide + slack || box.hi.z() > s.origin.y() + deep + slack)
-      fault(fmt::format("\"{}\" starts beyond the domain's edge", name));
-  }
-  for (std::size_t a = 0; a < placed.size(); ++a)
-    for (std::size_t b = a + 1; b < placed.size(); ++b)
-      if (!placed[a].empty() && !placed[b].empty() &&
-          overlap(placed[a], s.floats[a].body.triangles, placed[b], s.floats[b].body.triangles))
-        fault(fmt::format("\"{}\" and \"{}\" overlap at the start", s.floats[a].body.name, s.floats[b].body.name));
+  check_floats(s.floats, s.origin, s.cell * s.nx, s.cell * s.nz, faults);
   if (faults.empty()) return {};
   std::string all;
   for (const std::string& f : faults) all += (all.empty() ? "" : "; ") + f;

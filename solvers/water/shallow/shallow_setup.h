@@ -30,11 +30,7 @@ struct ShallowSplash {
   double drag = 0.47;          ///< coefficient of a droplet [1]; 0 flies as in a vacuum
 };
 
-/// A body and where it starts.
-struct ShallowFloat {
-  FloatingBody body;
-  RigidMotion start;
-};
+using ShallowFloat = PlacedFloat;
 
 struct ShallowSetup {
   std::string name = "water";

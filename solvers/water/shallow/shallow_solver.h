@@ -9,7 +9,8 @@
 #include <memory>
 
 #include "baker/core/state.h"
-#include "solvers/water/shallow/float_motion.h"
+#include "solvers/water/float_motion.h"
+#include "solvers/water/shallow/flow.h"
 #include "solvers/water/shallow/shallow_setup.h"
 
 namespace ft::inline solvers {
@@ -73,7 +74,7 @@ class ShallowSolver {
 
   ShallowSetup setup_;
   Flow model_;  ///< bed, sides and levels beyond open ones; its water is nobody's
-  std::vector<ShallowFloatModel> floats_;
+  std::vector<FloatingHull> floats_;
   std::unique_ptr<ShallowScratch> scratch_;
 };
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "baker/core/parallel.h"
-
 namespace ft::inline solvers {
 namespace {
 
@@ -17,7 +15,6 @@ constexpr double k_left = 0.5;
 /// Elevations of throws [rad], 25 to 70 degrees, and how far they scatter to both sides.
 constexpr double k_lowest = 25 * k_pi / 180, k_highest = 70 * k_pi / 180, k_scatter = 0.5;
 constexpr double k_covered = 0.5;
-constexpr std::size_t k_block = 256;
 /// A droplet that lands on a covered cell runs off to a free one, at most so many cells away.
 constexpr int k_run_off = 64;
 
@@ -78,20 +75,6 @@ void throw_droplets(Flow& f, const NearWater& near, const ShallowSplash& splash,
       }
     }
   }
-}
-
-void fly(std::vector<Droplet>& droplets, const ShallowSplash& splash, double gravity, double density, double dt) {
-  parallel_for(droplets.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      Droplet& d = droplets[n];
-      const double size = std::cbrt(6 / k_pi * d.volume);
-      // Drag of a ball: 3/4 (air / water) Cd |v| / size; the fall between is exact without it.
-      const double rate = 0.75 * splash.air_density / density * splash.drag / size * d.velocity.norm();
-      const Vec3 next = (d.velocity - dt * Vec3(0, gravity, 0)) / (1 + dt * rate);
-      d.place += 0.5 * dt * (d.velocity + next);
-      d.velocity = next;
-    }
-  });
 }
 
 double land(std::vector<Droplet>& droplets, Flow& f, double world_x, double world_z, double level_outside) {

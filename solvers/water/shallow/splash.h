@@ -19,9 +19,6 @@ void throw_droplets(Flow& flow, const NearWater& near, const ShallowSplash& spla
                     double world_x, double world_z, double pressure_speed, double dt, std::size_t most,
                     std::uint64_t& next_id, std::vector<Droplet>& droplets);
 
-/// Moves all on by dt.
-void fly(std::vector<Droplet>& droplets, const ShallowSplash& splash, double gravity, double density, double dt);
-
 /// Gives back to the flow what has come down on it, volume and momentum, and takes those away. Returns the volume that
 /// came down outside [m3].
 double land(std::vector<Droplet>& droplets, Flow& flow, double world_x, double world_z, double level_outside);

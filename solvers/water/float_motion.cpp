@@ -1,5 +1,5 @@
 // See float_motion.h.
-#include "solvers/water/shallow/float_motion.h"
+#include "solvers/water/float_motion.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -36,8 +36,8 @@ void write_float(const FloatState& s, std::span<double> n) {
   std::copy(std::begin(all), std::end(all), n.begin());
 }
 
-ShallowFloatModel float_model(const FloatingBody& body) {
-  ShallowFloatModel m{body, 0, 0};
+FloatingHull float_model(const FloatingBody& body) {
+  FloatingHull m{body, 0, 0};
   for (const Triangle& t : body.triangles)
     m.volume += body.positions[at(t[0])].dot(body.positions[at(t[1])].cross(body.positions[at(t[2])])) / 6;
   const double r = std::cbrt(std::max(0.0, m.volume) * 0.75 / std::numbers::pi);
@@ -45,7 +45,7 @@ ShallowFloatModel float_model(const FloatingBody& body) {
   return m;
 }
 
-void float_positions(const ShallowFloatModel& model, const RigidPose& pose, std::vector<Vec3>& positions) {
+void float_positions(const FloatingHull& model, const RigidPose& pose, std::vector<Vec3>& positions) {
   positions.resize(model.body.positions.size());
   const Mat3 r = pose.rotation.toRotationMatrix();
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = pose.position + r * model.body.positions[i];
@@ -60,8 +60,9 @@ RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt) {
   return out;
 }
 
-Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<const Vec3> positions,
-                   const ShallowFloatWater& water, const NearLaws& laws, double dt, NearBody& near) {
+FloatStep prepare_float(const FloatingHull& model, FloatState& state, std::span<const Vec3> positions,
+                        const FloatSurroundings& water, double gravity, double density, double dt) {
+  FloatStep out;
   RigidMotion& motion = state.motion;
   const RigidMass& m = model.body.mass;
   double under = 0, deep = 0;
@@ -72,39 +73,38 @@ Vec3 prepare_float(const ShallowFloatModel& model, FloatState& state, std::span<
     // Added mass comes with the water above the body, up to half the body's height of it.
     deep = smooth_step((water.level - box.hi.y()) / (0.5 * (box.hi.y() - box.lo.y())));
   }
-  const double added = k_added_mass * laws.density * model.volume * deep;
+  const double added = k_added_mass * density * model.volume * deep;
   motion.velocity *= (m.mass + state.added_mass) / (m.mass + added);
   state.added_mass = added;
   const Mat3 turn = motion.pose.rotation.toRotationMatrix();
   const Mat3 inertia = turn * m.inertia * turn.transpose();
-  near.mass.setZero();
-  near.mass.topLeftCorner<3, 3>() = (m.mass + added) * Mat3::Identity();
-  near.mass.bottomRightCorner<3, 3>() = inertia;
+  out.mass.topLeftCorner<3, 3>() = (m.mass + added) * Mat3::Identity();
+  out.mass.bottomRightCorner<3, 3>() = inertia;
 
-  Vec3 v = motion.velocity + dt * m.mass / (m.mass + added) * Vec3(0, -laws.gravity, 0);
+  Vec3 v = motion.velocity + dt * m.mass / (m.mass + added) * Vec3(0, -gravity, 0);
   Vec3 spin = motion.spin - dt * inertia.ldlt().solve(motion.spin.cross(inertia * motion.spin));
-  Vec3 drag = Vec3::Zero();
   const Vec3 through = motion.velocity - water.velocity;
   const double speed = through.norm();
   if (under > 0 && speed > 0 && model.body.drag > 0) {
     const double area = facing_area(positions, model.body.triangles, through / speed);
-    const double rate = 0.5 * laws.density * model.body.drag * area * under * speed / (m.mass + added);
+    const double rate = 0.5 * density * model.body.drag * area * under * speed / (m.mass + added);
     const Vec3 slowed = water.velocity + (v - water.velocity) / (1 + dt * rate);
-    drag = (m.mass + added) * (slowed - v) / dt;
+    out.drag = (m.mass + added) * (slowed - v) / dt;
     v = slowed;
   }
   if (under > 0) {
     const double largest = inertia.diagonal().maxCoeff();
-    spin /= 1 + dt * laws.density * model.spin_drag * under * motion.spin.norm() / largest;
+    spin /= 1 + dt * density * model.spin_drag * under * motion.spin.norm() / largest;
   }
-  near.free.head<3>() = v;
-  near.free.tail<3>() = spin;
-  near.about = motion.pose.position;
-  return drag;
+  out.free.head<3>() = v;
+  out.free.tail<3>() = spin;
+  return out;
 }
 
-Vec6 keep_above(const Flow& flow, double world_x, double world_z, const Box& walls, std::span<const Vec3> positions,
-                const Vec3& about, const Mat6& mass, const Vec6& velocity, double dt) {
+Vec6 keep_above(const GroundCells& ground, std::span<const Vec3> positions, const Vec3& about, const Mat6& mass,
+                const Vec6& velocity, double dt) {
+  const Vec3 least(ground.x, 0, ground.z);
+  const Vec3 most(ground.x + ground.cell * ground.nx, 0, ground.z + ground.cell * ground.nz);
   Vec6 v = velocity;
   const Mat6 inverse = mass.inverse();
   // Of the vertices that would be beyond a plane, the impulses that stop them, in turn.
@@ -132,14 +132,14 @@ Vec6 keep_above(const Flow& flow, double world_x, double world_z, const Box& wal
   };
   std::vector<Touch> touches;
   for (const Vec3& p : positions) {
-    const int i = std::clamp(static_cast<int>(std::floor((p.x() - world_x) / flow.cell)), 0, flow.nx - 1);
-    const int k = std::clamp(static_cast<int>(std::floor((p.z() - world_z) / flow.cell)), 0, flow.nz - 1);
+    const int i = std::clamp(static_cast<int>(std::floor((p.x() - ground.x) / ground.cell)), 0, ground.nx - 1);
+    const int k = std::clamp(static_cast<int>(std::floor((p.z() - ground.z) / ground.cell)), 0, ground.nz - 1);
     const Vec3 then = p + dt * (v.head<3>() + v.tail<3>().cross(p - about));
-    const double gap = p.y() - flow.bed[flow.of(i, k)];
+    const double gap = p.y() - ground.bed[ground.first + at(i) + ground.row * at(k)];
     if (gap + then.y() - p.y() < 0) touches.push_back({p, Vec3::UnitY(), gap, 0});
     for (const int axis : {0, 2}) {
-      if (then[axis] < walls.lo[axis] - 1e-9) touches.push_back({p, Vec3::Unit(axis), p[axis] - walls.lo[axis], 0});
-      if (then[axis] > walls.hi[axis] + 1e-9) touches.push_back({p, -Vec3::Unit(axis), walls.hi[axis] - p[axis], 0});
+      if (then[axis] < least[axis] - 1e-9) touches.push_back({p, Vec3::Unit(axis), p[axis] - least[axis], 0});
+      if (then[axis] > most[axis] + 1e-9) touches.push_back({p, -Vec3::Unit(axis), most[axis] - p[axis], 0});
     }
   }
   for (int sweep = 0; sweep < k_contact_sweeps; ++sweep)

@@ -1,5 +1,5 @@
 // See hydrostatics.h.
-#include "solvers/water/shallow/hydrostatics.h"
+#include "solvers/water/hydrostatics.h"
 
 #include <array>
 #include <cmath>

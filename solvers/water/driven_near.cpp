@@ -1,5 +1,5 @@
 // See driven_near.h.
-#include "solvers/water/shallow/driven_near.h"
+#include "solvers/water/driven_near.h"
 
 #include <algorithm>
 
