@@ -64,11 +64,15 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
   const Model& model = leaves_[leaf];
   place_leaf(model, m, s.rim);
   find_contacts(bodies_, setup_.grounds, model.shape, step, m.x, s);
-  const std::optional<WaterPatch> water = waters_.under(m.x, model.floating.reach, step.slice, step.to, floats(m));
-  const double depth = water ? float_depth(model.floating, *water, floating(m), model.margin) : 0;
-  double gap = std::numeric_limits<double>::infinity();  // to the water
-  if (water)
-    for (const Vec3& p : s.rim) gap = std::min(gap, p.y() - water->height_at(m.x, p) - model.margin);
+  // The water at both ends of the step: how the leaf is on it now, and what it meets.
+  const auto now = waters_.under(m.x, model.floating.reach, step.slice, step.from, floats(m)),
+             water = waters_.under(m.x, model.floating.reach, step.slice, step.to, floats(m));
+  double depth = 0, gap = 0;
+  if (now) {
+    depth = float_depth(model.floating, *now, floating(m), model.margin);
+    gap = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : s.rim) gap = std::min(gap, p.y() - now->height_at(m.x, p) - model.margin);
+  }
   m.afloat = water && floats(m) ? next_afloat(m.afloat, depth, gap, false) : Afloat::k_no;
   if (water && !floats(m)) meet_water(*water, step, m.x, s);
 
@@ -97,7 +101,7 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
     if (floats(m)) {
       std::erase_if(s.contacts, [](const LeafContact& c) { return c.met < 0; });
       FloatingMotion motion = floating(m);
-      enter_water(model.plate, model.floating, *water, motion);
+      enter_water(model.plate, model.floating, *now, motion);
       m.v = motion.velocity, m.spin = motion.spin;
     }
   }
@@ -108,9 +112,7 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
   PlateAir past = air;  // what bends it
   if (floats(m)) {
     FloatingMotion motion = floating(m);
-    const auto before = waters_.under(m.x, model.floating.reach, step.slice, step.from, true);
-    advance_float(model.plate, model.floating, m.afloat, setup_.gravity, air.velocity, *before, *water,
-                  float_depth(model.floating, *before, motion, model.margin), h, motion);
+    advance_float(model.plate, model.floating, m.afloat, setup_.gravity, air.velocity, *now, *water, depth, h, motion);
     flown.v = motion.velocity, flown.spin = motion.spin;
     past = {m.v, Vec3::Zero()};
     lying = 0, touch.lies = false;

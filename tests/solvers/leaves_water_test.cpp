@@ -56,7 +56,7 @@ LeafWater still_water(double side = 4, double level = 0) {
 LeafWater waves(double amplitude, double length, double side) {
   const double k = 2 * pi / length, w = std::sqrt(k_gravity * k);
   return water_of(
-      side, 160, [=](double x, double, double t) { return amplitude * std::cos(k * x - w * t); },
+      side, 80, [=](double x, double, double t) { return amplitude * std::cos(k * x - w * t); },
       [=](double x, double, double t) { return Vec3(amplitude * w * std::cos(k * x - w * t), 0, 0); });
 }
 
@@ -156,13 +156,13 @@ TEST(LeavesOnWater, They_ride_waves_that_are_longer_than_they_are) {
     EXPECT_LT(worst, 0.3e-3 + 0.03 * amplitude) << length;
     EXPECT_LT(worst_lean, 0.15 * amplitude * k) << length;
     // Round and round with the water: no farther than its own path and what drifts with it.
-    EXPECT_LT(farthest, 2 * amplitude + 3 * amplitude * amplitude * k * w) << length;
+    EXPECT_LT(farthest, 4 * amplitude) << length;
   }
 }
 
 TEST(LeavesOnWater, Wind_drives_them_where_drag_of_water_balances_drag_of_air) {
   for (const double wind : {1.0, 3.0, 6.0}) {
-    LeavesSetup setup = many_leaves(4, 0.02, 0.3, 0);
+    LeavesSetup setup = many_leaves(4, 2e-3, 0.3, 0);
     setup.wind = steady_wind(Vec3(wind, 0, 0));
     setup.waters.push_back(still_water(40));
     const auto solver = solver_of(setup);
@@ -243,7 +243,8 @@ TEST(LeavesOnWater, A_surface_whose_vertices_are_no_grid_is_refused) {
   setup.waters.push_back({"blob", obstacle_of("blob", box_surface(Vec3(1, 1, 1)), Vec3::Zero()).trajectory});
   const auto solver = LeavesSolver::make(setup);
   ASSERT_FALSE(solver);
-  EXPECT_NE(solver.error().text().find("\"blob\" is no surface to float on"), std::string::npos) << solver.error().text();
+  EXPECT_NE(solver.error().text().find("\"blob\" is no surface to float on"), std::string::npos)
+      << solver.error().text();
 }
 
 }  // namespace
