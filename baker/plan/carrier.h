@@ -18,6 +18,7 @@ struct Carrier {
   std::string caches;                ///< name of its system, "robe"
   std::shared_ptr<const Mesh> mesh;  ///< as its file has it, placed; its bind pose
   bool sheet = false;
+  bool liquid = false;
   std::size_t primary = 0;  ///< whom it is on, into BakePlan::primaries
 };
 

@@ -20,7 +20,8 @@ Result<std::vector<char>> meets_of(std::span<const std::string> patterns, const 
   const auto met = indices_like(patterns, names, "meets", "primary");
   if (!met) return met.error();
   std::vector<char> out(primaries.size(), 0);
-  for (const int p : *met) out[at(p)] = 1;
+  for (const int p : *met)  // a liquid is no body that patterns would mean
+    out[at(p)] = !primaries[at(p)].flow || std::ranges::find(patterns, names[at(p)]) != patterns.end() ? 1 : 0;
   for (std::size_t p = 0; p < names.size(); ++p)
     if (names[p] == own) out[p] = 1;
   return out;

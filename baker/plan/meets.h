@@ -11,7 +11,7 @@
 namespace ft::inline baker {
 
 /// Per primary: not 0 where one of the patterns of a secondary's `meets` names it; its own is always met. Error: a
-/// pattern that names none.
+/// pattern that names none. A liquid is met where it is named without `*` and `?`.
 Result<std::vector<char>> meets_of(std::span<const std::string> patterns, const std::string& own,
                                    std::span<const PrimaryPlan> primaries);
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/core/vertex_flow.h"
 #include "baker/plan/hybrid.h"
 #include "baker/plan/inputs.h"
 #include "baker/plan/primary_mass.h"
@@ -25,6 +26,7 @@ struct PrimaryPlan {
   std::string name;
   std::string caches;  ///< of a secondary that was baked in an earlier stage (carrier.h): the name of its system
   std::shared_ptr<const Trajectory> trajectory;
+  std::shared_ptr<const VertexFlow> flow;  ///< of a liquid, what its surface does; null: it is a body
   CharacterInfo info;
   TeleportScan scan;
   PrimaryMass mass;

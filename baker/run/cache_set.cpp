@@ -176,15 +176,22 @@ Status CacheSet::open(int last_kept) {
 }
 
 Status CacheSet::open_motion(std::size_t system, const CacheInfo& info, int keep_frames) {
-  motions_.emplace_back();
+  motions_.emplace_back(), flows_.emplace_back();
   if (plan_.is_last_stage() || sources_[system].garment < 0 || sources_[system].shape) return {};
   CacheInfo all = info;
   all.first_frame = begin();
   all.frame_count = plan_.shot().last_frame - begin() + 1;
-  auto writer = find_cache_format("pc2")->open_writer(BakeFolder{folder_}.motion(info.system), all, keep_frames);
-  if (!writer) return writer.error();
-  motions_.back() = std::move(*writer);
-  return {};
+  const auto record = [&](const std::filesystem::path& path, std::unique_ptr<CacheWriter>& out) -> Status {
+    auto writer = find_cache_format("pc2")->open_writer(path, all, keep_frames);
+    if (!writer) return writer.error();
+    out = std::move(*writer);
+    return {};
+  };
+  const BakeFolder folder{folder_};
+  if (const Status opened = record(folder.motion(info.system), motions_.back()); !opened) return opened;
+  const SystemKind* kind = find_system_kind(systems_[system].role);
+  if (!kind || !kind->is_liquid()) return {};
+  return record(folder.flow(info.system), flows_.back());
 }
 
 void CacheSet::positions_of(const Source& source, const State& state, std::span<Vec3> x) const {
@@ -238,6 +245,11 @@ Snapshot CacheSet::take(std::span<const State> states) const {
       solvers_[source.group]->system_frame(state, source.garment, frame);
     else
       frame.positions = converted<Vec3f, Vec3>(positions_of_mesh(i, state));
+    if (i < flows_.size() && flows_[i]) {
+      std::vector<Vec3> flow(frame.positions.size(), Vec3::Zero());
+      solvers_[source.group]->surface_flow(state, source.garment, flow);
+      frame.velocities = converted<Vec3f, Vec3>(flow);
+    }
   }
   return out;
 }
@@ -265,6 +277,10 @@ Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
     const std::vector<Vec3> x = converted<Vec3, Vec3f>(snapshot.systems[i].positions);
     if (motions_[i])
       if (const Status written = motions_[i]->write_frame(x, {}); !written) return written;
+    if (flows_[i])
+      if (const Status written = flows_[i]->write_frame(converted<Vec3, Vec3f>(snapshot.systems[i].velocities), {});
+          !written)
+        return written;
     if (!is_cached) continue;
     std::vector<Vec3> v;
     if (sources_[i].garment >= 0)
@@ -280,11 +296,12 @@ Status CacheSet::close() {
   for (auto& writers : writers_)
     for (auto& writer : writers)
       if (const Status closed = writer->close(); !closed) return closed;
-  for (auto& motion : motions_)
-    if (motion)
-      if (const Status closed = motion->close(); !closed) return closed;
+  for (auto* records : {&motions_, &flows_})
+    for (auto& record : *records)
+      if (record)
+        if (const Status closed = record->close(); !closed) return closed;
   writers_.clear();
-  motions_.clear();
+  motions_.clear(), flows_.clear();
   for (ManifestSystem& system : systems_)
     for (ManifestCache& cache : system.caches) {
       const auto content = hash_file(folder_ / cache.file);

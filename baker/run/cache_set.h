@@ -83,6 +83,7 @@ class CacheSet {
   std::vector<std::vector<std::unique_ptr<CacheWriter>>> writers_;
   /// Per system: of its motion in all frames, for later stages; null: none needs it.
   std::vector<std::unique_ptr<CacheWriter>> motions_;
+  std::vector<std::unique_ptr<CacheWriter>> flows_;  ///< and of liquids how they flow
 };
 
 }  // namespace ft::inline baker

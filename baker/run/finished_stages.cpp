@@ -29,7 +29,10 @@ Result<FinishedStages> read_finished_stages(const BakeFolder& folder) {
 void forget_stages(const BakeFolder& folder, const Manifest& manifest) {
   std::error_code ignored;
   std::filesystem::remove(folder.stages(), ignored);
-  for (const ManifestSystem& system : manifest.systems) std::filesystem::remove(folder.motion(system.name), ignored);
+  for (const ManifestSystem& system : manifest.systems) {
+    std::filesystem::remove(folder.motion(system.name), ignored);
+    std::filesystem::remove(folder.flow(system.name), ignored);
+  }
 }
 
 std::vector<FrameReport> merged(std::span<const FrameReport> earlier, std::span<const FrameReport> later) {

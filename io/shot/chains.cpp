@@ -102,6 +102,8 @@ void judge_chains(const Value& root, const Shot& shot, FaultList& faults) {
       const Place place = place_of_reference(root, own, carrier);
       if (const std::string_view why = carrier.section->why_no_carrier(); !why.empty())
         faults.add(place, fault + ": " + std::string(why));
+      if (carrier.section->is_liquid() && !own.section->floats())
+        faults.add(place, fault + " is a liquid, and " + std::string(own.kind()) + " does not float");
       if (!is_on) continue;
       if (own.section->needs_rigid_primary())
         faults.add(place, fault + " bends, and " + std::string(own.kind()) + " need a primary that is rigid");

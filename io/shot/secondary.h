@@ -74,6 +74,10 @@ class SecondarySection {
   virtual std::vector<std::string> solved_with(const SecondarySpec&) const { return {}; }
   /// Why no other secondary can be on it or meet it; empty: they can.
   virtual std::string_view why_no_carrier() const { return {}; }
+  /// Whether its surface is a liquid's: no body, and only for what floats.
+  virtual bool is_liquid() const { return false; }
+  /// Whether it floats on liquids that it meets, or is on.
+  virtual bool floats() const { return false; }
   /// Whether its primary has to be one rigid body.
   virtual bool needs_rigid_primary() const { return false; }
   /// Whether it needs the joints of its primary, where that has some.

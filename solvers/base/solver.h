@@ -2,6 +2,7 @@
 // in the solver; everything that changes lives in State, so that a checkpoint is save(State) and nothing else.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -125,6 +126,11 @@ class Solver {
   virtual const Mesh& system_mesh(int system) const;
   /// Positions in the vertex order of system_mesh().
   virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const;
+
+  /// Of the surface of a liquid: how that flows at the vertices, for what floats on it [m/s]. Zero unless it says so.
+  virtual void surface_flow(const State& /*state*/, int /*system*/, std::span<Vec3> velocities) const {
+    std::fill(velocities.begin(), velocities.end(), Vec3::Zero());
+  }
 
   // or it has another shape, and then these two are (baker/core/output_shape.h, output_frame.h).
   /// Null: a mesh. Stays for as long as the solver does.

@@ -15,6 +15,10 @@ using Local = ContactScratch::Local;
 constexpr double k_sharp = 0.02;
 /// A body's feature that faces the leaf's plane by less than this tells no side [1].
 constexpr double k_facing = 0.15;
+/// Between a leaf that touches water and the water [1].
+constexpr double k_water_friction = 1;
+/// Of a leaf's speed in a step, near grounds and water [m/s].
+constexpr double k_gain = 0.12;
 /// What lies farther inside than this is not pushed out at once but by the certificate [m].
 constexpr double k_deepest = 0.05;
 
@@ -176,7 +180,6 @@ void meet_edges(const LeafBodies& bodies, const LeafShape& shape, const ContactS
 
 /// The vertices that can come as near as touching in the step.
 void meet_ground(const LeafGround& ground, int met, const ContactStep& step, const Vec3& centre, ContactScratch& s) {
-  constexpr double k_gain = 0.12;  // of speed in a step [m/s]
   for (std::size_t i = 0; i < s.rim.size(); ++i) {
     const Vec3& p = s.rim[i];
     const int v = static_cast<int>(i);
@@ -207,6 +210,20 @@ void find_near(const LeafBodies& bodies, int slice, const Vec3& centre, double r
     });
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
               [](const NearTriangle& a, const NearTriangle& b) { return a.triangle < b.triangle; });
+  }
+}
+
+void meet_water(const WaterPatch& water, const ContactStep& step, const Vec3& centre, ContactScratch& s) {
+  const Vec3 velocity(water.flow.x(), water.rising(water.flow), water.flow.z());
+  for (std::size_t i = 0; i < s.rim.size(); ++i) {
+    const Vec3& p = s.rim[i];
+    const int v = static_cast<int>(i);
+    const Vec3 own = step.velocity + step.spin.cross(p - centre);
+    const double approach = (velocity - own).dot(water.normal) + step.bending;
+    const double gap = (p.y() - water.height_at(centre, p)) * water.normal.y();
+    if (gap < step.touch + step.time * std::max(0.0, approach + k_gain))
+      s.contacts.push_back(
+          {p - centre, water.normal, velocity, gap, k_water_friction, true, -1, {v, v, v}, Vec3::UnitX()});
   }
 }
 

@@ -18,6 +18,7 @@
 #include "solvers/leaves/leaf_bending.h"
 #include "solvers/leaves/leaf_bodies.h"
 #include "solvers/leaves/leaf_shape.h"
+#include "solvers/leaves/leaf_water.h"
 
 namespace ft::inline solvers {
 
@@ -28,7 +29,7 @@ struct LeafContact {
   double gap = 0;  ///< m, with the body at the step's end
   double friction = 0;
   bool moves = false;                    ///< the body does, in this frame
-  int met = 0;                           ///< index of the body, or of the ground after all bodies
+  int met = 0;                           ///< index of the body, or of the ground after all bodies; -1: water
   std::array<int, 3> vertices{0, 0, 0};  ///< of the leaf, whose place by these weights is the contact's
   Vec3 weights = Vec3::UnitX();
 };
@@ -74,6 +75,9 @@ struct ContactStep {
 /// Contacts of the leaf whose vertices are scratch.rim, about `centre`, with scratch.near and the grounds.
 void find_contacts(const LeafBodies& bodies, std::span<const LeafGround> grounds, const LeafShape& shape,
                    const ContactStep& step, const Vec3& centre, ContactScratch& scratch);
+
+/// Adds those of the same leaf with the plane of the water under it, before the water has it.
+void meet_water(const WaterPatch& water, const ContactStep& step, const Vec3& centre, ContactScratch& scratch);
 
 struct LeafVelocity {
   Vec3 linear, angular;           ///< world

@@ -12,7 +12,8 @@ namespace {
 /// In the steps of a leaf near something, its points go no farther than this [m], in at most so many steps of a slice.
 constexpr double k_near_way = 0.004;
 constexpr int k_near_steps = 48;
-constexpr int k_flight_steps = 200;  ///< of a slice, at most
+constexpr double k_float_share = 0.5;  ///< of a slice, that a floating leaf goes at once where no body is near [1]
+constexpr int k_flight_steps = 200;    ///< of a slice, at most
 /// Beyond the margin, a gap that counts as touching [m].
 constexpr double k_touch = 0.8e-3;
 /// What lies flatter than the first on its ground is under the law of lying leaves, beyond the second of flying ones;
@@ -50,21 +51,42 @@ BendingStep LeavesSolver::step_modes(const Model& model, const PlateAir& air, do
   return step_bending(*model.bending, load, time, 1, m.bent, m.bending);
 }
 
+/// At least so far is it from here to the water, and what the water can rise until then [m].
+double LeavesSolver::gap_to_water(const Model& model, const Moving& m, int slice, double from) const {
+  const auto now = waters_.under(m.x, model.floating.reach, slice, from, false),
+             then = waters_.under(m.x, model.floating.reach, slice, 1, false);
+  if (!now || !then) return std::numeric_limits<double>::infinity();
+  return m.x.y() - model.shape.radius * (1 + now->slope.norm()) - std::max(now->level, then->level);
+}
+
 int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const PlateAir& air, Moving& m,
                             ContactScratch& s, Touch& touch) const {
   const Model& model = leaves_[leaf];
   place_leaf(model, m, s.rim);
   find_contacts(bodies_, setup_.grounds, model.shape, step, m.x, s);
+  // The water at both ends of the step: how the leaf is on it now, and what it meets.
+  const auto now = waters_.under(m.x, model.floating.reach, step.slice, step.from, floats(m)),
+             water = waters_.under(m.x, model.floating.reach, step.slice, step.to, floats(m));
+  double depth = 0, gap = 0;
+  if (now) {
+    depth = float_depth(model.floating, *now, floating(m), model.margin);
+    gap = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : s.rim) gap = std::min(gap, p.y() - now->height_at(m.x, p) - model.margin);
+  }
+  m.afloat = water && floats(m) ? next_afloat(m.afloat, depth, gap, false) : Afloat::k_no;
+  if (water && !floats(m)) meet_water(*water, step, m.x, s);
 
   // How it lies.
   Vec3 ground = Vec3::Zero(), ground_velocity = Vec3::Zero();
   int touching = 0;
+  bool on_water = false;
   touch = {touch.impulses};
   for (const LeafContact& c : s.contacts)
     if (c.gap < step.margin + k_touch) {
       ground += c.normal, ground_velocity += c.velocity;
       ++touching;
       touch.moves = touch.moves || c.moves;
+      on_water = on_water || c.met < 0;
     }
   touch.lies = touching > 0;
   double lying = 0;
@@ -74,11 +96,27 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
     const double sine = (m.q * Vec3::UnitY()).cross(ground).norm();
     lying = std::clamp((k_tilted - sine) / (k_tilted - k_flat), 0.0, 1.0);
   }
+  if (water && !floats(m)) {
+    m.afloat = next_afloat(m.afloat, depth, gap, on_water && lying > 0);
+    if (floats(m)) {
+      std::erase_if(s.contacts, [](const LeafContact& c) { return c.met < 0; });
+      FloatingMotion motion = floating(m);
+      enter_water(model.plate, model.floating, *now, motion);
+      m.v = motion.velocity, m.spin = motion.spin;
+    }
+  }
 
   const double h = step.time;
   Moving flown = m;
   int steps = 0;
-  if (lying < 1) {
+  PlateAir past = air;  // what bends it
+  if (floats(m)) {
+    FloatingMotion motion = floating(m);
+    advance_float(model.plate, model.floating, m.afloat, setup_.gravity, air.velocity, *now, *water, depth, h, motion);
+    flown.v = motion.velocity, flown.spin = motion.spin;
+    past = {m.v, Vec3::Zero()};
+    lying = 0, touch.lies = false;
+  } else if (lying < 1) {
     PlateMotion motion{m.x, m.q, m.q.conjugate() * (m.v - air.velocity), m.q.conjugate() * m.spin};
     steps = advance_plate(model.plate, setup_.gravity, air, h, k_flight_steps, motion);
     flown = {motion.place,
@@ -86,11 +124,12 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
              motion.turn * motion.spin,
              motion.turn,
              m.bent,
-             m.bending};
+             m.bending,
+             m.afloat};
   }
   BendingStep bending;
   if (model.bending) {
-    bending = step_modes(model, air, h, m, s);
+    bending = step_modes(model, past, h, m, s);
     flown.bending = bending.speed;
     bend_by(h * flown.bending, flown.bent, flown.bending);
   }
@@ -109,7 +148,7 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
     flown.spin = lying * spin + (1 - lying) * flown.spin;
   }
   LeafVelocity kept{flown.v, flown.spin, flown.bending};
-  bool pushed = lying > 0;
+  bool pushed = lying > 0 || floats(m);
   LeafVelocity way = kept;
   if (!s.contacts.empty()) {
     bool any = false;
@@ -120,7 +159,8 @@ int LeavesSolver::near_step(std::size_t leaf, const ContactStep& step, const Pla
       const std::size_t met = at(bodies_.count()) + setup_.grounds.size();
       touch.impulses->resize(met * LeafBodies::k_slices);
       for (std::size_t c = 0; c < s.contacts.size(); ++c)
-        (*touch.impulses)[at(step.slice) * met + at(s.contacts[c].met)].add(m.x + s.contacts[c].arm, -s.impulse[c]);
+        if (s.contacts[c].met >= 0)
+          (*touch.impulses)[at(step.slice) * met + at(s.contacts[c].met)].add(m.x + s.contacts[c].arm, -s.impulse[c]);
     }
   }
   if (!pushed) {
@@ -155,6 +195,7 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
   find_near(bodies_, slice, m.x, reach, s.near);
   bool near = !s.near.empty();
   for (const LeafGround& ground : setup_.grounds) near = near || m.x.y() - reach < ground.height;
+  near = near || floats(m) || gap_to_water(model, m, slice, 0) < reach - radius;
   int steps = 0;
   touch = {touch.impulses};
   if (!near) {
@@ -166,7 +207,8 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
          motion.turn * motion.spin,
          motion.turn,
          m.bent,
-         m.bending};
+         m.bending,
+         m.afloat};
     if (model.bending)
       advance_bending(*model.bending, model.shape, model.plate, before.q.conjugate() * (air.velocity - before.v),
                       before.q.conjugate() * before.spin, time, m.bent, m.bending);
@@ -183,8 +225,11 @@ int LeavesSolver::advance_slice(const Frame& frame, std::size_t leaf, int slice,
       fastest = std::abs(m.v.y()) + turning + gusting;
       double gap = std::numeric_limits<double>::infinity();
       for (const LeafGround& ground : setup_.grounds) gap = std::min(gap, m.x.y() - radius - ground.height);
+      if (!floats(m)) gap = std::min(gap, gap_to_water(model, m, slice, done));
       const double careful = k_near_way / (time * (turning + 0.3 * (fastest - turning)) + 1e-12);
-      share = std::max({careful, gap / (time * (fastest + time * setup_.gravity.norm()) + 1e-12), 1.0 / k_near_steps});
+      share = floats(m) ? k_float_share : 0;
+      share = std::max(
+          {share, careful, gap / (time * (fastest + time * setup_.gravity.norm()) + 1e-12), 1.0 / k_near_steps});
     } else {
       share = 1 / std::clamp(std::ceil((time * fastest + way) / k_near_way), 2.0, static_cast<double>(k_near_steps));
     }
@@ -221,7 +266,7 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
     steps += advance_slice(frame, leaf, slice, m, scratch, touch);
   if (!m.x.allFinite() || !m.v.allFinite() || !m.spin.allFinite() || !m.q.coeffs().allFinite() || !m.bent.allFinite() ||
       !m.bending.allFinite()) {
-    m = {before.x, Vec3::Zero(), Vec3::Zero(), before.q, Modes::Zero(), Modes::Zero()};
+    m = {before.x, Vec3::Zero(), Vec3::Zero(), before.q, Modes::Zero(), Modes::Zero(), before.afloat};
     out.finite = false;
   }
   const double frame_time = frame.t1 - frame.t0, slice_time = frame_time / LeafBodies::k_slices;
@@ -259,6 +304,7 @@ LeavesSolver::Tally LeavesSolver::advance_leaf(const Frame& frame, std::size_t l
     }
   }
   out.awake = asleep == 0;
+  out.afloat = floats(m);
   out.fastest = m.v.norm();
   const Vec3 body_spin = m.q.conjugate() * m.spin;
   out.energy =

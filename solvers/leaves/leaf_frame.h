@@ -14,6 +14,7 @@ struct LeavesSolver::Frame {
 
 struct LeavesSolver::Tally {
   int crossings = 0, inside = 0, awake = 0, brought_out = 0, longest = 0;
+  int afloat = 0;
   double steps = 0, energy = 0, deepest = 0, fastest = 0;
   bool finite = true;
   /// What leaves do to each body and ground in each slice, about the world's origin [N s]; empty: nothing.
@@ -23,9 +24,18 @@ struct LeavesSolver::Tally {
     std::vector<Wrench> both = impulses.empty() ? b.impulses : impulses;
     if (!impulses.empty() && !b.impulses.empty())
       for (std::size_t i = 0; i < both.size(); ++i) both[i] += b.impulses[i];
-    return {crossings + b.crossings,      inside + b.inside,  awake + b.awake,   brought_out + b.brought_out,
-            std::max(longest, b.longest), steps + b.steps,    energy + b.energy, std::max(deepest, b.deepest),
-            std::max(fastest, b.fastest), finite && b.finite, std::move(both)};
+    return {crossings + b.crossings,
+            inside + b.inside,
+            awake + b.awake,
+            brought_out + b.brought_out,
+            std::max(longest, b.longest),
+            afloat + b.afloat,
+            steps + b.steps,
+            energy + b.energy,
+            std::max(deepest, b.deepest),
+            std::max(fastest, b.fastest),
+            finite && b.finite,
+            std::move(both)};
   }
 };
 

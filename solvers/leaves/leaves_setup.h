@@ -8,6 +8,7 @@
 
 #include "baker/core/trajectory.h"
 #include "baker/core/types.h"
+#include "baker/core/vertex_flow.h"
 #include "solvers/leaves/plate_aerodynamics.h"
 #include "solvers/wind/wind.h"
 
@@ -51,6 +52,14 @@ struct LeafObstacle {
   bool fixed = false;     ///< it stands still in the whole shot
 };
 
+/// The surface of a liquid on which leaves float: vertices over a grid in x and z (leaf_water.h). Where it is dry it
+/// lies below the ground.
+struct LeafWater {
+  std::string name;
+  std::shared_ptr<const Trajectory> surface;
+  std::shared_ptr<const VertexFlow> flow{};  ///< null: it flows nowhere
+};
+
 /// All that is below a height.
 struct LeafGround {
   double height = 0;      ///< m
@@ -75,6 +84,7 @@ struct LeavesSetup {
   std::vector<Leaf> leaves;  ///< their number never changes
   std::vector<LeafObstacle> bodies;
   std::vector<LeafGround> grounds;
+  std::vector<LeafWater> waters{};
 };
 
 /// Of one leaf, for caches of instances.
@@ -86,6 +96,7 @@ struct LeafState {
   Vec3 velocity = Vec3::Zero();          ///< m/s
   Vec3 angular_velocity = Vec3::Zero();  ///< world axes [rad/s]
   bool asleep = false;
+  bool afloat = false;
 };
 
 }  // namespace ft::inline solvers

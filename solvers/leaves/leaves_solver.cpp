@@ -55,10 +55,13 @@ Result<std::unique_ptr<LeavesSolver>> LeavesSolver::make(LeavesSetup setup) {
     if (!(l.scale > 0) || !l.position.allFinite() || !(l.orientation.norm() > 0.5))
       return refuse("a leaf has no size, place or orientation");
   }
+  for (const LeafWater& water : setup.waters)
+    if (const std::string fault = LeafWaters::fault_of(water); !fault.empty()) return refuse(fault);
   return std::unique_ptr<LeavesSolver>(new LeavesSolver(std::move(setup)));
 }
 
-LeavesSolver::LeavesSolver(LeavesSetup setup) : setup_(std::move(setup)), bodies_(setup_.bodies) {
+LeavesSolver::LeavesSolver(LeavesSetup setup)
+    : setup_(std::move(setup)), bodies_(setup_.bodies), waters_(setup_.waters) {
   for (const LeafPrototype& p : setup_.prototypes) shapes_.push_back(shape_of(p));
   const double gravity = setup_.gravity.norm();
   slowest_lift_off_ = std::numeric_limits<double>::infinity();
@@ -71,6 +74,7 @@ LeavesSolver::LeavesSolver(LeavesSetup setup) : setup_(std::move(setup)), bodies
     m.shape = shapes_[at(leaf.prototype)];
     for (Vec3& p : m.shape.positions) p *= leaf.scale;
     m.shape.radius *= leaf.scale;
+    m.floating = floating_plate(m.plate, m.shape.positions, gravity);
     if (setup_.bending > 0) {
       m.bending = bending_of(m.shape, m.plate, setup_.bending);
       m.shape.radius *= k_bent_radius;
@@ -106,6 +110,7 @@ State LeavesSolver::initial_state() const {
     state.set("bent", std::vector<double>(2 * n));
     state.set("bending", std::vector<double>(2 * n));
   }
+  if (waters_.any()) state.set("afloat", std::vector<double>(n));
   return state;
 }
 
@@ -113,6 +118,7 @@ void LeavesSolver::leaf_states(const State& state, std::span<LeafState> out) con
   CHECK(out.size() == leaves_.size());
   const auto &x = *state.find("x"), &q = *state.find("q"), &v = *state.find("v"), &spin = *state.find("spin"),
              &asleep = *state.find("asleep");
+  const auto* afloat = state.find("afloat");
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Leaf& leaf = setup_.leaves[i];
     out[i] = {leaf.id,
@@ -122,7 +128,8 @@ void LeavesSolver::leaf_states(const State& state, std::span<LeafState> out) con
               Quat(q[4 * i + 3], q[4 * i], q[4 * i + 1], q[4 * i + 2]),
               as_points(v)[i],
               as_points(spin)[i],
-              asleep[i] != 0};
+              asleep[i] != 0,
+              afloat && (*afloat)[i] != 0};
   }
 }
 
@@ -135,6 +142,7 @@ LeavesSolver::Moving LeavesSolver::moving(const State& state, std::size_t i) con
     m.bent = Modes(bent[2 * i], bent[2 * i + 1]);
     m.bending = Modes(bending[2 * i], bending[2 * i + 1]);
   }
+  if (waters_.any()) m.afloat = static_cast<Afloat>((*state.find("afloat"))[i]);
   return m;
 }
 
@@ -183,19 +191,28 @@ bool LeavesSolver::is_approached(const Vec3& place, double radius) const {
   return false;
 }
 
-/// Sleeping leaves that the wind or a body gets hold of.
+/// Whether water has come up to a sleeping leaf by the frame's end.
+bool LeavesSolver::is_reached(const Model& model, const Moving& m) const {
+  const auto water = waters_.under(m.x, model.floating.reach, LeafBodies::k_slices - 1, 1, false);
+  if (!water) return false;
+  const double depth = float_depth(model.floating, *water, floating(m), model.margin);
+  return next_afloat(Afloat::k_no, depth, -depth, true) != Afloat::k_no;
+}
+
+/// Sleeping leaves that the wind, a body or water gets hold of.
 void LeavesSolver::wake(const Frame& frame, State& state, FrameReport& report) const {
   const auto& asleep = *state.find("asleep");
   const auto x = as_points(*state.find("x"));
   bool any_moves = false;
   for (int b = 0; b < bodies_.count(); ++b) any_moves = any_moves || bodies_.moves(b);
   const bool ask_wind = frame.has_wind && setup_.wind->fastest() > slowest_lift_off_;
-  std::vector<char> hold(leaves_.size(), 0);  // of the wind 1, of a body 2
-  if (any_moves || ask_wind)
+  std::vector<char> hold(leaves_.size(), 0);  // of the wind 1, of a body or water 2
+  if (any_moves || ask_wind || waters_.any())
     parallel_for(leaves_.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (asleep[i] == 0) continue;
         if (any_moves && is_approached(x[i], leaves_[i].shape.radius)) hold[i] = 2;
+        if (hold[i] == 0 && waters_.any() && is_reached(leaves_[i], moving(state, i))) hold[i] = 2;
         if (hold[i] != 0 || !ask_wind) continue;
         const Vec3 u = frame.air[LeafBodies::k_slices]->velocity(x[i]);
         const double speed2 = u.squaredNorm();
@@ -246,6 +263,7 @@ FrameReport LeavesSolver::advance_frame(State& state) {
   frame.t0 = (state.frame - setup_.first_frame) / setup_.fps;
   frame.t1 = (report.frame - setup_.first_frame) / setup_.fps;
   bodies_.begin_frame(frame.t0, frame.t1);
+  waters_.begin_frame(frame.t0, frame.t1);
   frame.has_wind = setup_.wind && !setup_.wind->is_still();
   if (frame.has_wind) {
     for (int k = 0; k <= LeafBodies::k_slices; ++k)
@@ -261,6 +279,7 @@ FrameReport LeavesSolver::advance_frame(State& state) {
     auto &x = state.block("x"), &q = state.block("q"), &v = state.block("v"), &spin = state.block("spin"),
          &asleep = state.block("asleep"), &rest = state.block("rest");
     const bool bends = setup_.bending > 0;
+    double* afloat = waters_.any() ? state.block("afloat").data() : nullptr;
     double *bent = bends ? state.block("bent").data() : nullptr,
            *bending = bends ? state.block("bending").data() : nullptr;
     sum = parallel_sum(awake.size(), k_block, Tally{}, [&](std::size_t begin, std::size_t end) {
@@ -273,6 +292,7 @@ FrameReport LeavesSolver::advance_frame(State& state) {
         as_points(v)[i] = m.v;
         as_points(spin)[i] = m.spin;
         for (int c = 0; c < 4; ++c) q[4 * i + at(c)] = m.q.coeffs()[c];
+        if (afloat) afloat[i] = static_cast<double>(m.afloat);
         for (std::size_t c = 0; bends && c < 2; ++c) {
           bent[2 * i + c] = m.bent[static_cast<int>(c)];
           bending[2 * i + c] = m.bending[static_cast<int>(c)];
@@ -292,6 +312,7 @@ FrameReport LeavesSolver::advance_frame(State& state) {
   report.own["leaves_brought_out"] = sum.brought_out;
   report.own["leaves_fastest"] = sum.fastest;
   report.own["leaf_steps"] = sum.steps;
+  if (waters_.any()) report.own["leaves_afloat"] = sum.afloat;
   if (sum.crossings > 0 || sum.inside > 0) {
     Incident& incident = report.incidents.emplace_back();
     incident.kind = Incident::Kind::k_crossing;

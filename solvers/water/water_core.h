@@ -69,6 +69,8 @@ class WaterCore {
 
   virtual WaterLedger ledger(const State& state) const = 0;
   virtual void surface(const State& state, WaterSurface& out) const = 0;
+  /// Of the water at the surface, in each cell [m/s]; y is not used.
+  virtual void surface_flow(const State& state, std::span<Vec3> out) const = 0;
   virtual std::vector<Droplet> droplets(const State& state) const = 0;
   /// Of all that floats, in the order of the setup.
   virtual std::vector<RigidMotion> floating(const State& state) const = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,31 @@ namespace {
 
 constexpr double k_below = 2e-3;         ///< the ground: where the mesh of dry cells lies [m]
 constexpr double k_ledger_error = 1e-9;  ///< beyond it water got lost [1]
+
+/// Of the grid's cells, and those around it, one to four.
+struct Corner {
+  int i, k;
+  std::size_t vertex;
+  std::array<std::size_t, 4> around{};
+  std::size_t count = 0;
+  std::span<const std::size_t> cells() const { return {around.data(), count}; }
+};
+
+template <class Visit>
+void for_each_corner(const WaterGrid& grid, const Visit& visit) {
+  parallel_for(at(grid.nz) + 1, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (int i = 0; i <= grid.nx; ++i) {
+        const int k = static_cast<int>(row);
+        Corner corner{i, k, row * (at(grid.nx) + 1) + at(i)};
+        for (const int z : {k - 1, k})
+          for (const int x : {i - 1, i})
+            if (x >= 0 && z >= 0 && x < grid.nx && z < grid.nz)
+              corner.around[corner.count++] = at(z) * at(grid.nx) + at(x);
+        visit(corner);
+      }
+  });
+}
 
 }  // namespace
 
@@ -69,24 +95,30 @@ void WaterSolver::system_positions(const State& state, int, std::span<Vec3> posi
   const WaterGrid grid = core_->grid();
   WaterSurface now;
   core_->surface(state, now);
-  parallel_for(at(grid.nz) + 1, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row)
-      for (int i = 0; i <= grid.nx; ++i) {
-        const int k = static_cast<int>(row);
-        double wet = 0, count = 0, ground = std::numeric_limits<double>::infinity();
-        for (const int z : {k - 1, k})
-          for (const int x : {i - 1, i}) {
-            if (x < 0 || z < 0 || x >= grid.nx || z >= grid.nz) continue;
-            const std::size_t c = at(z) * at(grid.nx) + at(x);
-            if (now.wet[c] != 0)
-              wet += now.height[c], ++count;
-            else
-              ground = std::min(ground, now.height[c]);
-          }
-        const double height = count > 0 ? wet / count : ground - k_below;
-        positions[row * (at(grid.nx) + 1) + at(i)] =
-            Vec3(grid.origin.x() + grid.cell * i, height, grid.origin.y() + grid.cell * k);
-      }
+  for_each_corner(grid, [&](const Corner& corner) {
+    double wet = 0, count = 0, ground = std::numeric_limits<double>::infinity();
+    for (const std::size_t c : corner.cells())
+      if (now.wet[c] != 0)
+        wet += now.height[c], ++count;
+      else
+        ground = std::min(ground, now.height[c]);
+    positions[corner.vertex] = Vec3(grid.origin.x() + grid.cell * corner.i, count > 0 ? wet / count : ground - k_below,
+                                    grid.origin.y() + grid.cell * corner.k);
+  });
+}
+
+void WaterSolver::surface_flow(const State& state, int, std::span<Vec3> velocities) const {
+  const WaterGrid grid = core_->grid();
+  WaterSurface now;
+  core_->surface(state, now);
+  std::vector<Vec3> flow(grid.count());
+  core_->surface_flow(state, flow);
+  for_each_corner(grid, [&](const Corner& corner) {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (const std::size_t c : corner.cells())
+      if (now.wet[c] != 0) sum += flow[c], ++count;
+    velocities[corner.vertex] = count > 0 ? Vec3(sum / count) : Vec3::Zero();
   });
 }
 

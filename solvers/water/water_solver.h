@@ -52,6 +52,7 @@ class WaterSolver final : public Solver, public MovesPrimaries {
   const SystemShape* system_shape(int system) const override { return system == 1 ? &droplets_ : nullptr; }
   const Mesh& system_mesh(int) const override { return mesh_; }
   void system_positions(const State& state, int system, std::span<Vec3> positions) const override;
+  void surface_flow(const State& state, int system, std::span<Vec3> velocities) const override;
   void system_frame(const State& state, int system, FrameData& frame) const override;
   std::span<const Triangle> collider_triangles() const override { return {}; }
   void collider_positions(const State&, std::vector<Vec3>& positions) const override { positions.clear(); }

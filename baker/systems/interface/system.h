@@ -128,8 +128,8 @@ class SystemKind {
   virtual bool shows_body() const { return false; }
   /// Whether its meshes are sheets, which are seen from both sides.
   virtual bool is_sheet() const { return false; }
-  /// Whether its meshes are surfaces of a liquid, which mirrors and is looked through.
-  virtual bool is_liquid() const { return false; }
+  /// Whether its meshes are surfaces of a liquid, which mirrors and is looked through, and on which others may float.
+  bool is_liquid() const { return section().is_liquid(); }
   /// In which the preview draws it, 0xrrggbb; 0: the next that no other has.
   virtual std::uint32_t colour() const { return 0; }
 };

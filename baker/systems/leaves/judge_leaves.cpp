@@ -63,14 +63,27 @@ class JudgedLeaves final : public JudgedGroup {
   PlacedInstances all_;
 };
 
+/// What of it has an inside or sides: leaves lie in the surface of liquids.
+ManifestSystem without_liquids(const CachedBake& bake, ManifestSystem system) {
+  for (const ManifestSystem& other : bake.manifest.systems)
+    if (const SystemKind* kind = find_system_kind(other.role); kind && kind->is_liquid())
+      std::erase(system.meets, other.role + "." + other.name);
+  return system;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<JudgedGroup>> judged_leaves(const CachedBake& bake, const ManifestSystem& system) {
   auto track = bake.open(system);
   if (!track) return track.error();
-  auto met = met_bodies(bake, system);
-  if (!met) return met.error();
-  return std::unique_ptr<JudgedGroup>(std::make_unique<JudgedLeaves>(std::move(*track), std::move(*met)));
+  MetBodies bodies;
+  const ManifestSystem solid = without_liquids(bake, system);
+  if (system.meets.empty() || !solid.meets.empty()) {
+    auto met = met_bodies(bake, solid);
+    if (!met) return met.error();
+    bodies = std::move(*met);
+  }
+  return std::unique_ptr<JudgedGroup>(std::make_unique<JudgedLeaves>(std::move(*track), std::move(bodies)));
 }
 
 }  // namespace ft::inline baker

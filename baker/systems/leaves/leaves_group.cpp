@@ -21,7 +21,9 @@ void add_bodies(const Shot& shot, const LeavesSpec& spec, const BakePlan& plan, 
     const PrimaryPlan& primary = plan.primaries[p];
     const auto own = std::find_if(shot.primaries.begin(), shot.primaries.end(),
                                   [&](const PrimarySpec& s) { return s.name == primary.name; });
-    if (own != shot.primaries.end() && own->shape == k_ground)
+    if (primary.flow)
+      group.setup.waters.push_back({primary.name, primary.trajectory, primary.flow});
+    else if (own != shot.primaries.end() && own->shape == k_ground)
       group.setup.grounds.push_back({own->position.y(), spec.friction, primary.name});
     else
       group.setup.bodies.push_back({primary.name, primary.trajectory, spec.friction, stands_still(shot, primary)});
@@ -45,6 +47,12 @@ Result<std::vector<std::unique_ptr<LeavesGroup>>> plan_leaves(const Shot& shot, 
   std::vector<std::size_t> meets;
   if (const Status found = find_met(spec, spec.meets, plan, meets); !found)
     return located(found.error(), shot, spec.owner());
+  const auto liquid = std::ranges::find_if(meets, [&](std::size_t p) { return plan.primaries[p].flow != nullptr; });
+  if (liquid != meets.end())
+    plan.notes.push_back(
+        fmt::format("{} do not move \"{}\" back, pass through each other on it, and are as light after "
+                    "it as before; beyond its rim they float on as if it went on",
+                    spec.owner(), plan.primaries[*liquid].name));
   plan.notes.push_back(spec.owner() + ": forces are those of awake leaves; what sleeps is recorded as weightless");
   std::vector<std::unique_ptr<LeavesGroup>> out;
   for (const bool near : {false, true}) {

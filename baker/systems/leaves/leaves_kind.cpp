@@ -37,7 +37,8 @@ class LeavesKind final : public SystemKind {
     static const Metric metrics[] = {
         {"leaves_awake", "", Metric::Merge::k_sum},      {"leaves_lifted", "", Metric::Merge::k_sum},
         {"leaves_woken", "", Metric::Merge::k_sum},      {"leaves_brought_out", "", Metric::Merge::k_sum},
-        {"leaves_fastest", "m/s", Metric::Merge::k_max}, {"leaf_steps", "", Metric::Merge::k_sum}};
+        {"leaves_fastest", "m/s", Metric::Merge::k_max}, {"leaf_steps", "", Metric::Merge::k_sum},
+        {"leaves_afloat", "", Metric::Merge::k_sum}};
     return metrics;
   }
 };

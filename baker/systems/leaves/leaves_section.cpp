@@ -45,7 +45,9 @@ std::span<const ShotKey<LeavesSpec>> leaves_keys() {
       {"bending", &LeavesSpec::bending, 1e-8, 10, "N m", "", false, "bending_stiffness stiffness",
        "Bending stiffness of near leaves: 1e-4 a crisp dry leaf, 2e-5 a limp one"},
       {"meets", &LeavesSpec::meets, 0, 0, "", "", false, "collides collides_with colliders obstacles",
-       "Primaries that they meet beside the one that they are on: names with `*` and `?`; `[]`: no other"},
+       "Primaries that they meet beside the one that they are on: names with `*` and `?`; `[]`: no other. Water by its "
+       "own "
+       "name, `water.NAME`: it is baked before, and they float on it"},
       {"on", &LeavesSpec::on, 0, 0, "", "@name of a primary", false, "primary ground",
        "The primary on which they lie; not needed when there is only one"},
   };
@@ -87,6 +89,7 @@ class LeavesSection final : public SectionOf<LeavesSpec> {
   }
   std::string_view whom() const override { return "on which they lie"; }
   std::vector<std::string> meets(const SecondarySpec& spec) const override { return of(spec).meets; }
+  bool floats() const override { return true; }
   std::string_view why_no_carrier() const override {
     return "its leaves are instances, each too light to carry anything";
   }

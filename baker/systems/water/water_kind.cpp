@@ -21,7 +21,6 @@ class WaterKind final : public SystemKind {
         bake, name(), [](const ManifestSystem&) { return true; },
         [&](const ManifestSystem& system) { return judged_water(bake, system); });
   }
-  bool is_liquid() const override { return true; }
   bool is_sheet() const override { return true; }
   std::uint32_t colour() const override { return 0x2a6f8f; }
   std::span<const Metric> metrics() const override {

@@ -81,6 +81,7 @@ class WaterSection final : public SectionOf<WaterSpec> {
   }
   std::string_view whom() const override { return "under which primary it is listed"; }
   bool needs_on() const override { return false; }
+  bool is_liquid() const override { return true; }
   std::vector<std::string> meets(const SecondarySpec& spec) const override { return of(spec).meets; }
   std::vector<std::string> moves(const SecondarySpec& spec) const override { return of(spec).floats; }
   std::string_view why_not_two_way() const override {

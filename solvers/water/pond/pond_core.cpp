@@ -46,6 +46,7 @@ class PondCore final : public WaterCore {
     out.wet.assign(count, 1);
     solver_->surface_heights(state, out.height);
   }
+  void surface_flow(const State& state, std::span<Vec3> out) const override { solver_->surface_velocity(state, out); }
   std::vector<Droplet> droplets(const State& state) const override { return solver_->droplets(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_->float_motions(state); }
 
