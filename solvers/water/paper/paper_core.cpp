@@ -43,6 +43,10 @@ class PaperCore final : public WaterCore {
       if (out.wet[c] == 0) out.height[c] = solver_.bed(c);
     }
   }
+  void surface_flow(const State& state, std::span<Vec3> out) const override {
+    const std::vector<Vec2> velocity = solver_.velocities(state);
+    for (std::size_t c = 0; c < out.size(); ++c) out[c] = Vec3(velocity[c].x(), 0, velocity[c].y());
+  }
   std::vector<Droplet> droplets(const State& state) const override { return solver_.droplets(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_.floats(state); }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "baker/core/check.h"
+#include "baker/core/parallel.h"
 #include "solvers/water/paper/paper_frame.h"
 
 namespace ft::inline solvers {
@@ -116,6 +117,17 @@ std::vector<double> PaperSolver::tops(const State& state) const {
 
 double PaperSolver::bed(std::size_t cell) const {
   return setup_.bed.empty() ? 0 : setup_.bed[cell];
+}
+
+std::vector<Vec2> PaperSolver::velocities(const State& state) const {
+  PipeWater water(setup_);
+  water.depth = *state.find("depth");
+  for (std::size_t way = 0; way < k_pipes; ++way) water.carries[way] = *state.find(k_blocks[way]);
+  std::vector<Vec2> out(water.depth.size());
+  parallel_for(out.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) out[c] = water.velocity(c);
+  });
+  return out;
 }
 
 std::vector<Droplet> PaperSolver::droplets(const State& state) const {

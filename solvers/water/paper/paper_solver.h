@@ -40,6 +40,8 @@ class PaperSolver {
   /// Height of the water's top: in open water its surface, under a body what reaches up to it [m].
   std::vector<double> tops(const State& state) const;
   double bed(std::size_t cell) const;  ///< m
+  /// Of each cell, mean over the depth [m/s]; 0 in films.
+  std::vector<Vec2> velocities(const State& state) const;
   std::vector<Droplet> droplets(const State& state) const;
   std::vector<RigidMotion> floats(const State& state) const;
   WaterLedger ledger(const State& state) const;
