@@ -103,6 +103,33 @@ TEST_F(WaterBakeTest, The_water_of_the_paper_is_baked_where_it_is_named_and_says
     EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / file)) << file;
 }
 
+TEST_F(WaterBakeTest, Leaves_lie_on_water_that_was_baked_before_them) {
+  write_shot(std::string(k_pond) +
+                 "[leaves.fall]\ncount = 12\nsize = [3, 0, 3]\nposition = [0, 0.03, 0]\non = \"water.pond\"\n",
+             36);
+  const auto plan = plan_shot_in(folder_.path());
+  ASSERT_TRUE(plan) << plan.error().text();
+  ASSERT_EQ(run("out").exit_code, 0);
+  auto reader = open_cache_of_any_shape(folder_ / "out/fall.abc");
+  ASSERT_TRUE(reader) << reader.error().text();
+  FrameData leaves;
+  ASSERT_TRUE((*reader)->read(35, leaves));
+  ASSERT_EQ(leaves.positions.size(), 12u);
+  for (const Vec3f& p : leaves.positions) EXPECT_LT(std::abs(p.y()), 0.1f) << "in 1.5 s one would fall by far more";
+  const auto judged = judge_caches(folder_ / "out");
+  ASSERT_TRUE(judged) << judged.error().text();
+  EXPECT_EQ(judged->frames.size(), 36u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/pond.abc"));
+}
+
+TEST_F(WaterBakeTest, Leaves_on_water_have_the_same_bytes_with_any_threads_and_after_interruptions) {
+  write_shot(std::string(k_pond) +
+                 "[leaves.fall]\ncount = 12\nsize = [3, 0, 3]\nposition = [0, 0.03, 0]\non = \"water.pond\"\n",
+             8);
+  // In the second stage.
+  expect_threads_and_interruptions_change_no_byte(folder_.path(), 11);
+}
+
 TEST_F(WaterBakeTest, Droplets_of_two_bakes_are_compared_by_their_ids) {
   write_shot(k_puddle, 8);
   ASSERT_EQ(run("a").exit_code, 0);

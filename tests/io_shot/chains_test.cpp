@@ -84,6 +84,10 @@ TEST_F(Chains, What_needs_another_kind_of_primary_is_refused_with_the_reason) {
                   "[standin.s]\nkind = \"weight\"\nmass = 1\nfor = \"badge\"\n")
                 .find("feels nothing of it"),
             std::string::npos);
+  EXPECT_NE(fault("[water.pond]\nposition = [0, 0, 0]\nsize = [2, 0, 2]\ndepth = 1\n" + cloth("raft", "water.pond"))
+                .find("is a liquid, and cloth does not float"),
+            std::string::npos)
+      << fault("[water.pond]\nposition = [0, 0, 0]\nsize = [2, 0, 2]\ndepth = 1\n" + cloth("raft", "water.pond"));
   EXPECT_NE(fault("[follow.ears]\nbones = [\"a\"]\n" + cloth("cap", "follow.ears")).find("would meet both"),
             std::string::npos);
 }
