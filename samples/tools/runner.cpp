@@ -17,13 +17,13 @@ struct Key {
   double foot;   ///< degrees, toes up
 };
 /// From toe-off to touch-down: the heel comes up behind, the knee goes forward, the shin swings out.
-constexpr std::array<Key, 7> k_swing{{{0.34, -0.37, 0.05, -52},
+constexpr std::array<Key, 7> k_swing{{{0.34, -0.37, 0.034, -52},
                                       {0.45, -0.60, 0.28, -92},
                                       {0.58, -0.36, 0.40, -98},
                                       {0.70, 0.06, 0.32, -68},
                                       {0.82, 0.43, 0.24, -25},
                                       {0.92, 0.48, 0.155, 3},
-                                      {1.00, 0.34, 0.05, 0}}};
+                                      {1.00, 0.34, 0.034, 0}}};
 
 /// Cubic through the keys; slopes are those of the chord between neighbours, at both ends as given.
 double spline(double phase, double Key::*what, double first_slope, double last_slope) {
@@ -69,8 +69,8 @@ class Runner {
       const double way = (phase - settings_.support) / (1 - settings_.support);
       const double at = first.phase + way * (last.phase - first.phase);
       const double from = last.z + back * settings_.support - first.z;  // where this stride leaves the ground
-      out.ball =
-          Vec3(0, spline(at, &Key::y, 0.6, -1.1), spline(at, &Key::z, back, back) + from * (1 - smooth(0, 0.5, way)));
+      out.ball = Vec3(0, spline(at, &Key::y, 0.6, -2.2),
+                      spline(at, &Key::z, back, 0.4 * back) + from * (1 - smooth(0, 0.5, way)));
       out.pitch = spline(at, &Key::foot, -450, 0) * k_rad;
       out.toes = -first.foot * k_rad * (1 - smooth(0, 0.3, way));
     }
@@ -84,7 +84,7 @@ class Runner {
     Pose out;
     // Highest in the middle of the flight, lowest over the foot.
     const double flight = 0.5 * (settings_.support + 0.5);
-    const double hip = scale_ * (0.8 + 0.025 * std::cos(2 * turn * (stride - flight)));
+    const double hip = scale_ * (0.788 + 0.025 * std::cos(2 * turn * (stride - flight)));
     out.tilt = -5 * k_rad;
     out.lean = (-6 + 1.5 * std::cos(2 * turn * (stride - 0.1))) * k_rad;
     // Left knee forward: the pelvis turns to the right, the chest to the left.
