@@ -28,6 +28,10 @@ Mat3 pitch(double angle) {
   return Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix();
 }
 
+Mat3 yaw(double angle) {
+  return Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+}
+
 /// Of a child 1.2 m tall.
 std::vector<Figure::Joint> Figure::skeleton() {
   std::vector<Joint> out{
@@ -63,6 +67,12 @@ double Figure::standing() const {
 double Figure::hip_drop() const {
   return -joints_[k_legs].offset.y();
 }
+Vec3 Figure::hip_joint(const Pose& pose, int side) const {
+  return pose.hips + turns_of_trunk(pose)[k_hips] * joints_[static_cast<std::size_t>(k_legs + 4 * side)].offset;
+}
+Vec3 Figure::ball() const {
+  return joints_[k_legs + 3].offset;
+}
 double Figure::thigh() const {
   return joints_[k_legs + 1].offset.norm();
 }
@@ -82,19 +92,26 @@ std::string Figure::bvh(const std::vector<Pose>& poses, double fps) const {
   return out;
 }
 
-Figure::Turns Figure::turns(const Pose& pose) const {
+Figure::Turns Figure::turns_of_trunk(const Pose& pose) {
+  const auto between = [&](double s) { return yaw(pose.pelvis_turn + s * (pose.chest_turn - pose.pelvis_turn)); };
   Turns out;
-  out[k_hips] = pitch(-pose.tilt - 0.5 * pose.lean);
-  out[k_spine] = pitch(-pose.tilt - 0.7 * pose.lean);
-  out[k_waist] = pitch(-pose.tilt - 0.9 * pose.lean);
-  out[k_chest] = pitch(-pose.tilt - pose.lean);
-  out[k_neck] = pitch(-0.7 * (pose.tilt + pose.lean));
+  out[k_hips] = between(0) * pitch(-pose.tilt - 0.5 * pose.lean);
+  out[k_spine] = between(0.3) * pitch(-pose.tilt - 0.7 * pose.lean);
+  out[k_waist] = between(0.7) * pitch(-pose.tilt - 0.9 * pose.lean);
+  out[k_chest] = between(1) * pitch(-pose.tilt - pose.lean);
+  out[k_neck] = yaw(0.4 * pose.chest_turn) * pitch(-0.7 * (pose.tilt + pose.lean));
   out[k_head] = pitch(-0.4 * (pose.tilt + pose.lean));
+  return out;
+}
+
+Figure::Turns Figure::turns(const Pose& pose) const {
+  Turns out = turns_of_trunk(pose);
   for (const int side : {0, 1}) {
     const auto s = static_cast<std::size_t>(side), leg = k_legs + 4 * s;
     out[leg] = pitch(-pose.thigh[s]);
     out[leg + 1] = pitch(-pose.shin[s]);
-    out[leg + 2] = out[leg + 3] = pitch(-pose.foot[s]);
+    out[leg + 2] = pitch(-pose.foot[s]);
+    out[leg + 3] = pitch(-pose.foot[s] - pose.toes[s]);
     reach(pose, side, out);
   }
   return out;

@@ -1,5 +1,5 @@
-// make_set chair --out FOLDER, and so for swing, flags, drapes: builds a set of the samples, and who moves in it. In
-// metres, Y up.
+// make_set chair --out FOLDER, and so for swing, flags, drapes, runner: builds a set of the samples, and who moves in
+// it. In metres, Y up.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +10,7 @@
 #include "io/shot/mesh_file.h"
 #include "samples/tools/chair.h"
 #include "samples/tools/panels.h"
+#include "samples/tools/runner.h"
 #include "samples/tools/swing.h"
 
 namespace ft::sets {
@@ -65,11 +66,13 @@ int main_checked(int argc, char** argv) {
   const CLI::App* swing = app.add_subcommand("swing", "a swing, its frame, and a child on it: four files");
   app.add_subcommand("chair", "a chair, and somebody who sits down on it: two files");
   const CLI::App* flags = app.add_subcommand("flags", "three flags: three files");
+  const CLI::App* runner = app.add_subcommand("runner", "somebody who runs: one file");
   const CLI::App* drapes = app.add_subcommand("drapes", "a curtain: one file");
   for (CLI::App* set : app.get_subcommands({})) set->add_option("--out", out, "folder to write into")->required();
   CLI11_PARSE(app, argc, argv);
   if (flags->parsed()) return told(write_flags(out));
   if (drapes->parsed()) return told(write_obj(std::filesystem::path(out) / "curtain.obj", make_curtain({})));
+  if (runner->parsed()) return told(write_text_durably(std::filesystem::path(out) / "runner.bvh", runner_bvh({})));
   return told(swing->parsed() ? write_swing(out, {}) : write_chair(out, {}));
 }
 
