@@ -44,7 +44,8 @@ void complain(const std::string& text) {
 }
 
 int run_command_line(int argc, char** argv) {
-  CLI::App app{"Followthrough bakes cloth that follows an imported character animation."};
+  CLI::App app{
+      "Followthrough bakes what moves because an animated character does: cloth, hair, leaves, nets, ropes and water."};
   app.name("followthrough");
   app.set_version_flag("--version", "followthrough " + program_version());
   app.require_subcommand(1);

@@ -212,7 +212,9 @@ TEST_F(WaterBakeTest, What_makes_no_sense_is_refused_with_its_place) {
         {"size = [4, 0, 4]\ndepth = 1\nfloat_drag = 1\n", "floats is empty"},
         {"size = [4, 0, 4]\ndepth = 1\nfloats = [\"stamp\"]\n", "its mass is missing"},
         {"size = [4, 0, 4]\ndepth = 1\nfloats = [\"nobody\"]\n", "nobody"},
-        {"size = [0.2, 0, 0.2]\ndepth = 1\nfloats = [\"float_ball\"]\n", "and the pond 0.2 x 0.2 m"}}) {
+        {"size = [0.2, 0, 0.2]\ndepth = 1\nfloats = [\"float_ball\"]\nmeets = []\n", "and the pond 0.2 x 0.2 m"},
+        {"size = [0.2, 0, 0.2]\ndepth = 1\n", "\"stamp\" is 0.3 x 0.3 m, larger than the water of 0.2 x 0.2 m"},
+        {"size = [900, 0, 900]\ndepth = 0.1\ncell = 0.01\n", "90000 x 90000 cells of 0.01 m"}}) {
     const std::string said = refusal(start + lines);
     EXPECT_NE(said.find(words), std::string::npos) << lines << said;
   }

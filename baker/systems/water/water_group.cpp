@@ -27,6 +27,9 @@ constexpr double k_smallest_cell = 0.005;
 /// Of water, kinematic [m2/s].
 constexpr double k_viscosity = 1e-6;
 
+/// More than any model takes.
+constexpr std::size_t k_most_cells = 50'000'000;
+
 /// Of the whole rectangle: cells are square and an even number, so that it may grow by a cell or two.
 WaterGrid grid_of(const WaterSpec& spec) {
   WaterGrid out;
@@ -48,10 +51,9 @@ Status find_floats(const WaterSpec& spec, BakePlan& plan, WaterGroup& group, std
   if (!found) return found.error();
   for (const int p : *found) {
     const PrimaryPlan& primary = plan.primaries[at(p)];
-    if (!primary.prop)
-      return usage_error(spec.owner() + ": " + in_quotes(primary.name) + " cannot float: it is no rigid prop");
+    if (!primary.prop) return usage_error(in_quotes(primary.name) + " cannot float: it is no rigid prop");
     if (!(primary.prop->mass.mass > 0))
-      return usage_error(spec.owner() + ": " + in_quotes(primary.name) + " cannot float: its mass is missing");
+      return usage_error(in_quotes(primary.name) + " cannot float: its mass is missing");
     if (primary.prop->release > 0 && std::isfinite(primary.prop->release))
       plan.notes.push_back(fmt::format("{}: \"{}\" floats from the first frame on, whatever its release says",
                                        spec.owner(), primary.name));
@@ -140,6 +142,13 @@ Status find_visitors(const Shot& shot, const WaterSpec& spec, BakePlan& plan, Wa
             fmt::format("{}: \"{}\" is a sheet without an inside, and pushes no water away", spec.owner(), body.name));
       continue;
     }
+    std::vector<Vec3> start(at(body.trajectory->surface().vertex_count()));
+    body.trajectory->sample(0, start);
+    const Box box = bounds(start);
+    if (const Vec3 size = box.hi - box.lo; size.x() > spec.size.x() && size.z() > spec.size.z())
+      return usage_error(fmt::format("\"{}\" is {:.3g} x {:.3g} m, larger than the water of {:.3g} x {:.3g} m",
+                                     body.name, size.x(), size.z(), spec.size.x(), spec.size.z()),
+                         {}, "meets names what goes through it");
     scene.visitors.push_back({body.name, body.trajectory});
   }
   return {};
@@ -160,6 +169,11 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   if (const Status found = find_floats(spec, plan, *group, scene.floats, bodies); !found) return place(found.error());
   if (const Status found = find_visitors(shot, spec, plan, *group, scene); !found) return place(found.error());
   const WaterGrid grid = grid_of(spec);
+  if (grid.count() > k_most_cells)
+    return place(usage_error(fmt::format(
+        "{}: {} x {} cells of {:.3g} m are {:.3g} millions: more than {:.3g} millions "
+        "fit in no memory",
+        spec.owner(), grid.nx, grid.nz, grid.cell, 1e-6 * double(grid.count()), 1e-6 * double(k_most_cells))));
   std::vector<double> bed;
   double depth = spec.depth;
   if (!spec.bed.empty()) {
