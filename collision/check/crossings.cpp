@@ -110,6 +110,16 @@ bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Ve
   return u * w >= 0 && v * w >= 0;
 }
 
+bool edge_crosses_any(const Vec3& p, const Vec3& q, const TriangleTree& tree, std::span<const Vec3> positions,
+                      std::span<const Triangle> triangles) {
+  bool out = false;
+  tree.for_each_near(TreeBox::around(p.cwiseMin(q), p.cwiseMax(q)), [&](int t) {
+    const Triangle& c = triangles[at(t)];
+    out = out || edge_crosses_triangle(p, q, positions[at(c[0])], positions[at(c[1])], positions[at(c[2])]);
+  });
+  return out;
+}
+
 std::vector<Crossing> crossings_between(const CheckedSurface& a, const CheckedSurface& b) {
   if (a.empty() || b.empty()) return {};
   return crossings_of_pairs(a, b, [&](int i, int j, std::vector<Crossing>& out) {

@@ -8,6 +8,7 @@
 #include "baker/core/mesh.h"
 #include "baker/core/types.h"
 #include "collision/check/checked_surface.h"
+#include "collision/geometry/triangle_tree.h"
 
 namespace ft::inline collision {
 
@@ -16,6 +17,9 @@ namespace ft::inline collision {
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 bool edge_crosses_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
+/// Whether it crosses any of the triangles that a tree is over.
+bool edge_crosses_any(const Vec3& p, const Vec3& q, const TriangleTree& tree, std::span<const Vec3> positions,
+                      std::span<const Triangle> triangles);
 
 struct Crossing {
   Edge edge;

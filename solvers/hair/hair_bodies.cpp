@@ -110,14 +110,8 @@ bool HairBodies::has_sheets() const {
 
 bool HairBodies::through_sheet(const Vec3& a, const Vec3& b) const {
   bool out = false;
-  for (int k = 0; k < count(); ++k) {
-    if (!sheet(k)) continue;
-    const auto x = before(k);
-    tree(k).tree().for_each_near(TreeBox::around(a.cwiseMin(b), a.cwiseMax(b)), [&](int t) {
-      const Triangle& corner = triangles(k)[at(t)];
-      out = out || edge_crosses_triangle(a, b, x[at(corner[0])], x[at(corner[1])], x[at(corner[2])]);
-    });
-  }
+  for (int k = 0; k < count() && !out; ++k)
+    out = sheet(k) && edge_crosses_any(a, b, tree(k).tree(), before(k), triangles(k));
   return out;
 }
 

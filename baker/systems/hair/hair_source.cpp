@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "baker/core/mesh.h"
+#include "collision/check/crossings.h"
 #include "io/hair/guides.h"
 #include "io/hair/resample.h"
 #include "io/shot/mesh_file.h"
@@ -120,6 +121,19 @@ void add_surface(std::span<const Vec3> x, std::span<const Triangle> triangles, s
   for (const Triangle& t : triangles) all_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
+/// How many went through.
+std::size_t leave_out_through(std::span<const Vec3> x, std::span<const Triangle> triangles,
+                              std::vector<GrownStrand>& strands) {
+  if (triangles.empty()) return 0;
+  const TriangleTree tree(x, triangles);
+  return std::erase_if(strands, [&](const GrownStrand& strand) {
+    bool through = false;
+    for (std::size_t i = 1; i < strand.line.size() && !through; ++i)
+      through = edge_crosses_any(strand.line[i - 1], strand.line[i], tree, x, triangles);
+    return through;
+  });
+}
+
 Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body, std::span<const Triangle> triangles,
                                std::span<const HairBody> bodies) {
   HairSource out;
@@ -158,11 +172,15 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
                     least, spec.region_radius),
         {}, "region is a place on the body as garments lie on it, in its bind pose");
   }
-  // A garment is so nearly closed around what it covers that winding numbers tell its inside.
-  std::vector<Vec3> covered(body.begin(), body.end());
-  std::vector<Triangle> cover(triangles.begin(), triangles.end());
-  for (const HairBody& met : bodies)
-    if (met.sheet) add_surface(bind_pose_of(*met.trajectory), met.trajectory->surface().triangles, covered, cover);
+  // A garment is so nearly closed around what it covers that winding numbers tell its inside; but not beside its rims.
+  std::vector<Vec3> covered(body.begin(), body.end()), sheets;
+  std::vector<Triangle> cover(triangles.begin(), triangles.end()), sheet_triangles;
+  for (const HairBody& met : bodies) {
+    if (!met.sheet) continue;
+    const std::vector<Vec3> bind = bind_pose_of(*met.trajectory);
+    add_surface(bind, met.trajectory->surface().triangles, covered, cover);
+    add_surface(bind, met.trajectory->surface().triangles, sheets, sheet_triangles);
+  }
   auto strands = grown(growth, covered, cover, region);
   if (!strands) return strands.error();
   const auto wanted = static_cast<std::size_t>(std::llround(area * growth.density));
@@ -170,6 +188,8 @@ Result<HairSource> from_region(const HairSpec& spec, std::span<const Vec3> body,
     out.notes.push_back(
         fmt::format("{} of {} guides would begin inside of the body, under another layer of it: left out",
                     wanted - strands->size(), wanted));
+  if (const std::size_t through = leave_out_through(sheets, sheet_triangles, *strands); through > 0)
+    out.notes.push_back(fmt::format("{} guides would grow through a garment: left out", through));
   for (GrownStrand& grown_strand : *strands) {
     HairStrand& strand = out.strands.emplace_back();
     strand.id = out.strands.size() - 1;

@@ -25,15 +25,8 @@ std::vector<int> segments_through(std::span<const Vec3> x, std::span<const int> 
   std::vector<int> out;
   const TriangleTree tree(y, sheet.triangles);
   for (std::size_t s = 0; s + 1 < first.size(); ++s)
-    for (int v = first[s] + 1; v < first[s + 1]; ++v) {
-      const Vec3 &p = x[at(v - 1)], &q = x[at(v)];
-      bool through = false;
-      tree.for_each_near(TreeBox::around(p.cwiseMin(q), p.cwiseMax(q)), [&](int t) {
-        const Triangle& corner = sheet.triangles[at(t)];
-        through = through || edge_crosses_triangle(p, q, y[at(corner[0])], y[at(corner[1])], y[at(corner[2])]);
-      });
-      if (through) out.push_back(v);
-    }
+    for (int v = first[s] + 1; v < first[s + 1]; ++v)
+      if (edge_crosses_any(x[at(v - 1)], x[at(v)], tree, y, sheet.triangles)) out.push_back(v);
   return out;
 }
 
