@@ -5,7 +5,8 @@
 // is near each vertex at its start becomes up to three planes of the body as it is at its end, and what is near each
 // segment to two (rod_step.h); four strands at a time are then solved by Newton's method (rod_step.h). BDF2, which
 // keeps swings; a step that differs from the one before it begins anew with implicit Euler. What does not settle is
-// done again in 2, 4 or 8 pieces. The groom is the equilibrium: rest_shape.h.
+// done again in 2, 4 or 8 pieces; of a strand that went through a sheet, with planes where it did
+// (sheet_passage.h). The groom is the equilibrium: rest_shape.h.
 //
 // Strands feel one another as a crowd, as it is at the start of a step (hair_crowd.h).
 //
