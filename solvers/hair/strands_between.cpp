@@ -98,8 +98,7 @@ bool StrandsBetween::push_out(const Plane& of_guide, const Vec3& guide, double k
 }
 
 /// Of a segment that goes through a sheet both ends go nearer to the nearest guide, by halves, and in the end onto it;
-/// what that puts into a body, too.
-/// What is that near to a guide that goes through itself is where that is.
+/// what that puts into a body, too. A guide that goes through the sheet itself keeps its strands there.
 void StrandsBetween::clear_sheets(const GuidesNow& guides, std::span<const Plane> planes, std::size_t strand,
                                   std::span<Vec3> p) const {
   const std::size_t first = at(strands_[strand].guides[0]) * n_;

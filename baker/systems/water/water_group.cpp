@@ -68,39 +68,39 @@ Status find_floats(const WaterSpec& spec, BakePlan& plan, WaterGroup& group, std
 
 using Floats = std::vector<std::pair<FloatingBody, RigidMotion>>;
 
-ShallowSetup shallow_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, std::vector<double> bed,
-                           Floats floats) {
-  ShallowSetup out;
+/// What models of columns over a bed have in common.
+template <class Setup, class Edge>
+Setup columns_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, std::vector<double> bed,
+                    Floats floats, Edge wall, Edge open) {
+  Setup out;
   out.name = spec.name;
   out.origin = grid.origin, out.cell = grid.cell, out.nx = grid.nx, out.nz = grid.nz;
   out.bed = bed.empty() ? std::vector<double>(grid.count(), spec.position.y() - spec.depth) : std::move(bed);
   out.level = spec.position.y();
-  out.edges.fill(spec.edges == "wall" ? ShallowEdge::k_wall : ShallowEdge::k_open);
+  out.edges.fill(spec.edges == "wall" ? wall : open);
   if (spec.edges == "drain") out.depth = depths_that_stay(grid, out.bed, out.level);
   out.gravity = shot.solver.gravity.norm();
   out.manning = spec.roughness;
   out.seed = static_cast<std::uint64_t>(spec.seed);
   out.splash.on = spec.splash > 0;
-  out.splash.share = std::min(1.0, out.splash.share * spec.splash);
   for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start});
+  return out;
+}
+
+ShallowSetup shallow_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, std::vector<double> bed,
+                           Floats floats) {
+  auto out = columns_setup<ShallowSetup>(shot, spec, grid, std::move(bed), std::move(floats), ShallowEdge::k_wall,
+                                         ShallowEdge::k_open);
+  out.splash.share = std::min(1.0, out.splash.share * spec.splash);
   return out;
 }
 
 PaperSetup paper_setup(const Shot& shot, const WaterSpec& spec, const WaterGrid& grid, std::vector<double> bed,
                        Floats floats) {
-  PaperSetup out;
-  out.name = spec.name;
-  out.origin = grid.origin, out.cell = grid.cell, out.nx = grid.nx, out.nz = grid.nz;
-  out.bed = bed.empty() ? std::vector<double>(grid.count(), spec.position.y() - spec.depth) : std::move(bed);
-  out.level = spec.position.y();
-  out.edges.fill(spec.edges == "wall" ? PaperEdge::k_wall : PaperEdge::k_open);
-  if (spec.edges == "drain") out.depth = depths_that_stay(grid, out.bed, out.level);
-  out.gravity = shot.solver.gravity.norm();
-  out.manning = spec.roughness, out.viscosity = k_viscosity;
-  out.seed = static_cast<std::uint64_t>(spec.seed);
-  out.splash.on = spec.splash > 0;
+  auto out = columns_setup<PaperSetup>(shot, spec, grid, std::move(bed), std::move(floats), PaperEdge::k_wall,
+                                       PaperEdge::k_open);
+  out.viscosity = k_viscosity;
   if (spec.splash > 0) out.splash.threshold /= spec.splash;
-  for (auto& [body, start] : floats) out.floats.push_back({std::move(body), start});
   return out;
 }
 
