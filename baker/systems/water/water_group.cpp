@@ -170,10 +170,9 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   if (const Status found = find_visitors(shot, spec, plan, *group, scene); !found) return place(found.error());
   const WaterGrid grid = grid_of(spec);
   if (grid.count() > k_most_cells)
-    return place(usage_error(
-        fmt::format("{} x {} cells of {:.3g} m are {:.3g} millions: more than {:.3g} millions fit in "
-                    "no memory",
-                    grid.nx, grid.nz, grid.cell, 1e-6 * double(grid.count()), 1e-6 * double(k_most_cells))));
+    return place(usage_error(fmt::format("{} x {} cells of {:.3g} m are more than {:.3g} millions", grid.nx, grid.nz,
+                                         grid.cell, 1e-6 * double(k_most_cells)),
+                             {}, "a larger cell, or none, which is chosen by the size"));
   std::vector<double> bed;
   double depth = spec.depth;
   if (!spec.bed.empty()) {

@@ -44,7 +44,7 @@ Status check_paper_setup(const PaperSetup& s) {
   if (faults.empty()) return {};
   std::string all;
   for (const std::string& f : faults) all += (all.empty() ? "" : "; ") + f;
-  return usage_error(fmt::format("water \"{}\": {}", s.name, all));
+  return usage_error(all);
 }
 
 }  // namespace ft::inline solvers

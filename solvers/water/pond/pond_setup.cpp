@@ -111,7 +111,7 @@ Status check_pond(const PondSetup& s) {
   if (faults.empty()) return {};
   std::string text;
   for (const std::string& f : faults) text += (text.empty() ? "" : "; ") + f;
-  return usage_error(text, s.name);
+  return usage_error(text);
 }
 
 }  // namespace ft::inline solvers
