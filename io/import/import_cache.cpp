@@ -1,7 +1,7 @@
 #include "io/import/import_cache.h"
 
 #include "baker/core/file.h"
-#include "io/import/files/assimp_read.h"
+#include "io/import/files/read_character.h"
 #include "io/import/import_child.h"
 
 namespace ft::inline io {

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "baker/core/file.h"
-#include "io/import/files/assimp_read.h"
+#include "io/import/files/read_character.h"
 #include "io/import/import.h"
 #include "io/reading/guarded_child.h"
 
@@ -23,7 +23,7 @@ Result<Character> import_in_child(const std::filesystem::path& file, const Impor
 int import_child_main(int argc, char** argv) {
   if (argc != 4 || std::strcmp(argv[1], "--import-child") != 0) return 64;
   return child_exit_code(argv[3], [&]() -> Status {
-    auto character = read_with_assimp(argv[2]);
+    auto character = read_character(argv[2]);
     if (!character) return character.error();
     if (Status checked = check_character(*character); !checked) return checked;
     return write_file_durably(argv[3], save_character(*character));

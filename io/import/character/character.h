@@ -79,6 +79,13 @@ struct Dependency {
   Hash128 hash;
 };
 
+/// A kind of thing that a file holds, and what becomes of it.
+struct FileContent {
+  std::string what;        ///< plural, as the format calls it: "animation layers", "constraints"
+  std::int64_t count = 0;  ///< of them in the file
+  std::string use;         ///< "used", "not used: ..." with the reason
+};
+
 struct Character {
   std::string format;                 ///< "glTF", "FBX", ...
   double file_unit = 1;               ///< m per file unit, as the file says; 0 when the format carries none (BVH)
@@ -88,6 +95,7 @@ struct Character {
   std::vector<CharacterMesh> meshes;  ///< one per use of a mesh by a node
   std::vector<Clip> clips;
   std::vector<Dependency> dependencies;
+  std::vector<FileContent> contents;  ///< in the order in which a reader of `info FILE` wants to see them
   std::vector<std::string> notes;
 };
 

@@ -6,7 +6,7 @@ namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_magic = 0x3152414843544646ull;  // "FFTCHAR1"
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 
 template <class T>
 void put_vector(ByteWriter& out, const std::vector<T>& values) {
@@ -135,6 +135,9 @@ Bytes save_character(const Character& character) {
   }
   out.write(static_cast<std::uint64_t>(character.dependencies.size()));
   for (const Dependency& d : character.dependencies) out.write_string(d.path).write(d.hash.low).write(d.hash.high);
+  out.write(static_cast<std::uint64_t>(character.contents.size()));
+  for (const FileContent& content : character.contents)
+    out.write_string(content.what).write(content.count).write_string(content.use);
   out.write(static_cast<std::uint64_t>(character.notes.size()));
   for (const std::string& note : character.notes) out.write_string(note);
 
@@ -188,6 +191,12 @@ Result<Character> load_character_bytes(std::span<const std::byte> data) {
     d.path = in.read_string();
     d.hash.low = in.read<std::uint64_t>();
     d.hash.high = in.read<std::uint64_t>();
+  }
+  c.contents.resize(get_count(in, 16));
+  for (FileContent& content : c.contents) {
+    content.what = in.read_string();
+    content.count = in.read<std::int64_t>();
+    content.use = in.read_string();
   }
   c.notes.resize(get_count(in, 4));
   for (std::string& note : c.notes) note = in.read_string();

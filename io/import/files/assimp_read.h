@@ -14,9 +14,6 @@ struct aiMesh;
 
 namespace ft::inline io {
 
-/// Version of everything that turns file bytes into a Character; part of the import cache's key.
-inline constexpr const char* k_importer_version = "import 1";
-
 /// Reads the file and what it refers to. The result is not checked yet (check_character).
 Result<Character> read_with_assimp(const std::filesystem::path& file);
 

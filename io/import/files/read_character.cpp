@@ -1,0 +1,11 @@
+#include "io/import/files/read_character.h"
+
+#include "io/import/files/assimp_read.h"
+
+namespace ft::inline io {
+
+Result<Character> read_character(const std::filesystem::path& file) {
+  return read_with_assimp(file);
+}
+
+}  // namespace ft::inline io
