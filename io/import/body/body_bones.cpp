@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/import/body/bind.h"
-#include "io/import/body/limbs.h"
-
 namespace ft::inline io {
 namespace {
 
@@ -55,34 +52,28 @@ bool is_end(const Character& character, std::size_t joint) {
 
 Landmarks find_landmarks(const Character& character, const BodyFrame& frame, const std::vector<Limb>& limb) {
   Landmarks out;
-  int hips = -1;
+  const Figure& figure = frame.figure;
   Vec3 toes = Vec3::Zero();
   const auto at = [&](int joint) -> const Vec3& { return frame.joints[static_cast<std::size_t>(joint)]; };
   for (std::size_t i = 0; i < limb.size(); ++i) {
-    const int joint = static_cast<int>(i), parent = character.nodes[i].parent;
-    if (is_end(character, i)) continue;
-    const bool first_of_kind = parent < 0 || limb[static_cast<std::size_t>(parent)] != limb[i];
-    if (hips < 0 && limb[i] == Limb::k_hips) hips = joint;
-    if (out.neck < 0 && (limb[i] == Limb::k_neck || limb[i] == Limb::k_head)) out.neck = joint;
-    if (limb[i] == Limb::k_thigh && first_of_kind) out.thighs.push_back(joint);
-    if (limb[i] == Limb::k_upper_arm && first_of_kind) out.arms.push_back(joint);
-    if (limb[i] == Limb::k_foot)
-      for (const int child : frame.children[i]) toes += at(child) - at(joint);
+    if (is_end(character, i) || !frame.members[i] || limb[i] != Limb::k_foot) continue;
+    for (const int child : frame.children[i]) toes += at(child) - at(static_cast<int>(i));
   }
-  out.hips = std::max(hips, 0);
-  out.complete = out.thighs.size() == 2 && out.arms.size() == 2 && at(out.arms[0]).y() > at(out.thighs[0]).y() + 0.1;
+  out.neck = figure.neck;
+  for (const FigureLimb& leg : figure.legs) out.thighs.push_back(leg.upper);
+  for (const FigureLimb& arm : figure.arms) out.arms.push_back(arm.upper);
+  out.complete = out.thighs.size() == 2 && out.arms.size() == 2 && figure.base >= 0 &&
+                 at(out.arms[0]).y() > at(out.thighs[0]).y() + 0.1;
   if (!out.complete) return out;
+  out.hips = figure.hips;
   out.side = at(out.thighs[0]) - at(out.thighs[1]);
   out.side.y() = 0;
   out.side = out.side.norm() > 1e-6 ? out.side.normalized() : Vec3::UnitX().eval();
   toes.y() = 0;
   toes -= toes.dot(out.side) * out.side;
   out.forward = toes.norm() > 1e-6 ? toes.normalized() : out.side.cross(Vec3::UnitY()).eval();
-  // The chest is the lowest joint above both arms.
-  int a = out.arms[0], b = out.arms[1];
-  while (a != b) (a > b ? a : b) = character.nodes[static_cast<std::size_t>(std::max(a, b))].parent;
-  out.chest = a;
-  for (int joint = a; joint >= 0; joint = character.nodes[static_cast<std::size_t>(joint)].parent) {
+  out.chest = figure.chest;
+  for (int joint = out.chest; joint >= 0; joint = character.nodes[static_cast<std::size_t>(joint)].parent) {
     out.spine.insert(out.spine.begin(), joint);
     if (joint == out.hips) break;
   }
@@ -92,11 +83,23 @@ Landmarks find_landmarks(const Character& character, const BodyFrame& frame, con
 class FleshBuilder {
  public:
   FleshBuilder(const Character& character, const BodyFrame& frame)
-      : frame_(frame), limb_(limbs_by_name(character)), marks_(find_landmarks(character, frame, limb_)) {}
+      : character_(character),
+        frame_(frame),
+        limb_(limbs_by_name(character)),
+        marks_(find_landmarks(character, frame, limb_)) {}
 
   std::vector<BodyBone> build() {
-    for (std::size_t i = 0; i < limb_.size(); ++i)
-      for (const int child : frame_.children[i]) add_bone(static_cast<int>(i), child);
+    for (std::size_t i = 0; i < limb_.size(); ++i) {
+      if (!frame_.members[i]) continue;
+      const int joint = static_cast<int>(i);
+      if (limb_[i] == Limb::k_head && !is_end(character_, i)) {
+        const int parent = character_.nodes[i].parent;
+        if (parent < 0 || limb(parent) != Limb::k_head) add_head(joint, at(joint), at(joint) + to_top(joint));
+        continue;
+      }
+      for (const int child : frame_.children[i]) add_bone(joint, child);
+      add_stub(joint);
+    }
     if (marks_.complete) add_torso();
     return std::move(out_);
   }
@@ -108,7 +111,6 @@ class FleshBuilder {
 
   void add_bone(int joint, int child) {
     const Vec3 &a = at(joint), &b = at(child);
-    if (limb(joint) == Limb::k_head) return add_head(joint, a, b);
     if ((b - a).norm() < 1e-4) return;
     Radii r = radii(limb(joint));
     switch (limb(joint)) {
@@ -136,6 +138,34 @@ class FleshBuilder {
       default: break;
     }
     add(joint, a, b, r.at_joint, r.at_end);
+  }
+
+  /// From a head's joint to its top: its end, else of its children (eyes, jaw) the one that goes on as the neck does.
+  Vec3 to_top(int head) const {
+    Vec3 best = Vec3::Zero();
+    double most = -std::numeric_limits<double>::infinity();
+    const int parent = character_.nodes[static_cast<std::size_t>(head)].parent;
+    const Vec3 up = parent >= 0 ? Vec3(at(head) - at(parent)) : Vec3::UnitY().eval();
+    for (const int child : frame_.children[static_cast<std::size_t>(head)]) {
+      const bool end = is_end(character_, static_cast<std::size_t>(child)) || limb(child) == Limb::k_head;
+      const double along = (at(child) - at(head)).dot(up) + (end ? 1e3 : 0);
+      if (along > most) most = along, best = at(child) - at(head);
+    }
+    return best;
+  }
+
+  /// What a joint without a bone behind it has: hand, foot and toes go on.
+  void add_stub(int joint) {
+    const auto& below = frame_.children[static_cast<std::size_t>(joint)];
+    const int parent = character_.nodes[static_cast<std::size_t>(joint)].parent;
+    const bool goes_on =
+        std::any_of(below.begin(), below.end(), [&](int child) { return (at(child) - at(joint)).norm() >= 1e-4; });
+    if (goes_on || parent < 0 || is_end(character_, static_cast<std::size_t>(joint))) return;
+    const Vec3 &a = at(joint), way = a - at(parent);
+    if (limb(joint) == Limb::k_hand && way.norm() > 1e-4) add(joint, a, a + 0.065 * way.normalized(), 0.019, 0.015);
+    if (limb(joint) == Limb::k_foot && marks_.complete)
+      add(joint, a, a + 0.11 * marks_.forward - Vec3(0, 0.015, 0), 0.024, 0.018);
+    if (limb(joint) == Limb::k_toe && marks_.complete) add(joint, a, a + 0.03 * marks_.forward, 0.018, 0.015);
   }
 
   void add_collar(int joint, const Vec3& a, const Vec3& b) {
@@ -182,6 +212,7 @@ class FleshBuilder {
     out_.push_back({node, a, b, radius_a, radius_b});
   }
 
+  const Character& character_;
   const BodyFrame& frame_;
   std::vector<Limb> limb_;
   Landmarks marks_;
@@ -221,19 +252,24 @@ void raise_arms(const Character& character, BodyFrame& frame) {
 
 }  // namespace
 
-Result<BodyFrame> body_frame(const Character& character, const Mat3& axes) {
+Result<BodyFrame> body_frame(const Character& character, int root, const Mat3& axes, std::span<const Mat4> globals) {
   BodyFrame frame;
   frame.axes = axes;
-  frame.globals = rest_globals(character);
+  frame.figure = find_figure(character, root);
+  frame.globals.assign(globals.begin(), globals.end());
   frame.children.resize(character.nodes.size());
+  frame.members = figure_nodes(character);
+  std::vector<char> below_root(character.nodes.size(), 0);
   Box box;
-  for (const Mat4& m : frame.globals) {
-    frame.joints.push_back(axes * m.topRightCorner<3, 1>());
-    box.include(frame.joints.back());
-  }
-  for (std::size_t i = 0; i < character.nodes.size(); ++i)
-    if (const int parent = character.nodes[i].parent; parent >= 0)
+  for (std::size_t i = 0; i < character.nodes.size(); ++i) {
+    const int above = character.nodes[i].parent;
+    below_root[i] = static_cast<int>(i) == root || (above >= 0 && below_root[static_cast<std::size_t>(above)]);
+    frame.members[i] = frame.members[i] && below_root[i];
+    frame.joints.push_back(axes * frame.globals[i].topRightCorner<3, 1>());
+    if (frame.members[i]) box.include(frame.joints.back());
+    if (const int parent = character.nodes[i].parent; parent >= 0 && frame.members[i])
       frame.children[static_cast<std::size_t>(parent)].push_back(static_cast<int>(i));
+  }
   const double height = box.size().y();
   if (!(height > 1e-9) || !(box.size().norm() < 20 * height))
     return input_error("no body can be built: the skeleton has no height in its rest pose", "",
@@ -248,11 +284,22 @@ std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) 
   return FleshBuilder(character, frame).build();
 }
 
+std::vector<BodyBone> links(const BodyFrame& frame) {
+  std::vector<BodyBone> out;
+  for (std::size_t i = 0; i < frame.children.size(); ++i)
+    for (const int child : frame.children[i])
+      if (frame.members[i])
+        out.push_back(
+            {static_cast<int>(i), frame.joints[i], frame.joints[static_cast<std::size_t>(child)], 0.026, 0.026});
+  return out;
+}
+
 std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame) {
   const std::vector<Limb> limb = limbs_by_name(character);
   std::vector<BodyBone> out;
   for (std::size_t i = 0; i < limb.size(); ++i)
     for (const int child : frame.children[i]) {
+      if (!frame.members[i]) continue;
       const Vec3 &a = frame.joints[i], &b = frame.joints[static_cast<std::size_t>(child)];
       if ((b - a).norm() < 0.018) continue;
       const Radii r = radii(limb[i]);

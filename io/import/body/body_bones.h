@@ -3,9 +3,10 @@
 // medians), rounded.
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "io/import/character/character.h"
+#include "io/import/body/figure.h"
 
 namespace ft::inline io {
 
@@ -15,22 +16,27 @@ struct BodyBone {
   double radius_a = 0, radius_b = 0;
 };
 
-/// Joints in the normal frame: position = scale * axes * global translation. The pose is the rest pose, with arms that
-/// hang beside the body raised to the side, so that hands do not grow together with thighs.
+/// Joints in the normal frame: position = scale * axes * global translation. The pose is the one that was asked for,
+/// with arms that hang beside the body raised to the side, so that hands do not grow together with thighs.
 struct BodyFrame {
   std::vector<Mat4> globals;  ///< of all nodes in that pose, file units and axes
   bool arms_raised = false;
   std::vector<Vec3> joints;
-  std::vector<std::vector<int>> children;
+  std::vector<char> members;               ///< of the skeleton: below its root, and of the figure (figure_nodes())
+  std::vector<std::vector<int>> children;  ///< of members
+  Figure figure;
   Mat3 axes = Mat3::Identity();
   double scale = 1;  ///< 1 / (height in file units)
 };
 
-/// Fails when the skeleton has no height.
-Result<BodyFrame> body_frame(const Character& character, const Mat3& axes);
+/// Of the skeleton below `root`, in the pose of these globals. Fails when it has no height.
+Result<BodyFrame> body_frame(const Character& character, int root, const Mat3& axes, std::span<const Mat4> globals);
 
 /// Many overlapping capsules that blend into a body: lobes beside the spine, hips, heels, skull.
 std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame);
+
+/// Thin capsules along bones that flesh() has no flesh for: they hold together what would come in pieces.
+std::vector<BodyBone> links(const BodyFrame& frame);
 
 /// One capsule per bone, as thick as a body is there.
 std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame);

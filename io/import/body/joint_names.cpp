@@ -56,8 +56,9 @@ std::vector<std::string> parts_of(std::string_view name) {
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (!is_letter(name[i])) continue;
     const bool first = i == 0 || !is_letter(name[i - 1]);
-    const bool hump = is_large(name[i]) && !first &&
-                      (!is_large(name[i - 1]) || (i + 1 < name.size() && is_letter(name[i + 1]) && !is_large(name[i + 1])));
+    const bool hump =
+        is_large(name[i]) && !first &&
+        (!is_large(name[i - 1]) || (i + 1 < name.size() && is_letter(name[i + 1]) && !is_large(name[i + 1])));
     if (first || hump) out.emplace_back();
     out.back().push_back(small(name[i]));
   }
@@ -112,8 +113,7 @@ Side side_by_name(std::string_view name) {
     for (const Word& w : k_words)
       if (std::string_view(word).substr(1).starts_with(w.text)) return word[0] == 'l' ? Side::k_left : Side::k_right;
   for (const std::string& part : parts)
-    if (part.ends_with("left") || part.ends_with("right"))
-      return part.ends_with("left") ? Side::k_left : Side::k_right;
+    if (part.ends_with("left") || part.ends_with("right")) return part.ends_with("left") ? Side::k_left : Side::k_right;
   return Side::k_none;
 }
 

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include "io/import/bvh/bvh_words.h"
-#include "io/import/character/character.h"
 
 namespace ft::inline io {
 namespace {
 
 /// Beyond these a "Frame Time" is another quantity: frames per second, or milliseconds [s].
 constexpr double k_shortest_frame = 1e-4, k_longest_frame = 5;
-constexpr std::size_t k_most_channels = 9, k_most_depth = 4096;
+constexpr std::size_t k_most_channels = 9, k_most_depth = 512, k_most_joints = 20'000, k_most_roots = 64;
 
 Error fault_at(int line, const std::string& what, const std::string& hint = "") {
   return input_error(what, fmt::format("line {}", line), hint);
@@ -65,9 +64,11 @@ class HierarchyReader {
 
   Status open_joint(bool end_site) {
     if (in_end_site()) return fault(joint_text() + " has a joint below it");
-    if (out_.joints.size() >= k_max_character_nodes || open_.size() >= k_most_depth)
-      return fault(fmt::format("has more than {} joints, or more than {} of them one below the other",
-                               k_max_character_nodes, k_most_depth));
+    if (open_.empty() && ++root_count_ > k_most_roots)
+      return fault(fmt::format("has more than {} skeletons (ROOT)", k_most_roots));
+    if (out_.joints.size() >= k_most_joints || open_.size() >= k_most_depth)
+      return fault(fmt::format("has more than {} joints, or more than {} of them one below the other", k_most_joints,
+                               k_most_depth));
     BvhJoint joint;
     joint.line = words_.line();
     joint.parent = open_.empty() ? -1 : open_.back();
@@ -124,6 +125,7 @@ class HierarchyReader {
   BvhFile& out_;
   std::vector<int> open_;  // into joints
   std::vector<char> has_offset_, has_channels_;
+  std::size_t root_count_ = 0;
 };
 
 Status read_header(BvhWords& words, BvhFile& out) {
