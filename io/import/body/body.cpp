@@ -293,7 +293,7 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
   if (globals.empty()) globals = rest;
   std::vector<CharacterMesh> meshes;
   std::vector<std::string> bare;
-  bool arms_raised = false;
+  bool arms_raised = false, legs_parted = false;
   Error fault;
   for (int root = 0; root < static_cast<int>(rest.size()); ++root) {
     if (character.nodes[at(root)].parent >= 0) continue;
@@ -309,7 +309,7 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
     }
     const Mat3 back = axes.transpose() / frame->scale;
     for (Vec3& p : mesh.positions) p = back * p;
-    arms_raised = arms_raised || frame->arms_raised;
+    arms_raised = arms_raised || frame->arms_raised, legs_parted = legs_parted || frame->legs_parted;
     meshes.push_back(std::move(mesh));
   }
   if (meshes.empty()) return fault;
@@ -318,6 +318,8 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
   if (arms_raised)
     character.notes.emplace_back(
         "arms hang in the rest pose; the body, and what it wears, is modelled with arms raised");
+  if (legs_parted)
+    character.notes.emplace_back("legs are close together in the rest pose; the body is modelled with them apart");
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     meshes[k].name = meshes.size() == 1 ? "body" : "body_" + std::to_string(k + 1);
     meshes[k].node = static_cast<int>(character.nodes.size());

@@ -37,47 +37,8 @@ struct Section {
 constexpr Section k_torso[] = {{0.0, 0.060, 0.096},  {0.22, 0.058, 0.086}, {0.42, 0.053, 0.075},
                                {0.70, 0.064, 0.087}, {0.87, 0.057, 0.085}, {1.0, 0.040, 0.066}};
 
-/// Where the two sides of a body meet: hip joints, shoulder joints, and the directions they give.
-struct Landmarks {
-  int hips = 0, neck = -1, chest = 0;
-  std::vector<int> thighs, arms;
-  std::vector<int> spine;  ///< joints from the hips up to the chest
-  Vec3 side = Vec3::UnitX(), forward = Vec3::UnitZ();
-  bool complete = false;  ///< two thighs and two arms
-};
-
 bool is_end(const Character& character, std::size_t joint) {
   return character.nodes[joint].name.starts_with("EndSite");
-}
-
-Landmarks find_landmarks(const Character& character, const BodyFrame& frame, const std::vector<Limb>& limb) {
-  Landmarks out;
-  const Figure& figure = frame.figure;
-  Vec3 toes = Vec3::Zero();
-  const auto at = [&](int joint) -> const Vec3& { return frame.joints[static_cast<std::size_t>(joint)]; };
-  for (std::size_t i = 0; i < limb.size(); ++i) {
-    if (is_end(character, i) || !frame.members[i] || limb[i] != Limb::k_foot) continue;
-    for (const int child : frame.children[i]) toes += at(child) - at(static_cast<int>(i));
-  }
-  out.neck = figure.neck;
-  for (const FigureLimb& leg : figure.legs) out.thighs.push_back(leg.upper);
-  for (const FigureLimb& arm : figure.arms) out.arms.push_back(arm.upper);
-  out.complete = out.thighs.size() == 2 && out.arms.size() == 2 && figure.base >= 0 &&
-                 at(out.arms[0]).y() > at(out.thighs[0]).y() + 0.1;
-  if (!out.complete) return out;
-  out.hips = figure.hips;
-  out.side = at(out.thighs[0]) - at(out.thighs[1]);
-  out.side.y() = 0;
-  out.side = out.side.norm() > 1e-6 ? out.side.normalized() : Vec3::UnitX().eval();
-  toes.y() = 0;
-  toes -= toes.dot(out.side) * out.side;
-  out.forward = toes.norm() > 1e-6 ? toes.normalized() : out.side.cross(Vec3::UnitY()).eval();
-  out.chest = figure.chest;
-  for (int joint = out.chest; joint >= 0; joint = character.nodes[static_cast<std::size_t>(joint)].parent) {
-    out.spine.insert(out.spine.begin(), joint);
-    if (joint == out.hips) break;
-  }
-  return out;
 }
 
 class FleshBuilder {
@@ -86,7 +47,17 @@ class FleshBuilder {
       : character_(character),
         frame_(frame),
         limb_(limbs_by_name(character)),
-        marks_(find_landmarks(character, frame, limb_)) {}
+        marks_(find_landmarks(character, frame, limb_)),
+        of_many_(limb_.size(), 0) {
+    for (std::size_t i = 0; i < limb_.size(); ++i) {
+      if (limb_[i] != Limb::k_finger) continue;
+      const auto parent = static_cast<std::size_t>(std::max(character.nodes[i].parent, 0));
+      const auto& beside = frame.children[parent];
+      const auto fingers =
+          std::count_if(beside.begin(), beside.end(), [&](int n) { return limb(n) == Limb::k_finger; });
+      of_many_[i] = of_many_[parent] || fingers >= 4;
+    }
+  }
 
   std::vector<BodyBone> build() {
     for (std::size_t i = 0; i < limb_.size(); ++i) {
@@ -132,6 +103,9 @@ class FleshBuilder {
         add(joint, a, calf, r.at_joint, 0.035);
         return add(joint, calf, b, 0.035, r.at_end);
       }
+      case Limb::k_finger:
+        if (of_many_[static_cast<std::size_t>(joint)]) r = {0.0095, 0.008};
+        break;
       case Limb::k_foot:  // heel
         add(joint, a, a - 0.018 * marks_.forward - Vec3(0, 0.008, 0), 0.024, 0.022);
         break;
@@ -216,69 +190,11 @@ class FleshBuilder {
   const BodyFrame& frame_;
   std::vector<Limb> limb_;
   Landmarks marks_;
+  std::vector<char> of_many_;  ///< fingers of a hand that has four or more: as thin as fingers are
   std::vector<BodyBone> out_;
 };
 
-/// Turns an arm that points down by more than 45 degrees about its shoulder until it points sideways.
-void raise_arms(const Character& character, BodyFrame& frame) {
-  const Landmarks marks = find_landmarks(character, frame, limbs_by_name(character));
-  if (!marks.complete) return;
-  for (const int arm : marks.arms) {
-    const auto& below = frame.children[static_cast<std::size_t>(arm)];
-    const Vec3 shoulder = frame.joints[static_cast<std::size_t>(arm)];
-    Vec3 along = Vec3::Zero();
-    for (const int elbow : below) along += frame.joints[static_cast<std::size_t>(elbow)] - shoulder;
-    if (along.norm() < 1e-6 || along.normalized().y() > -0.7) continue;
-    const double sign = (shoulder - 0.5 * (frame.joints[static_cast<std::size_t>(marks.arms[0])] +
-                                           frame.joints[static_cast<std::size_t>(marks.arms[1])]))
-                            .dot(marks.side);
-    const Mat3 turn = Quat::FromTwoVectors(along, sign < 0 ? Vec3(-marks.side) : marks.side).toRotationMatrix();
-    const Mat3 turn_in_file = frame.axes.transpose() * turn * frame.axes;
-    const Vec3 pivot = frame.globals[static_cast<std::size_t>(arm)].topRightCorner<3, 1>();
-    Mat4 move = Mat4::Identity();
-    move.topLeftCorner<3, 3>() = turn_in_file;
-    move.topRightCorner<3, 1>() = pivot - turn_in_file * pivot;
-    std::vector<int> stack{arm};
-    while (!stack.empty()) {
-      const auto joint = static_cast<std::size_t>(stack.back());
-      stack.pop_back();
-      frame.globals[joint] = move * frame.globals[joint];
-      frame.joints[joint] = shoulder + turn * (frame.joints[joint] - shoulder);
-      stack.insert(stack.end(), frame.children[joint].begin(), frame.children[joint].end());
-    }
-    frame.arms_raised = true;
-  }
-}
-
 }  // namespace
-
-Result<BodyFrame> body_frame(const Character& character, int root, const Mat3& axes, std::span<const Mat4> globals) {
-  BodyFrame frame;
-  frame.axes = axes;
-  frame.figure = find_figure(character, root);
-  frame.globals.assign(globals.begin(), globals.end());
-  frame.children.resize(character.nodes.size());
-  frame.members = figure_nodes(character);
-  std::vector<char> below_root(character.nodes.size(), 0);
-  Box box;
-  for (std::size_t i = 0; i < character.nodes.size(); ++i) {
-    const int above = character.nodes[i].parent;
-    below_root[i] = static_cast<int>(i) == root || (above >= 0 && below_root[static_cast<std::size_t>(above)]);
-    frame.members[i] = frame.members[i] && below_root[i];
-    frame.joints.push_back(axes * frame.globals[i].topRightCorner<3, 1>());
-    if (frame.members[i]) box.include(frame.joints.back());
-    if (const int parent = character.nodes[i].parent; parent >= 0 && frame.members[i])
-      frame.children[static_cast<std::size_t>(parent)].push_back(static_cast<int>(i));
-  }
-  const double height = box.size().y();
-  if (!(height > 1e-9) || !(box.size().norm() < 20 * height))
-    return input_error("no body can be built: the skeleton has no height in its rest pose", "",
-                       "check up = ..., or use a file with a mesh");
-  frame.scale = 1 / height;
-  for (Vec3& p : frame.joints) p *= frame.scale;
-  raise_arms(character, frame);
-  return frame;
-}
 
 std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) {
   return FleshBuilder(character, frame).build();

@@ -3,10 +3,9 @@
 // medians), rounded.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "io/import/body/figure.h"
+#include "io/import/body/body_frame.h"
 
 namespace ft::inline io {
 
@@ -15,22 +14,6 @@ struct BodyBone {
   Vec3 a, b;      ///< shares of the skeleton's height
   double radius_a = 0, radius_b = 0;
 };
-
-/// Joints in the normal frame: position = scale * axes * global translation. The pose is the one that was asked for,
-/// with arms that hang beside the body raised to the side, so that hands do not grow together with thighs.
-struct BodyFrame {
-  std::vector<Mat4> globals;  ///< of all nodes in that pose, file units and axes
-  bool arms_raised = false;
-  std::vector<Vec3> joints;
-  std::vector<char> members;               ///< of the skeleton: below its root, and of the figure (figure_nodes())
-  std::vector<std::vector<int>> children;  ///< of members
-  Figure figure;
-  Mat3 axes = Mat3::Identity();
-  double scale = 1;  ///< 1 / (height in file units)
-};
-
-/// Of the skeleton below `root`, in the pose of these globals. Fails when it has no height.
-Result<BodyFrame> body_frame(const Character& character, int root, const Mat3& axes, std::span<const Mat4> globals);
 
 /// Many overlapping capsules that blend into a body: lobes beside the spine, hips, heels, skull.
 std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame);

@@ -148,7 +148,7 @@ Result<Placement> place_bind_pose(Character& character, const Clip* clip, const 
                                   std::vector<std::string>& notes) {
   const std::string name = request.file.string();
   const bool bare = character.meshes.empty() && character.format == "BVH";
-  bool made = !request.bind.empty();
+  bool made = false;
   bind = find_bind_pose(character);
   if (bare) {
     auto stands = standing_pose(character, clip, request.up, notes);
@@ -165,7 +165,13 @@ Result<Placement> place_bind_pose(Character& character, const Clip* clip, const 
   if (!bare) return placement;
   if (Status s = add_body(character, request.body, placement->axes, bind.globals); !s)
     return Error{s.error().kind, s.error().what, name, s.error().hint};
+  const BindPose without = std::move(bind);
   bind = find_bind_pose(character);
+  if (!request.bind.empty()) {  // the body was built with its legs apart perhaps
+    std::copy(without.globals.begin(), without.globals.end(), bind.globals.begin());
+    std::copy(without.locals.begin(), without.locals.end(), bind.locals.begin());
+    made = true;
+  }
   if (made) bind.from_inverse_binds = false;  // which is no surprise then
   notes.push_back("has no body; one was built from the skeleton (" + request.body + ")");
   return placement;
