@@ -45,6 +45,7 @@ struct PrimarySpec {
   std::string up;                    ///< "y", "z", "" = as the file says
   std::optional<double> source_fps;  ///< geometry caches: frames per second of the samples; default the shot's fps
   std::string body;                  ///< BVH: "blended" (default) or "capsules"
+  std::string bind;                  ///< "t_pose": garments are modelled on one; empty: on the file's bind pose
   std::optional<double> height;      ///< BVH and others: scale so that the bind pose is this tall [m]
   std::optional<double> mass;        ///< kg; without it from the body's volume
   std::vector<std::string> meshes;   ///< names of the meshes that make the collider; empty: all

@@ -188,8 +188,8 @@ Status read_motion(BvhWords& words, BvhFile& out, BvhSpelling spelling, std::siz
           line, fmt::format("frame {}, {}: {} is no finite number", frame, channel_text(out, value), quoted(word)),
           comma ? "numbers are written with a point and parted by blanks" : "");
     }
-    if (frame >= out.frame_count || width == 0)
-      return odd_fault(fmt::format("more numbers than its {} frames of {} have", out.frame_count, width));
+    if (width == 0 || out.frame_count == 0)
+      return fault_at(line, fmt::format("more numbers than its {} frames of {} have", out.frame_count, width));
     out.numbers.push_back(number);
     if (spelling == BvhSpelling::k_keep) out.values.push_back(word);
     if (++value == width) ++frame, value = 0;
@@ -198,7 +198,14 @@ Status read_motion(BvhWords& words, BvhFile& out, BvhSpelling spelling, std::siz
   if (width > 0 && frame < out.frame_count)
     return odd_fault(fmt::format("the file ends in frame {}, after {} of its {} numbers; {} frames were announced",
                                  frame, value, width, out.frame_count));
-  if (odd_line > 0 && line_count == out.frame_count) return odd_fault("the frames' numbers are shifted");
+  if (frame > out.frame_count || (frame == out.frame_count && value > 0)) {
+    if (value > 0) return odd_fault(fmt::format("more numbers than its {} frames of {} have", out.frame_count, width));
+    out.notes.push_back(
+        fmt::format("holds {} frames and announces {}; those beyond are left out", frame, out.frame_count));
+    out.numbers.resize(out.frame_count * width);
+    if (spelling == BvhSpelling::k_keep) out.values.resize(out.frame_count * width);
+  }
+  if (odd_line > 0 && line_count == frame) return odd_fault("the frames' numbers are shifted");
   return {};
 }
 
