@@ -52,7 +52,7 @@ std::map<std::string, Uses> all_uses(const Json& json) {
 }
 
 struct Counts {
-  std::int64_t primitives = 0, targets = 0, joints = 0, sparse = 0, channels = 0, weight_channels = 0;
+  std::int64_t primitives = 0, targets = 0, joints = 0, sparse = 0, channels = 0;
 };
 
 Counts count_parts(const Json& json) {

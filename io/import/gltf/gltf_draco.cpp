@@ -64,7 +64,7 @@ Result<DracoMesh> read_draco(GltfFile& file, const Json& primitive, const Json& 
   out.triangles.reserve(mesh.num_faces());
   for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
     const draco::Mesh::Face& face = mesh.face(draco::FaceIndex(f));
-    for (const draco::PointIndex p : face)
+    for (const draco::PointIndex& p : face)
       if (p.value() >= mesh.num_points()) return input_error(name + ": a triangle names a vertex that is not there");
     out.triangles.push_back(
         {static_cast<int>(face[0].value()), static_cast<int>(face[1].value()), static_cast<int>(face[2].value())});

@@ -58,6 +58,7 @@ class MeshReader {
     std::vector<std::int64_t> order(out_.nodes.size(), -1);
     for (std::size_t n = 0; n < node_of_.size(); ++n)
       if (node_of_[n] >= 0) order[static_cast<std::size_t>(node_of_[n])] = static_cast<std::int64_t>(n);
+    find_hidden(order, nodes);
     std::erase_if(order, [&](std::int64_t n) { return !element(nodes, n).contains("mesh"); });
     for (const std::int64_t n : order)
       if (Status s = count_use(n, nodes[static_cast<std::size_t>(n)]); !s) return s;
@@ -68,6 +69,18 @@ class MeshReader {
   }
 
  private:
+  /// KHR_node_visibility: a hidden node hides what is below it.
+  void find_hidden(const std::vector<std::int64_t>& json_node, const Json& nodes) {
+    hidden_.assign(out_.nodes.size(), 0);
+    for (std::size_t i = 0; i < hidden_.size(); ++i) {
+      const Json& extensions = member(element(nodes, json_node[i]), "extensions");
+      const Json& visible = member(member(extensions, "KHR_node_visibility"), "visible");
+      const int parent = out_.nodes[i].parent;
+      hidden_[i] = (visible.is_boolean() && !visible.get<bool>()) ||
+                   (parent >= 0 && hidden_[static_cast<std::size_t>(parent)] != 0);
+    }
+  }
+
   Status count_use(std::int64_t n, const Json& node) {
     const std::int64_t mesh = integer(member(node, "mesh"), -1);
     if (mesh < 0 || static_cast<std::size_t>(mesh) >= shared_.size())
@@ -94,6 +107,7 @@ class MeshReader {
       morph_count = std::max(morph_count, primitive.mesh.morphs.size());
       CharacterMesh& added = out_.meshes.emplace_back(last ? std::move(primitive.mesh) : primitive.mesh);
       added.node = node_of_[static_cast<std::size_t>(n)];
+      added.visible = hidden_[static_cast<std::size_t>(added.node)] == 0;
       if (!node.contains("skin") || primitive.weights.empty()) continue;
       if (Status s = put_skin(integer(member(node, "skin"), -1), primitive.weights, last, added); !s)
         return input_error(named(file_.json(), "nodes", n) + ": " + s.error().what);
@@ -145,6 +159,7 @@ class MeshReader {
   Character& out_;
   std::vector<Shared> shared_;
   std::vector<std::vector<SkinBone>> skins_;
+  std::vector<char> hidden_;  ///< by node of the character
   MeshRoom room_;
   MeshOddities odd_;
 };
