@@ -14,7 +14,6 @@
 #include <set>
 
 #include "baker/core/file.h"
-#include "io/import/files/gltf_clips.h"
 
 namespace ft::inline io {
 namespace {
@@ -182,7 +181,7 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   if (out.format != "BVH") read_meshes(*scene, nodes, out);
   read_clips(*scene, nodes, out);
   record_dependencies(file, files->opened(), out);
-  if (out.format == "glTF") read_gltf_clips(file, out);
+  if (out.format == "glTF") out.notes.emplace_back("is glTF 1.0: only its shapes were read");
   return out;
 }
 
