@@ -6,7 +6,7 @@ namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_magic = 0x3152414843544646ull;  // "FFTCHAR1"
-constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_version = 3;
 
 template <class T>
 void put_vector(ByteWriter& out, const std::vector<T>& values) {
@@ -69,7 +69,9 @@ Track get_track(ByteReader& in) {
 }
 
 void put_mesh(ByteWriter& out, const CharacterMesh& mesh) {
-  out.write_string(mesh.name).write(static_cast<std::int32_t>(mesh.node));
+  out.write_string(mesh.name)
+      .write(static_cast<std::int32_t>(mesh.node))
+      .write(static_cast<std::uint8_t>(mesh.visible));
   put_points(out, mesh.positions);
   put_vector(out, mesh.triangles);
   out.write(static_cast<std::uint64_t>(mesh.bones.size()));
@@ -90,6 +92,7 @@ CharacterMesh get_mesh(ByteReader& in) {
   CharacterMesh mesh;
   mesh.name = in.read_string();
   mesh.node = in.read<std::int32_t>();
+  mesh.visible = in.read<std::uint8_t>() != 0;
   mesh.positions = get_points(in);
   mesh.triangles = get_vector<Triangle>(in);
   mesh.bones.resize(get_count(in, 4 + sizeof(Mat4)));
@@ -136,7 +139,7 @@ Bytes save_character(const Character& character) {
   out.write(static_cast<std::uint64_t>(character.dependencies.size()));
   for (const Dependency& d : character.dependencies) out.write_string(d.path).write(d.hash.low).write(d.hash.high);
   out.write(static_cast<std::uint64_t>(character.contents.size()));
-  for (const FileContent& content : character.contents)
+  for (const CharacterContent& content : character.contents)
     out.write_string(content.what).write(content.count).write_string(content.use);
   out.write(static_cast<std::uint64_t>(character.notes.size()));
   for (const std::string& note : character.notes) out.write_string(note);
@@ -193,7 +196,7 @@ Result<Character> load_character_bytes(std::span<const std::byte> data) {
     d.hash.high = in.read<std::uint64_t>();
   }
   c.contents.resize(get_count(in, 16));
-  for (FileContent& content : c.contents) {
+  for (CharacterContent& content : c.contents) {
     content.what = in.read_string();
     content.count = in.read<std::int64_t>();
     content.use = in.read_string();
