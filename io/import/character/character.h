@@ -71,6 +71,8 @@ struct CharacterMesh {
   std::vector<int> influence_start;      ///< vertex count + 1 rows; empty when bones is
   std::vector<int> influence_bone;       ///< into bones
   std::vector<double> influence_weight;  ///< a row sums to 1, or is empty: the vertex follows `node`
+  /// Per vertex: the share of it that is skinned by dual quaternions instead of linearly, 0..1; empty: none.
+  std::vector<double> dual_share = {};
   std::vector<MorphTarget> morphs;
 };
 

@@ -82,6 +82,7 @@ void put_mesh(ByteWriter& out, const CharacterMesh& mesh) {
   put_vector(out, mesh.influence_start);
   put_vector(out, mesh.influence_bone);
   put_vector(out, mesh.influence_weight);
+  put_vector(out, mesh.dual_share);
   out.write(static_cast<std::uint64_t>(mesh.morphs.size()));
   for (const MorphTarget& morph : mesh.morphs) {
     out.write_string(morph.name);
@@ -103,6 +104,7 @@ CharacterMesh get_mesh(ByteReader& in) {
   mesh.influence_start = get_vector<int>(in);
   mesh.influence_bone = get_vector<int>(in);
   mesh.influence_weight = get_vector<double>(in);
+  mesh.dual_share = get_vector<double>(in);
   mesh.morphs.resize(get_count(in, 12));
   for (MorphTarget& morph : mesh.morphs) {
     morph.name = in.read_string();

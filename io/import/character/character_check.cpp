@@ -69,6 +69,10 @@ Status check_mesh(const CharacterMesh& mesh, int node_count) {
   } else if (!mesh.influence_bone.empty() || !mesh.influence_weight.empty()) {
     return fault(where, "skin is incomplete");
   }
+  if (!mesh.dual_share.empty() && (mesh.bones.empty() || mesh.dual_share.size() != n))
+    return fault(where, "shares of dual quaternions do not match the vertices");
+  for (const double share : mesh.dual_share)
+    if (!(share >= 0 && share <= 1)) return fault(where, "a share of dual quaternions is outside [0, 1]");
   for (const MorphTarget& morph : mesh.morphs) {
     if (morph.deltas.size() != n) return fault(where, "a morph target does not match the vertices");
     for (const Vec3& d : morph.deltas)

@@ -1,6 +1,7 @@
 #include "io/import/fbx/fbx_document.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace ft::inline io {
 namespace {
@@ -148,11 +149,12 @@ std::span<const FbxConnection> FbxDocument::out_of(std::int64_t source) const {
 std::vector<const FbxObject*> FbxDocument::members(std::int64_t destination, std::string_view kind,
                                                    std::string_view subkind) const {
   std::vector<const FbxObject*> out;
+  std::unordered_set<const FbxObject*> seen;
   for (const FbxConnection& c : into(destination)) {
     if (!c.destination_property.empty() || !c.source_property.empty()) continue;
     const FbxObject* source = object(c.source);
     if (source == nullptr || source->kind != kind || (!subkind.empty() && source->subkind != subkind)) continue;
-    if (std::find(out.begin(), out.end(), source) == out.end()) out.push_back(source);
+    if (seen.insert(source).second) out.push_back(source);
   }
   return out;
 }
