@@ -40,7 +40,7 @@ struct Channel {
 struct Clip {
   std::string name;
   double start = 0, end = 0;  ///< s: what the file says that it lasts, else first and last key
-  std::vector<Channel> channels;
+  std::vector<Channel> channels = {};
   std::vector<TransformStack> stacks = {};  ///< at most one per node
   std::vector<ShapeChannel> shapes = {};
   CurveSet curves = {};        ///< of the stacks and shapes
