@@ -16,10 +16,10 @@ namespace {
 /// Which numbers are animated: a property of an object.
 using AnimatedProperty = std::pair<std::int64_t, std::string>;
 
-/// Properties of a Model that change how it stands, or whether, and are not evaluated when they are animated.
+/// Properties of a Model that change how it stands and are not evaluated when they are animated.
 constexpr const char* k_not_evaluated[] = {
-    "Visibility",           "RotationOrder",     "RotationActive",   "InheritType",
-    "GeometricTranslation", "GeometricRotation", "GeometricScaling", "RotationSpaceForLimitOnly"};
+    "RotationOrder",    "RotationActive",           "InheritType", "GeometricTranslation", "GeometricRotation",
+    "GeometricScaling", "RotationSpaceForLimitOnly"};
 
 std::string seconds(double s) {
   char text[32];
@@ -198,7 +198,7 @@ class ClipReader {
 
   void add_shapes(Clip& clip) {
     for (const FbxShapeChannel& shape : shapes_) {
-      const AnimatedNumbers* numbers = find(shape.object, "DeformPercent");
+      const AnimatedNumbers* numbers = find(shape.object, shape.property);
       if (numbers == nullptr || shape.node < 0 || shape.shapes.empty()) continue;
       ShapeChannel channel{shape.node, shape.shapes, *numbers};
       channel.percent.rest = Vec3(shape.percent, 0, 0);

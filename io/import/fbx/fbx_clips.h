@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "io/import/character/character.h"
@@ -10,9 +11,10 @@
 
 namespace ft::inline io {
 
-/// A BlendShapeChannel whose shapes are morphs of a node.
+/// A shape, with those in between, that are morphs of a node, and the number that moves it.
 struct FbxShapeChannel {
-  std::int64_t object = 0;  ///< id of the Deformer "BlendShapeChannel"
+  std::int64_t object = 0;                 ///< id of the Deformer "BlendShapeChannel", or of the Geometry
+  std::string property = "DeformPercent";  ///< of the object; of a Geometry it bears the shape's name
   int node = -1;
   double percent = 0;                       ///< DeformPercent at rest
   std::vector<ShapeChannel::Shape> shapes;  ///< by full weight, ascending; `morph` of the node

@@ -159,4 +159,14 @@ std::vector<const FbxObject*> FbxDocument::members(std::int64_t destination, std
   return out;
 }
 
+std::vector<const FbxObject*> FbxDocument::members_of_properties(std::int64_t destination,
+                                                                 std::string_view kind) const {
+  std::vector<const FbxObject*> out;
+  for (const FbxConnection& c : into(destination)) {
+    const FbxObject* source = c.destination_property.empty() ? nullptr : object(c.source);
+    if (source != nullptr && source->kind == kind) out.push_back(source);
+  }
+  return out;
+}
+
 }  // namespace ft::inline io

@@ -64,6 +64,8 @@ class FbxDocument {
   /// Objects of a kind (and subkind, unless that is empty) that are connected to an object itself, each once.
   std::vector<const FbxObject*> members(std::int64_t destination, std::string_view kind,
                                         std::string_view subkind = {}) const;
+  /// The same of what is connected to its properties.
+  std::vector<const FbxObject*> members_of_properties(std::int64_t destination, std::string_view kind) const;
   /// GlobalSettings: units, axes, frame rate. Without properties when the file has none.
   const FbxObject& settings() const { return settings_; }
   /// Objects whose id an earlier one has; they are left out.

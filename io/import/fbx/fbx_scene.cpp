@@ -1,61 +1,13 @@
 #include "io/import/fbx/fbx_scene.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
+
+#include "io/import/fbx/fbx_transform.h"
 
 namespace ft::inline io {
-namespace {
-
-constexpr double k_degree = M_PI / 180;
-
-Mat4 rotation(const Vec3& angles_deg, std::int64_t order) {
-  constexpr int k_axes[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
-  const auto& axes = k_axes[order >= 0 && order < 6 ? order : 0];
-  Mat4 out = Mat4::Identity();
-  for (const int axis : axes) {
-    Mat4 turn = Mat4::Identity();
-    turn.topLeftCorner<3, 3>() = Eigen::AngleAxisd(angles_deg[axis] * k_degree, Vec3::Unit(axis)).toRotationMatrix();
-    out = turn * out;
-  }
-  return out;
-}
-
-Mat4 translation(const Vec3& v) {
-  Mat4 out = Mat4::Identity();
-  out.topRightCorner<3, 1>() = v;
-  return out;
-}
-
-/// T * Roff * Rp * Rpre * R * Rpost^-1 * Rp^-1 * Soff * Sp * S * Sp^-1, as the FBX SDK documents it.
-Mat4 rest_local(const FbxObject& model) {
-  const Vec3 zero = Vec3::Zero();
-  const bool active = model.integer("RotationActive", 0) != 0;
-  const Vec3 rotation_pivot = model.vector("RotationPivot", zero), scaling_pivot = model.vector("ScalingPivot", zero);
-  Mat4 turn = rotation(model.vector("Lcl Rotation", zero), active ? model.integer("RotationOrder", 0) : 0);
-  if (active)
-    turn = rotation(model.vector("PreRotation", zero), 0) * turn *
-           Mat4(rotation(model.vector("PostRotation", zero), 0).transpose());
-  Mat4 scale = Mat4::Identity();
-  scale.diagonal().head<3>() = model.vector("Lcl Scaling", Vec3::Ones());
-  return translation(model.vector("Lcl Translation", zero)) *
-         translation(model.vector("RotationOffset", zero) + rotation_pivot) * turn *
-         translation(model.vector("ScalingOffset", zero) + scaling_pivot - rotation_pivot) * scale *
-         translation(-scaling_pivot);
-}
-
-}  // namespace
-
 int FbxScene::node_of(const FbxObject* model) const {
   const auto found = model != nullptr ? node_of_model.find(model->id) : node_of_model.end();
   return found != node_of_model.end() ? found->second : -1;
-}
-
-Mat4 geometric_matrix(const Vec3& move, const Vec3& angles_deg, const Vec3& scale) {
-  Mat4 stretch = Mat4::Identity();
-  stretch.diagonal().head<3>() = scale;
-  return translation(move) * rotation(angles_deg, 0) * stretch;
 }
 
 std::vector<Mat4> rest_globals(const std::vector<CharacterNode>& nodes) {
@@ -113,7 +65,7 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
     const Visit visit = stack.back();
     stack.pop_back();
     const int node = static_cast<int>(out.nodes.size());
-    out.nodes.push_back({models[visit.model]->name, visit.parent, rest_local(*models[visit.model]), {}});
+    out.nodes.push_back({models[visit.model]->name, visit.parent, Mat4::Identity(), {}});
     scene.models.push_back(models[visit.model]);
     scene.node_of_model.emplace(models[visit.model]->id, node);
     const auto& below = children[visit.model];
@@ -125,6 +77,11 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
         return input_error("is damaged: node \"" + model->name + "\" stands below itself", "",
                            "open the file in its program and export it again");
   }
+  std::vector<int> parents(out.nodes.size());
+  std::vector<Mat4> locals(out.nodes.size(), Mat4::Identity());
+  for (std::size_t i = 0; i < parents.size(); ++i) parents[i] = out.nodes[i].parent;
+  fbx_rest_locals(scene.models, parents, locals);
+  for (std::size_t i = 0; i < parents.size(); ++i) out.nodes[i].local = locals[i];
   if (out.nodes.empty()) return input_error("has no nodes: there is nothing in its scene");
   return scene;
 }

@@ -6,22 +6,15 @@
 #include <vector>
 
 #include "io/import/character/character.h"
+#include "io/import/fbx/fbx_clips.h"
 #include "io/import/fbx/fbx_document.h"
 
 namespace ft::inline io {
 
-/// One use of a blend shape channel (its shape and those in between) by a mesh.
-struct FbxShapeUse {
-  std::int64_t channel = 0;  ///< id of the Deformer of subkind "BlendShapeChannel"
-  int node = -1;
-  std::vector<int> morphs;   ///< of the node's morph weights, by `full`
-  std::vector<double> full;  ///< percent at which each stands alone, ascending
-};
-
 struct FbxScene {
   std::vector<const FbxObject*> models;  ///< of each node of the character that is a model
   std::unordered_map<std::int64_t, int> node_of_model;
-  std::vector<FbxShapeUse> shapes;
+  std::vector<FbxShapeChannel> shapes;  ///< one per use by a mesh
 
   /// -1 when the object is no model.
   int node_of(const FbxObject* model) const;
@@ -33,9 +26,6 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out);
 
 /// Meshes with their geometric transforms, skins and blend shapes; fills scene.shapes and the rest weights of morphs.
 Status read_fbx_meshes(const FbxDocument& document, FbxScene& scene, Character& out);
-
-/// Translation, Euler angles (x first, degrees) and scale as one matrix, as FBX's geometric transforms have it.
-Mat4 geometric_matrix(const Vec3& translation, const Vec3& angles_deg, const Vec3& scale);
 
 /// The rest places of nodes in the scene, in file units.
 std::vector<Mat4> rest_globals(const std::vector<CharacterNode>& nodes);

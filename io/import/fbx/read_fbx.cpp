@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "io/import/fbx/fbx_clips.h"
 #include "io/import/fbx/fbx_contents.h"
 #include "io/import/fbx/fbx_document.h"
 #include "io/import/fbx/fbx_scene.h"
@@ -54,6 +55,8 @@ Result<Character> read_document(Bytes data) {
   if (!scene) return scene.error();
   if (Status s = read_fbx_meshes(*document, *scene, out); !s) return s.error();
   list_fbx_contents(*document, out);
+  scene->models.resize(out.nodes.size(), nullptr);  // nodes that were added for a second mesh are no models
+  read_fbx_clips(*document, scene->models, scene->shapes, out);
   return out;
 }
 
