@@ -169,6 +169,7 @@ class TextParser {
     const char* begin = text_.data() + at_;
     const char* end = text_.data() + text_.size();
     if (*begin == '+') ++begin;
+    if (begin == end) return false;
     auto result = std::from_chars(begin, end, whole);
     const bool goes_on = result.ptr < end && (*result.ptr == '.' || *result.ptr == 'e' || *result.ptr == 'E' ||
                                               *result.ptr == '#' || is_letter(*result.ptr));
@@ -179,15 +180,15 @@ class TextParser {
       result = std::from_chars(begin, end, value);
       if (result.ec == std::errc::result_out_of_range)
         value = std::strtod(std::string(begin, result.ptr).c_str(), nullptr);
-      else if (result.ec != std::errc() && !(*begin == '-' && begin + 1 < end && is_letter(begin[1])))
-        return false;
-      if (result.ptr < end && (is_letter(*result.ptr) || *result.ptr == '#' || *result.ptr == '(')) {
-        const char* start = begin;
-        while (begin < end && (is_word(*begin) || *begin == '#' || *begin == '+')) ++begin;
-        value = odd_number({start, static_cast<std::size_t>(begin - start)});
-        result.ptr = begin;
+      if (result.ptr < end && result.ptr != begin &&
+          (is_letter(*result.ptr) || *result.ptr == '#' || *result.ptr == '(')) {
+        const char* stop = begin;
+        while (stop < end && (is_word(*stop) || *stop == '#' || *stop == '+')) ++stop;
+        value = odd_number({begin, static_cast<std::size_t>(stop - begin)});
+        result.ptr = stop;
       }
     }
+    if (result.ptr == begin) return false;
     at_ = static_cast<std::size_t>(result.ptr - text_.data());
     return true;
   }

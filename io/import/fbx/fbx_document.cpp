@@ -13,11 +13,39 @@ const FbxNode* find_property(const FbxNode* list, std::string_view name) {
   return nullptr;
 }
 
+/// Bytes of a character of UTF-8 at a place; 0 when there is none.
+std::size_t character_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char first = byte(at);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xc2 && first < 0xe0   ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first < 0xf5                  ? 4
+                                                             : 0;
+  if (first < 0xc2 || length == 0 || at + length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if ((byte(at + k) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
+/// The name as text that can be printed: what is no UTF-8, and control characters, become the sign for that.
+std::string printable(const std::string& name) {
+  std::string out;
+  for (std::size_t at = 0; at < name.size();) {
+    const std::size_t length = character_length(name, at);
+    if (length == 0 || static_cast<unsigned char>(name[at]) < 0x20)
+      out += "\xef\xbf\xbd", ++at;
+    else
+      out.append(name, at, length), at += length;
+  }
+  return out;
+}
+
 /// "Model::hips" in text files, "hips\0\1Model" in binary ones.
 std::string name_alone(const std::string& full, bool text) {
   const std::size_t at = full.find(text ? std::string_view("::") : std::string_view("\0\1", 2));
-  if (at == std::string::npos) return full;
-  return text ? full.substr(at + 2) : full.substr(0, at);
+  if (at == std::string::npos) return printable(full);
+  return printable(text ? full.substr(at + 2) : full.substr(0, at));
 }
 
 /// Properties70 of each kind of object, as Definitions gives them.
