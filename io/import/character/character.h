@@ -80,7 +80,7 @@ struct Dependency {
 };
 
 /// A kind of thing that a file holds, and what becomes of it.
-struct FileContent {
+struct CharacterContent {
   std::string what;        ///< plural, as the format calls it: "animation layers", "constraints"
   std::int64_t count = 0;  ///< of them in the file
   std::string use;         ///< "used", "not used: ..." with the reason
@@ -95,7 +95,7 @@ struct Character {
   std::vector<CharacterMesh> meshes;  ///< one per use of a mesh by a node
   std::vector<Clip> clips;
   std::vector<Dependency> dependencies;
-  std::vector<FileContent> contents;  ///< in the order in which a reader of `info FILE` wants to see them
+  std::vector<CharacterContent> contents;  ///< in the order in which a reader of `info FILE` wants to see them
   std::vector<std::string> notes;
 };
 

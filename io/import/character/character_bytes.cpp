@@ -136,7 +136,7 @@ Bytes save_character(const Character& character) {
   out.write(static_cast<std::uint64_t>(character.dependencies.size()));
   for (const Dependency& d : character.dependencies) out.write_string(d.path).write(d.hash.low).write(d.hash.high);
   out.write(static_cast<std::uint64_t>(character.contents.size()));
-  for (const FileContent& content : character.contents)
+  for (const CharacterContent& content : character.contents)
     out.write_string(content.what).write(content.count).write_string(content.use);
   out.write(static_cast<std::uint64_t>(character.notes.size()));
   for (const std::string& note : character.notes) out.write_string(note);
@@ -193,7 +193,7 @@ Result<Character> load_character_bytes(std::span<const std::byte> data) {
     d.hash.high = in.read<std::uint64_t>();
   }
   c.contents.resize(get_count(in, 16));
-  for (FileContent& content : c.contents) {
+  for (CharacterContent& content : c.contents) {
     content.what = in.read_string();
     content.count = in.read<std::int64_t>();
     content.use = in.read_string();
