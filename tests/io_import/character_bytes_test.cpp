@@ -15,7 +15,7 @@ Character small_character() {
   c.nodes = {{"root", -1, Mat4::Identity(), {}}, {"bone", 0, 2 * Mat4::Identity(), {0.25}}};
   c.nodes[1].local(3, 3) = 1;
   CharacterMesh mesh;
-  mesh.name = "mesh", mesh.node = 1;
+  mesh.name = "mesh", mesh.node = 1, mesh.visible = false;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
   mesh.bones = {{1, Mat4::Identity()}, {0, Mat4::Identity()}};
@@ -40,6 +40,7 @@ TEST(Character_bytes, Give_back_what_was_saved) {
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(save_character(*loaded), bytes);
   EXPECT_EQ(loaded->meshes[0].morphs[0].name, "smile");
+  EXPECT_FALSE(loaded->meshes[0].visible);
   EXPECT_EQ(loaded->clips[0].channels[0].rotation.interpolation, KeyInterpolation::k_step);
   EXPECT_EQ(loaded->notes, small_character().notes);
 }

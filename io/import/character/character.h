@@ -64,6 +64,7 @@ struct MorphTarget {
 struct CharacterMesh {
   std::string name;
   int node = -1;
+  bool visible = true;  ///< as the file says; what is not joins the collider only where it is asked for by name
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<SkinBone> bones;           ///< empty: rigid, follows `node`

@@ -6,7 +6,7 @@ namespace ft::inline io {
 namespace {
 
 constexpr std::uint64_t k_magic = 0x3152414843544646ull;  // "FFTCHAR1"
-constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_version = 3;
 
 template <class T>
 void put_vector(ByteWriter& out, const std::vector<T>& values) {
@@ -69,7 +69,9 @@ Track get_track(ByteReader& in) {
 }
 
 void put_mesh(ByteWriter& out, const CharacterMesh& mesh) {
-  out.write_string(mesh.name).write(static_cast<std::int32_t>(mesh.node));
+  out.write_string(mesh.name)
+      .write(static_cast<std::int32_t>(mesh.node))
+      .write(static_cast<std::uint8_t>(mesh.visible));
   put_points(out, mesh.positions);
   put_vector(out, mesh.triangles);
   out.write(static_cast<std::uint64_t>(mesh.bones.size()));
@@ -90,6 +92,7 @@ CharacterMesh get_mesh(ByteReader& in) {
   CharacterMesh mesh;
   mesh.name = in.read_string();
   mesh.node = in.read<std::int32_t>();
+  mesh.visible = in.read<std::uint8_t>() != 0;
   mesh.positions = get_points(in);
   mesh.triangles = get_vector<Triangle>(in);
   mesh.bones.resize(get_count(in, 4 + sizeof(Mat4)));
