@@ -33,6 +33,7 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.source_fps = spec.source_fps.value_or(0);
   request.shot_fps = shot.fps;
   if (!spec.body.empty()) request.body = spec.body;
+  request.bind = spec.bind;
   request.height = spec.height.value_or(0);
   request.meshes = spec.meshes;
   request.surface = spec.surface;

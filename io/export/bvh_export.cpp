@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "baker/core/file.h"
-#include "io/export/bvh_file.h"
+#include "io/import/bvh/bvh_file.h"
 #include "io/import/character/pose.h"
 
 namespace ft::inline io {
@@ -18,13 +17,6 @@ constexpr double k_degree = std::numbers::pi / 180;
 /// degrees].
 constexpr double k_same = 1e-6;
 
-double number(std::string_view word) {
-  double value = 0;
-  if (word.starts_with('+')) word.remove_prefix(1);
-  std::from_chars(word.data(), word.data() + word.size(), value);
-  return value;
-}
-
 struct Edit {
   std::size_t value;  ///< into BvhFile::values
   double now;
@@ -34,13 +26,15 @@ Status edit_position(const BvhFile& file, const BvhJoint& joint, const Channel* 
                      std::vector<Edit>& edits) {
   bool any = false;
   for (std::size_t c = 0; c < joint.channels.size(); ++c) {
-    if (joint.channels[c].is_rotation) continue;
+    if (joint.channels[c].path != BvhPath::k_position) continue;
     any = true;
     for (std::size_t f = 0; f < file.frame_count; ++f) {
-      std::array<double, 3> now{};
+      std::array<double, 3> was{}, now{};
+      sample_track(source->translation, source->translation.times[f], false, was);
       sample_track(track, source->translation.times[f], false, now);
       const std::size_t value = f * file.values_per_frame + joint.first_value + c;
-      const double old = number(file.values[value]), next = now[at(joint.channels[c].axis)];
+      const std::size_t axis = at(joint.channels[c].axis);
+      const double old = file.numbers[value], next = old + (now[axis] - was[axis]);  // whether or not OFFSET is in it
       if (std::abs(next - old) > k_same * (1 + std::abs(old))) edits.push_back({value, next});
     }
   }
@@ -52,7 +46,7 @@ Status edit_rotation(const BvhFile& file, const BvhJoint& joint, const Channel* 
   std::vector<std::size_t> places;
   std::array<int, 3> axes{};
   for (std::size_t c = 0; c < joint.channels.size(); ++c)
-    if (joint.channels[c].is_rotation && places.size() < 3) {
+    if (joint.channels[c].path == BvhPath::k_rotation && places.size() < 3) {
       axes[places.size()] = joint.channels[c].axis;
       places.push_back(joint.first_value + c);
     }
@@ -65,7 +59,7 @@ Status edit_rotation(const BvhFile& file, const BvhJoint& joint, const Channel* 
     const Quat q(now[3], now[0], now[1], now[2]);
     if (q.angularDistance(Quat(was[3], was[0], was[1], was[2])) < k_same) continue;
     Vec3 old;
-    for (int k = 0; k < 3; ++k) old[k] = number(file.values[f * file.values_per_frame + places[at(k)]]) * k_degree;
+    for (int k = 0; k < 3; ++k) old[k] = file.numbers[f * file.values_per_frame + places[at(k)]] * k_degree;
     const Vec3 angles = euler_angles(q, axes, old);
     for (int k = 0; k < 3; ++k)
       if (std::abs(angles[k] - old[k]) > k_same * k_degree)

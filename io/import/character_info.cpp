@@ -27,7 +27,7 @@ void describe(const Character& character, const std::vector<int>& meshes, Charac
   }
   info.bone_count = static_cast<int>(std::count(is_bone.begin(), is_bone.end(), 1));
   for (const Clip& clip : character.clips)
-    info.clips.push_back({clip.name, clip.start, clip.duration(), static_cast<int>(clip.channels.size())});
+    info.clips.push_back({clip.name, clip.start, clip.duration(), clip.moved_count()});
   info.mesh_names = mesh_names(character);
   info.contents = character.contents;
   info.notes.insert(info.notes.begin(), character.notes.begin(), character.notes.end());

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "io/import/body/body.h"
+#include "io/import/body/figure.h"
 #include "io/import/character/choose_meshes.h"
 #include "io/import/character/clips.h"
 #include "io/import/character_info.h"
@@ -15,12 +15,18 @@
 #include "io/import/import_geometry_cache.h"
 #include "io/import/motion/character_trajectory.h"
 #include "io/import/motion/cycle.h"
+#include "io/import/motion/figure_bind.h"
 #include "io/import/motion/placed_character.h"
 #include "io/import/motion/placement.h"
+#include "io/import/motion/size_guard.h"
 #include "io/import/repair/facing.h"
 
 namespace ft::inline io {
 namespace {
+
+SizedBody sized(const Character& character) {
+  return {character.format == "BVH", find_figure(character).missing().empty()};
+}
 
 /// The character with the clips that may play: its own, or those of the animation file.
 Result<LoadedCharacter> load_with_animation(const ImportRequest& request, std::vector<std::string>& notes) {
@@ -48,6 +54,10 @@ Result<LoadedCharacter> load_with_animation(const ImportRequest& request, std::v
 
 Status check_request(const ImportRequest& request) {
   const std::string name = request.file.string();
+  if (!request.bind.empty() && request.bind != "t_pose")
+    return usage_error("bind = \"" + request.bind + "\" is unknown", name, "\"t_pose\"");
+  if (!request.bind.empty() && is_geometry_cache(request.file))
+    return usage_error("bind = \"t_pose\" needs a skeleton, and a geometry cache has none", name);
   if (request.body != "blended" && request.body != "capsules")
     return usage_error("body = \"" + request.body + "\" is unknown", name, "\"blended\" or \"capsules\"");
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
@@ -74,16 +84,10 @@ Result<PlacedCharacter> place_character(const ImportRequest& request) {
 
   auto clip_index = select_clip(character, request.clip, clip_file, notes);
   if (!clip_index) return clip_index.error();
-
-  BindPose bind = find_bind_pose(character);
-  auto placement = find_placement(character, request.unit_scale, request.up, bind.globals, notes);
+  const Clip* clip = *clip_index < 0 ? nullptr : &character.clips[static_cast<std::size_t>(*clip_index)];
+  BindPose bind;
+  auto placement = place_bind_pose(character, clip, request, bind, notes);
   if (!placement) return placement.error();
-  if (character.meshes.empty() && character.format == "BVH") {
-    if (Status s = add_body(character, request.body, placement->axes); !s)
-      return Error{s.error().kind, s.error().what, name, s.error().hint};
-    bind = find_bind_pose(character);
-    notes.push_back("has no body; one was built from the skeleton (" + request.body + ")");
-  }
   auto meshes = choose_meshes(character, request.meshes, name, notes);
   if (!meshes) return meshes.error();
   Skin& skin = out.skin = weld(character, *meshes, notes);
@@ -101,12 +105,12 @@ Result<PlacedCharacter> place_character(const ImportRequest& request) {
   } else if (!placement->unit_given) {
     if (Status s = check_height(measured, *placement, name); !s) return s.error();
   }
-  const Clip* clip = *clip_index < 0 ? nullptr : &character.clips[static_cast<std::size_t>(*clip_index)];
+  if (Status s = check_shape(bounds(positions), sized(character), name, notes); !s) return s.error();
   if (clip != nullptr)
     if (Status s = check_clip_range(*clip, request, clip_file); !s) return s.error();
   out.info.still = clip == nullptr || clip->duration() <= 0;
   if (clip != nullptr && out.info.still && request.duration > 0)
-    notes.push_back("clip \"" + clip->name + "\" has " + (clip->channels.empty() ? "no keys" : "one key only") +
+    notes.push_back("clip \"" + clip->name + "\" has " + (clip->moved_count() == 0 ? "no keys" : "one key only") +
                     ": the character stands still");
   assign_parts(character, positions, skin);
   if (bind.from_inverse_binds)
@@ -130,6 +134,7 @@ Result<ImportedPrimary> play(PlacedCharacter placed, const ImportRequest& reques
   ImportedPrimary out;
   out.info = std::move(placed.info);
   out.content = placed.content;
+  const SizedBody body = sized(placed.character);
   const auto kept = std::make_shared<const Character>(std::move(placed.character));
   const Clip* clip = placed.clip < 0 ? nullptr : &kept->clips[at(placed.clip)];
   out.trajectory = std::make_unique<CharacterTrajectory>(kept, clip, std::move(placed.skin), std::move(placed.bind),
@@ -144,6 +149,7 @@ Result<ImportedPrimary> play(PlacedCharacter placed, const ImportRequest& reques
           "the character is not finite, or larger than 1000 km, " + std::to_string(t) + " s into the shot",
           (request.animation.empty() ? request.file : request.animation).string());
   }
+  if (Status s = check_growth(*out.trajectory, request, body, out.info.notes); !s) return s.error();
   return out;
 }
 

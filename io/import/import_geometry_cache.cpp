@@ -66,7 +66,7 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
     if (Status s = check_height(measured, placement, name); !s) return s.error();
   }
   const Mat3 linear = placement.unit_scale * placement.axes;
-  const Clip whole{cache->format, 0, cache->times.back(), {}};
+  const Clip whole{.name = cache->format, .start = 0, .end = cache->times.back()};
   if (Status s = check_clip_range(whole, request, name); !s) return s.error();
 
   ImportedPrimary out;

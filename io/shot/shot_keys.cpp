@@ -99,6 +99,8 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "Geometry caches: samples per second; without it the shot's fps"},
       {"body", &PrimarySpec::body, 0, 0, "", "blended capsules", false, "",
        "BVH, which has no body: how one is built around the skeleton"},
+      {"bind", &PrimarySpec::bind, 0, 0, "", "t_pose", false, "bind_pose rest_pose",
+       "Pose that garments are modelled on: a T-pose made from the skeleton; without it the file's bind pose"},
       {"height", &PrimarySpec::height, 0.05, 50, "m", "", false, "size",
        "Scales the character so that its bind pose is this tall"},
       {"mass", &PrimarySpec::mass, 1e-3, 1e6, "kg", "", false, "weight",

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "baker/core/file.h"
-#include "io/export/bvh_file.h"
+#include "io/import/bvh/bvh_file.h"
 #include "io/export/glb_from_character.h"
 #include "io/import/import_cache.h"
 #include "tests/io_export/moved.h"

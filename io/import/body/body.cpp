@@ -9,6 +9,7 @@
 
 #include "baker/core/mesh.h"
 #include "baker/core/parallel.h"
+#include "io/import/body/bind.h"
 #include "io/import/body/body_bones.h"
 #include "io/import/body/surface_nets.h"
 
@@ -198,15 +199,36 @@ std::vector<int> add_bones(const BodyFrame& frame, const std::vector<BodyBone>& 
   return out;
 }
 
+bool is_one_piece(const std::vector<std::vector<int>>& around) {
+  std::vector<char> seen(around.size(), 0);
+  std::vector<int> stack{0};
+  std::size_t count = 0;
+  for (seen[0] = 1; !stack.empty(); ++count) {
+    const int v = stack.back();
+    stack.pop_back();
+    for (const int n : around[at(v)])
+      if (!seen[at(n)]) seen[at(n)] = 1, stack.push_back(n);
+  }
+  return count == around.size();
+}
+
 Status add_blended(const Character& character, const BodyFrame& frame, CharacterMesh& mesh) {
-  const std::vector<BodyBone> bones = flesh(character, frame);
+  std::vector<BodyBone> bones = flesh(character, frame);
   if (bones.empty()) return input_error("no body can be built: the skeleton has no bones");
-  for (const double spacing : {1.0, 0.93, 1.08, 0.85}) {
+  bool linked = false;
+  for (const double spacing : {1.0, 1.0, 0.93, 1.08, 0.85}) {
     FieldGrid grid = sample_field(bones, spacing * k_spacing);
     separate_sheets(grid);
     const NetSurface net = surface_nets(grid);
     std::vector<Vec3> positions = net.positions;
+    if (positions.empty()) continue;
     const auto around = neighbours(positions.size(), net.quads);
+    if (!is_one_piece(around)) {
+      const std::vector<BodyBone> more = links(frame);
+      if (!linked) bones.insert(bones.end(), more.begin(), more.end());
+      linked = true;
+      continue;
+    }
     relax(bones, around, positions);
     mesh.triangles = split(net.quads, positions);
     if (!is_closed(mesh.triangles)) continue;
@@ -215,7 +237,7 @@ Status add_blended(const Character& character, const BodyFrame& frame, Character
     mesh.positions = std::move(positions);
     return {};
   }
-  return input_error("no closed body can be built from the skeleton", "", "body = \"capsules\"");
+  return input_error("no closed body in one piece can be built from the skeleton", "", "body = \"capsules\"");
 }
 
 void add_capsule(const BodyBone& bone, int column, CharacterMesh& mesh) {
@@ -266,21 +288,44 @@ Status add_capsules(const Character& character, const BodyFrame& frame, Characte
 
 }  // namespace
 
-Status add_body(Character& character, const std::string& style, const Mat3& axes) {
-  auto frame = body_frame(character, axes);
-  if (!frame) return frame.error();
-  CharacterMesh mesh;
-  mesh.name = "body";
-  mesh.node = static_cast<int>(character.nodes.size());
-  if (Status s = style == "capsules" ? add_capsules(character, *frame, mesh) : add_blended(character, *frame, mesh); !s)
-    return s;
-  const Mat3 back = axes.transpose() / frame->scale;
-  for (Vec3& p : mesh.positions) p = back * p;
-  if (frame->arms_raised)
+Status add_body(Character& character, const std::string& style, const Mat3& axes, std::span<const Mat4> globals) {
+  const std::vector<Mat4> rest = rest_globals(character);
+  if (globals.empty()) globals = rest;
+  std::vector<CharacterMesh> meshes;
+  std::vector<std::string> bare;
+  bool arms_raised = false, legs_parted = false;
+  Error fault;
+  for (int root = 0; root < static_cast<int>(rest.size()); ++root) {
+    if (character.nodes[at(root)].parent >= 0) continue;
+    auto frame = body_frame(character, root, axes, globals);
+    CharacterMesh mesh;
+    Status built = !frame                ? Status(frame.error())
+                   : style == "capsules" ? add_capsules(character, *frame, mesh)
+                                         : add_blended(character, *frame, mesh);
+    if (!built) {
+      fault = built.error();
+      bare.push_back(character.nodes[at(root)].name);
+      continue;
+    }
+    const Mat3 back = axes.transpose() / frame->scale;
+    for (Vec3& p : mesh.positions) p = back * p;
+    arms_raised = arms_raised || frame->arms_raised, legs_parted = legs_parted || frame->legs_parted;
+    meshes.push_back(std::move(mesh));
+  }
+  if (meshes.empty()) return fault;
+  for (const std::string& name : bare)
+    character.notes.push_back("no body was built around \"" + name + "\": " + fault.what);
+  if (arms_raised)
     character.notes.emplace_back(
         "arms hang in the rest pose; the body, and what it wears, is modelled with arms raised");
-  character.nodes.push_back({mesh.name, -1, Mat4::Identity(), {}});
-  character.meshes.push_back(std::move(mesh));
+  if (legs_parted)
+    character.notes.emplace_back("legs are close together in the rest pose; the body is modelled with them apart");
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    meshes[k].name = meshes.size() == 1 ? "body" : "body_" + std::to_string(k + 1);
+    meshes[k].node = static_cast<int>(character.nodes.size());
+    character.nodes.push_back({meshes[k].name, -1, Mat4::Identity(), {}});
+    character.meshes.push_back(std::move(meshes[k]));
+  }
   return {};
 }
 

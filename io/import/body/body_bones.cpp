@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/import/body/bind.h"
-#include "io/import/body/limbs.h"
-
 namespace ft::inline io {
 namespace {
 
@@ -40,63 +37,40 @@ struct Section {
 constexpr Section k_torso[] = {{0.0, 0.060, 0.096},  {0.22, 0.058, 0.086}, {0.42, 0.053, 0.075},
                                {0.70, 0.064, 0.087}, {0.87, 0.057, 0.085}, {1.0, 0.040, 0.066}};
 
-/// Where the two sides of a body meet: hip joints, shoulder joints, and the directions they give.
-struct Landmarks {
-  int hips = 0, neck = -1, chest = 0;
-  std::vector<int> thighs, arms;
-  std::vector<int> spine;  ///< joints from the hips up to the chest
-  Vec3 side = Vec3::UnitX(), forward = Vec3::UnitZ();
-  bool complete = false;  ///< two thighs and two arms
-};
-
 bool is_end(const Character& character, std::size_t joint) {
   return character.nodes[joint].name.starts_with("EndSite");
-}
-
-Landmarks find_landmarks(const Character& character, const BodyFrame& frame, const std::vector<Limb>& limb) {
-  Landmarks out;
-  int hips = -1;
-  Vec3 toes = Vec3::Zero();
-  const auto at = [&](int joint) -> const Vec3& { return frame.joints[static_cast<std::size_t>(joint)]; };
-  for (std::size_t i = 0; i < limb.size(); ++i) {
-    const int joint = static_cast<int>(i), parent = character.nodes[i].parent;
-    if (is_end(character, i)) continue;
-    const bool first_of_kind = parent < 0 || limb[static_cast<std::size_t>(parent)] != limb[i];
-    if (hips < 0 && limb[i] == Limb::k_hips) hips = joint;
-    if (out.neck < 0 && (limb[i] == Limb::k_neck || limb[i] == Limb::k_head)) out.neck = joint;
-    if (limb[i] == Limb::k_thigh && first_of_kind) out.thighs.push_back(joint);
-    if (limb[i] == Limb::k_upper_arm && first_of_kind) out.arms.push_back(joint);
-    if (limb[i] == Limb::k_foot)
-      for (const int child : frame.children[i]) toes += at(child) - at(joint);
-  }
-  out.hips = std::max(hips, 0);
-  out.complete = out.thighs.size() == 2 && out.arms.size() == 2 && at(out.arms[0]).y() > at(out.thighs[0]).y() + 0.1;
-  if (!out.complete) return out;
-  out.side = at(out.thighs[0]) - at(out.thighs[1]);
-  out.side.y() = 0;
-  out.side = out.side.norm() > 1e-6 ? out.side.normalized() : Vec3::UnitX().eval();
-  toes.y() = 0;
-  toes -= toes.dot(out.side) * out.side;
-  out.forward = toes.norm() > 1e-6 ? toes.normalized() : out.side.cross(Vec3::UnitY()).eval();
-  // The chest is the lowest joint above both arms.
-  int a = out.arms[0], b = out.arms[1];
-  while (a != b) (a > b ? a : b) = character.nodes[static_cast<std::size_t>(std::max(a, b))].parent;
-  out.chest = a;
-  for (int joint = a; joint >= 0; joint = character.nodes[static_cast<std::size_t>(joint)].parent) {
-    out.spine.insert(out.spine.begin(), joint);
-    if (joint == out.hips) break;
-  }
-  return out;
 }
 
 class FleshBuilder {
  public:
   FleshBuilder(const Character& character, const BodyFrame& frame)
-      : frame_(frame), limb_(limbs_by_name(character)), marks_(find_landmarks(character, frame, limb_)) {}
+      : character_(character),
+        frame_(frame),
+        limb_(limbs_by_name(character)),
+        marks_(find_landmarks(character, frame, limb_)),
+        of_many_(limb_.size(), 0) {
+    for (std::size_t i = 0; i < limb_.size(); ++i) {
+      if (limb_[i] != Limb::k_finger) continue;
+      const auto parent = static_cast<std::size_t>(std::max(character.nodes[i].parent, 0));
+      const auto& beside = frame.children[parent];
+      const auto fingers =
+          std::count_if(beside.begin(), beside.end(), [&](int n) { return limb(n) == Limb::k_finger; });
+      of_many_[i] = of_many_[parent] || fingers >= 4;
+    }
+  }
 
   std::vector<BodyBone> build() {
-    for (std::size_t i = 0; i < limb_.size(); ++i)
-      for (const int child : frame_.children[i]) add_bone(static_cast<int>(i), child);
+    for (std::size_t i = 0; i < limb_.size(); ++i) {
+      if (!frame_.members[i]) continue;
+      const int joint = static_cast<int>(i);
+      if (limb_[i] == Limb::k_head && !is_end(character_, i)) {
+        const int parent = character_.nodes[i].parent;
+        if (parent < 0 || limb(parent) != Limb::k_head) add_head(joint, at(joint), at(joint) + to_top(joint));
+        continue;
+      }
+      for (const int child : frame_.children[i]) add_bone(joint, child);
+      add_stub(joint);
+    }
     if (marks_.complete) add_torso();
     return std::move(out_);
   }
@@ -108,7 +82,6 @@ class FleshBuilder {
 
   void add_bone(int joint, int child) {
     const Vec3 &a = at(joint), &b = at(child);
-    if (limb(joint) == Limb::k_head) return add_head(joint, a, b);
     if ((b - a).norm() < 1e-4) return;
     Radii r = radii(limb(joint));
     switch (limb(joint)) {
@@ -130,12 +103,43 @@ class FleshBuilder {
         add(joint, a, calf, r.at_joint, 0.035);
         return add(joint, calf, b, 0.035, r.at_end);
       }
+      case Limb::k_finger:
+        if (of_many_[static_cast<std::size_t>(joint)]) r = {0.0095, 0.008};
+        break;
       case Limb::k_foot:  // heel
         add(joint, a, a - 0.018 * marks_.forward - Vec3(0, 0.008, 0), 0.024, 0.022);
         break;
       default: break;
     }
     add(joint, a, b, r.at_joint, r.at_end);
+  }
+
+  /// From a head's joint to its top: its end, else of its children (eyes, jaw) the one that goes on as the neck does.
+  Vec3 to_top(int head) const {
+    Vec3 best = Vec3::Zero();
+    double most = -std::numeric_limits<double>::infinity();
+    const int parent = character_.nodes[static_cast<std::size_t>(head)].parent;
+    const Vec3 up = parent >= 0 ? Vec3(at(head) - at(parent)) : Vec3::UnitY().eval();
+    for (const int child : frame_.children[static_cast<std::size_t>(head)]) {
+      const bool end = is_end(character_, static_cast<std::size_t>(child)) || limb(child) == Limb::k_head;
+      const double along = (at(child) - at(head)).dot(up) + (end ? 1e3 : 0);
+      if (along > most) most = along, best = at(child) - at(head);
+    }
+    return best;
+  }
+
+  /// What a joint without a bone behind it has: hand, foot and toes go on.
+  void add_stub(int joint) {
+    const auto& below = frame_.children[static_cast<std::size_t>(joint)];
+    const int parent = character_.nodes[static_cast<std::size_t>(joint)].parent;
+    const bool goes_on =
+        std::any_of(below.begin(), below.end(), [&](int child) { return (at(child) - at(joint)).norm() >= 1e-4; });
+    if (goes_on || parent < 0 || is_end(character_, static_cast<std::size_t>(joint))) return;
+    const Vec3 &a = at(joint), way = a - at(parent);
+    if (limb(joint) == Limb::k_hand && way.norm() > 1e-4) add(joint, a, a + 0.065 * way.normalized(), 0.019, 0.015);
+    if (limb(joint) == Limb::k_foot && marks_.complete)
+      add(joint, a, a + 0.11 * marks_.forward - Vec3(0, 0.015, 0), 0.024, 0.018);
+    if (limb(joint) == Limb::k_toe && marks_.complete) add(joint, a, a + 0.03 * marks_.forward, 0.018, 0.015);
   }
 
   void add_collar(int joint, const Vec3& a, const Vec3& b) {
@@ -182,70 +186,28 @@ class FleshBuilder {
     out_.push_back({node, a, b, radius_a, radius_b});
   }
 
+  const Character& character_;
   const BodyFrame& frame_;
   std::vector<Limb> limb_;
   Landmarks marks_;
+  std::vector<char> of_many_;  ///< fingers of a hand that has four or more: as thin as fingers are
   std::vector<BodyBone> out_;
 };
 
-/// Turns an arm that points down by more than 45 degrees about its shoulder until it points sideways.
-void raise_arms(const Character& character, BodyFrame& frame) {
-  const Landmarks marks = find_landmarks(character, frame, limbs_by_name(character));
-  if (!marks.complete) return;
-  for (const int arm : marks.arms) {
-    const auto& below = frame.children[static_cast<std::size_t>(arm)];
-    const Vec3 shoulder = frame.joints[static_cast<std::size_t>(arm)];
-    Vec3 along = Vec3::Zero();
-    for (const int elbow : below) along += frame.joints[static_cast<std::size_t>(elbow)] - shoulder;
-    if (along.norm() < 1e-6 || along.normalized().y() > -0.7) continue;
-    const double sign = (shoulder - 0.5 * (frame.joints[static_cast<std::size_t>(marks.arms[0])] +
-                                           frame.joints[static_cast<std::size_t>(marks.arms[1])]))
-                            .dot(marks.side);
-    const Mat3 turn = Quat::FromTwoVectors(along, sign < 0 ? Vec3(-marks.side) : marks.side).toRotationMatrix();
-    const Mat3 turn_in_file = frame.axes.transpose() * turn * frame.axes;
-    const Vec3 pivot = frame.globals[static_cast<std::size_t>(arm)].topRightCorner<3, 1>();
-    Mat4 move = Mat4::Identity();
-    move.topLeftCorner<3, 3>() = turn_in_file;
-    move.topRightCorner<3, 1>() = pivot - turn_in_file * pivot;
-    std::vector<int> stack{arm};
-    while (!stack.empty()) {
-      const auto joint = static_cast<std::size_t>(stack.back());
-      stack.pop_back();
-      frame.globals[joint] = move * frame.globals[joint];
-      frame.joints[joint] = shoulder + turn * (frame.joints[joint] - shoulder);
-      stack.insert(stack.end(), frame.children[joint].begin(), frame.children[joint].end());
-    }
-    frame.arms_raised = true;
-  }
-}
-
 }  // namespace
-
-Result<BodyFrame> body_frame(const Character& character, const Mat3& axes) {
-  BodyFrame frame;
-  frame.axes = axes;
-  frame.globals = rest_globals(character);
-  frame.children.resize(character.nodes.size());
-  Box box;
-  for (const Mat4& m : frame.globals) {
-    frame.joints.push_back(axes * m.topRightCorner<3, 1>());
-    box.include(frame.joints.back());
-  }
-  for (std::size_t i = 0; i < character.nodes.size(); ++i)
-    if (const int parent = character.nodes[i].parent; parent >= 0)
-      frame.children[static_cast<std::size_t>(parent)].push_back(static_cast<int>(i));
-  const double height = box.size().y();
-  if (!(height > 1e-9) || !(box.size().norm() < 20 * height))
-    return input_error("no body can be built: the skeleton has no height in its rest pose", "",
-                       "check up = ..., or use a file with a mesh");
-  frame.scale = 1 / height;
-  for (Vec3& p : frame.joints) p *= frame.scale;
-  raise_arms(character, frame);
-  return frame;
-}
 
 std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame) {
   return FleshBuilder(character, frame).build();
+}
+
+std::vector<BodyBone> links(const BodyFrame& frame) {
+  std::vector<BodyBone> out;
+  for (std::size_t i = 0; i < frame.children.size(); ++i)
+    for (const int child : frame.children[i])
+      if (frame.members[i])
+        out.push_back(
+            {static_cast<int>(i), frame.joints[i], frame.joints[static_cast<std::size_t>(child)], 0.026, 0.026});
+  return out;
 }
 
 std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame) {
@@ -253,6 +215,7 @@ std::vector<BodyBone> capsules(const Character& character, const BodyFrame& fram
   std::vector<BodyBone> out;
   for (std::size_t i = 0; i < limb.size(); ++i)
     for (const int child : frame.children[i]) {
+      if (!frame.members[i]) continue;
       const Vec3 &a = frame.joints[i], &b = frame.joints[static_cast<std::size_t>(child)];
       if ((b - a).norm() < 0.018) continue;
       const Radii r = radii(limb[i]);

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "io/import/character/character.h"
+#include "io/import/body/body_frame.h"
 
 namespace ft::inline io {
 
@@ -15,22 +15,11 @@ struct BodyBone {
   double radius_a = 0, radius_b = 0;
 };
 
-/// Joints in the normal frame: position = scale * axes * global translation. The pose is the rest pose, with arms that
-/// hang beside the body raised to the side, so that hands do not grow together with thighs.
-struct BodyFrame {
-  std::vector<Mat4> globals;  ///< of all nodes in that pose, file units and axes
-  bool arms_raised = false;
-  std::vector<Vec3> joints;
-  std::vector<std::vector<int>> children;
-  Mat3 axes = Mat3::Identity();
-  double scale = 1;  ///< 1 / (height in file units)
-};
-
-/// Fails when the skeleton has no height.
-Result<BodyFrame> body_frame(const Character& character, const Mat3& axes);
-
 /// Many overlapping capsules that blend into a body: lobes beside the spine, hips, heels, skull.
 std::vector<BodyBone> flesh(const Character& character, const BodyFrame& frame);
+
+/// Thin capsules along bones that flesh() has no flesh for: they hold together what would come in pieces.
+std::vector<BodyBone> links(const BodyFrame& frame);
 
 /// One capsule per bone, as thick as a body is there.
 std::vector<BodyBone> capsules(const Character& character, const BodyFrame& frame);

@@ -1,47 +1,11 @@
 #include "io/import/body/limbs.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "io/import/character/clips.h"
 
 namespace ft::inline io {
 namespace {
-
-struct Word {
-  const char* text;
-  Limb limb;
-};
-/// First match wins; "upleg" stands before "leg", "forearm" before "arm".
-// clang-format off
-constexpr Word k_words[] = {
-    {"hipjoint", Limb::k_hip_joint}, {"upleg", Limb::k_thigh},       {"upperleg", Limb::k_thigh},    {"thigh", Limb::k_thigh},
-    {"femur", Limb::k_thigh},       {"shin", Limb::k_shin},         {"knee", Limb::k_shin},         {"calf", Limb::k_shin},
-    {"lowleg", Limb::k_shin},       {"lowerleg", Limb::k_shin},     {"tibia", Limb::k_shin},        {"leg", Limb::k_shin},
-    {"toe", Limb::k_toe},           {"foot", Limb::k_foot},         {"ankle", Limb::k_foot},        {"thumb", Limb::k_finger},
-    {"finger", Limb::k_finger},     {"index", Limb::k_finger},      {"middle", Limb::k_finger},     {"ring", Limb::k_finger},
-    {"pinky", Limb::k_finger},      {"handend", Limb::k_finger},    {"hand", Limb::k_hand},         {"wrist", Limb::k_hand},
-    {"forearm", Limb::k_forearm},   {"lowerarm", Limb::k_forearm},  {"elbow", Limb::k_forearm},     {"radius", Limb::k_forearm},
-    {"collar", Limb::k_collar},     {"clavicle", Limb::k_collar},   {"uparm", Limb::k_upper_arm},   {"upperarm", Limb::k_upper_arm},
-    {"humerus", Limb::k_upper_arm}, {"shldr", Limb::k_upper_arm},   {"shoulder", Limb::k_collar},   {"arm", Limb::k_upper_arm},
-    {"head", Limb::k_head},         {"neck", Limb::k_neck},         {"spine", Limb::k_torso},       {"chest", Limb::k_torso},
-    {"back", Limb::k_torso},        {"abdomen", Limb::k_torso},     {"torso", Limb::k_torso},       {"thorax", Limb::k_torso},
-    {"hip", Limb::k_hips},          {"pelvis", Limb::k_hips},       {"root", Limb::k_hips},
-};
-// clang-format on
-
-std::string lower(const std::string& text) {
-  std::string out;
-  for (const char c : text) out.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-  return out;
-}
-
-Limb limb_by_name(const std::string& name) {
-  const std::string word = lower(name);
-  for (const Word& w : k_words)
-    if (word.find(w.text) != std::string::npos) return w.limb;
-  return Limb::k_other;
-}
 
 bool is_above(const Character& character, int ancestor, int node) {
   while (node > ancestor) node = character.nodes[at(node)].parent;

@@ -1,31 +1,14 @@
-// Which limb a joint belongs to, by its name, and the chains of two bones (hip, knee, ankle; shoulder, elbow, wrist)
+// Which limb a joint belongs to (joint_names.h), and the chains of two bones (hip, knee, ankle; shoulder, elbow, wrist)
 // that can be bent so that their end stays where it is.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "io/import/body/joint_names.h"
 #include "io/import/character/character.h"
 
 namespace ft::inline io {
-
-enum class Limb {
-  k_hips,
-  k_torso,
-  k_neck,
-  k_head,
-  k_hip_joint,
-  k_thigh,
-  k_shin,
-  k_foot,
-  k_toe,
-  k_collar,
-  k_upper_arm,
-  k_forearm,
-  k_hand,
-  k_finger,
-  k_other
-};
 
 /// One per node. End sites of a BVH are what they end.
 std::vector<Limb> limbs_by_name(const Character& character);

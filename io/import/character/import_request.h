@@ -50,6 +50,7 @@ struct ImportRequest {
   double shot_fps = 24;
   std::string body = "blended";
   double height = 0;  ///< 0: as it is
+  std::string bind;   ///< "t_pose": garments are modelled on one; empty: on the file's bind pose
   std::vector<std::string> meshes;
   std::string surface;                 ///< geometry caches: "solid", "sheet"; empty: as the mesh says
   double preroll = 1;                  ///< s

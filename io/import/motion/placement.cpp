@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "io/import/body/t_pose.h"
+
 namespace ft::inline io {
 namespace {
 
@@ -13,8 +15,8 @@ struct Unit {
   const char* name;
 };
 /// Units that BVH files are found in.
-constexpr Unit k_units[] = {
-    {1, "metres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.05644, "5.644 cm (CMU)"}, {0.1, "decimetres"}};
+constexpr Unit k_units[] = {{1, "metres"},       {0.01, "centimetres"}, {0.0254, "inches"}, {0.05644, "5.644 cm (CMU)"},
+                            {0.1, "decimetres"}, {0.001, "millimetres"}};
 constexpr double k_usual_height = 1.6;  ///< m, from toes to the top joint, with children in mind
 
 constexpr const char* k_axes[2][3] = {{"x", "y", "z"}, {"-x", "-y", "-z"}};
@@ -25,8 +27,10 @@ std::string lower(const std::string& text) {
   return out;
 }
 
-/// From the first node to the first one called a head, else to the top of the tallest direction.
+/// From the hip joints to the neck; else from the first node to the first one called a head; else to the top of the
+/// tallest direction.
 Vec3 upwards(const Character& character, const std::vector<Mat4>& globals) {
+  if (const Vec3 trunk = trunk_of(find_figure(character), globals); trunk.norm() > 0) return trunk;
   std::size_t root = 0;
   for (std::size_t i = 0; i < character.nodes.size(); ++i)
     if (lower(character.nodes[i].name).find("hip") != std::string::npos ||
@@ -62,6 +66,11 @@ Box node_bounds(const std::vector<Mat4>& globals) {
   return box;
 }
 
+std::string main_axis(const Vec3& direction) {
+  const int k = std::abs(direction.z()) > std::abs(direction.y()) ? 2 : 1;
+  return k_axes[direction[k] < 0 ? 1 : 0][k];
+}
+
 Result<Mat3> axes_from_up(const std::string& up) {
   const bool down = up.starts_with("-");
   const std::string letter = lower(down ? up.substr(1) : up);
@@ -91,9 +100,7 @@ Result<Placement> find_placement(const Character& character, double unit_scale, 
     if (!axes) return axes.error();
     out.axes = *axes, out.up = up;
   } else if (character.file_up.empty()) {
-    const Vec3 v = upwards(character, bind_globals);
-    const int k = std::abs(v.z()) > std::abs(v.y()) ? 2 : 1;
-    out.up = k_axes[v[k] < 0 ? 1 : 0][k];
+    out.up = main_axis(upwards(character, bind_globals));
     out.axes = *axes_from_up(out.up);
     notes.push_back("up axis guessed from the skeleton: " + out.up + " (up = ... says otherwise)");
   }
@@ -103,7 +110,11 @@ Result<Placement> find_placement(const Character& character, double unit_scale, 
   out.unit_given = unit_scale > 0;
   out.unit_scale = out.unit_given ? unit_scale : character.file_unit;
   if (out.unit_scale == 0) {
-    const double size = std::abs((out.axes * node_bounds(bind_globals).size()).y());
+    const std::vector<char> own = figure_nodes(character);
+    std::vector<Mat4> figure;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (own[i]) figure.push_back(bind_globals[i]);
+    const double size = std::abs((out.axes * node_bounds(figure).size()).y());
     const Unit* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (const Unit& unit : k_units) {

@@ -18,13 +18,16 @@ struct Placement {
   Mat4 matrix() const;
 };
 
-/// unit_scale 0 and up "" leave what the file says. A BVH says nothing: its unit is the one of the usual five that
+/// unit_scale 0 and up "" leave what the file says. A BVH says nothing: its unit is the one of the usual six that
 /// makes the skeleton nearest to human size, its up axis the one from the hips to the head; both are noted.
 Result<Placement> find_placement(const Character& character, double unit_scale, const std::string& up,
                                  const std::vector<Mat4>& bind_globals, std::vector<std::string>& notes);
 
 /// Rotation that takes "x", "y" or "z" (or "-z") to +Y.
 Result<Mat3> axes_from_up(const std::string& up);
+
+/// "y", "z" or one of them with a minus: where a direction points most.
+std::string main_axis(const Vec3& direction);
 
 /// Refuses a character that is not between 0.3 and 4 m tall, saying how tall it is and how to mend it.
 Status check_height(double height, const Placement& placement, const std::string& file);
