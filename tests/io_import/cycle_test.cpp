@@ -9,6 +9,7 @@
 #include "baker/core/shapes.h"
 #include "io/import/character/clips.h"
 #include "io/import/character/cut_track.h"
+#include "io/import/motion/cycle_curves.h"
 #include "io/import/motion/sampled_trajectory.h"
 
 namespace ft {
@@ -71,7 +72,7 @@ struct Walker {
     push(pelvis.rotation, 2, about_z(0));
     push(pelvis.rotation, 2.25, about_z(20));
     push(pelvis.rotation, 2.75, about_z(0));
-    Clip clip{"walk", 0, 0, {root, pelvis}};
+    Clip clip{.name = "walk", .channels = {root, pelvis}};
     clip.find_range();
     c.clips = {clip};
     placed.clip = 0, placed.pelvis = 2;
@@ -238,6 +239,51 @@ TEST(Cycle, Samples_of_a_geometry_cache_repeat_likewise) {
     for (Vec3& p : expected) p = step * (step * p);
     EXPECT_LT(farthest(sample(repeated, 2 + phase), expected), 1e-6);
   }
+}
+
+TEST(Cycle_curves, Repeat_key_by_key_and_hold_where_the_curve_holds) {
+  Curve curve;
+  curve.times = {2.25, 2.5, 3}, curve.values = {1, 4, -2};
+  curve.interpolation = {CurveInterpolation::k_cubic, CurveInterpolation::k_linear, CurveInterpolation::k_cubic};
+  curve.handles = {{0, 0, 0.1, 1}, {0.05, 2, 0.1, 0.5}, {0.1, 0, 0, 0}};
+  const Curve repeated = repeated_curve(curve, {2, 1, 0, 3});
+  for (int n = 0; n < 4; ++n)
+    for (const double phase : {0.0, 0.1, 0.25, 0.3, 0.5, 0.8, 0.999})
+      EXPECT_NEAR(repeated.at(2 + n + phase), curve.at(2 + phase), 1e-9) << n << " " << phase;
+  EXPECT_EQ(repeated.at(6), -2);  // the end of the last cycle
+  // One that goes on beyond its keys.
+  curve.after.rule = CurveInfinity::k_repeat, curve.times = {2, 2.2, 2.5};
+  const Curve sampled = repeated_curve(curve, {2, 1, 0, 1});
+  EXPECT_NEAR(sampled.at(3.7), curve.at(2.7), 1e-2);
+}
+
+TEST(Cycle, A_root_with_a_stack_of_transforms_is_carried_alike) {
+  Walker walker;
+  Clip& clip = walker.placed.character.clips[0];
+  Walker same = walker;
+  const auto expected = same.trajectory(true);
+  // The root's channel as curves, straight lines as its keys are: of angles, which the channel's slerps are as well.
+  TransformStack stack;
+  stack.node = 1;
+  ElementaryTransform move, turn;
+  move.kind = TransformKind::k_translate, turn.kind = TransformKind::k_rotate;
+  const auto curve = [&](const std::vector<double>& times, const std::vector<double>& values) {
+    Curve out;
+    out.times = times, out.values = values;
+    clip.curves.curves.push_back(out);
+    return static_cast<std::int32_t>(clip.curves.curves.size()) - 1;
+  };
+  clip.curves.layers.emplace_back();
+  LayeredNumbers places, angles;
+  places.curves = {curve({2, 2.4, 3}, {5, 25, 60}), curve({2, 2.4, 3}, {0, 10, 12}), -1};
+  angles.curves = {-1, -1, curve({2, 2.5, 3}, {15, 30, 55})};
+  move.numbers.layers = {places}, turn.numbers.layers = {angles};
+  stack.elements = {move, turn};
+  clip.stacks = {stack};
+  clip.channels.erase(clip.channels.begin());
+  const auto stacked = walker.trajectory(true);
+  for (double time = 0; time < 4.9; time += 0.0625)
+    EXPECT_LT(farthest(sample(*stacked, time), sample(*expected, time)), 1e-7) << time;
 }
 
 TEST(Cut_track, Keeps_the_curve_within_and_nothing_without) {

@@ -11,6 +11,7 @@
 
 #include "io/import/character/cut_track.h"
 #include "io/import/motion/adjust.h"
+#include "io/import/motion/cycle_curves.h"
 #include "io/import/motion/run_up.h"
 
 namespace ft::inline io {
@@ -93,9 +94,14 @@ class Repeat {
   Repeat(const Clip& clip, const Cycle& cycle, const CycleSpan& span) : clip_(clip), cycle_(cycle), span_(span) {}
 
   Clip whole() const {
-    Clip out{clip_.name, clip_.start + at_cycle(span_.first), clip_.end + at_cycle(span_.last), {}};
+    Clip out{.name = clip_.name, .start = clip_.start + at_cycle(span_.first), .end = clip_.end + at_cycle(span_.last)};
+    out.stacks = clip_.stacks, out.shapes = clip_.shapes, out.curves = clip_.curves;
+    for (Curve& curve : out.curves.curves) curve = repeated_curve(curve, curves());
+    out.has_own_range = true;
     return out;
   }
+
+  RepeatedSpan curves() const { return {clip_.start, cycle_.period, span_.first, span_.last}; }
 
   Track repeated(const Track& track, bool rotation = false) const {
     if (track.times.size() <= 1) return track;
@@ -167,16 +173,30 @@ Status carry_root(const PlacedCharacter& placed, const Clip& clip, const Repeat&
   const Mat4 parent = node.parent < 0 ? placed.placement : Mat4(placed.placement * globals[at(node.parent)]);
   const auto steps = root_steps(cycle, span, parent);
   if (!steps) return steps.error();
+  const auto stack =
+      std::find_if(out.stacks.begin(), out.stacks.end(), [&](const TransformStack& s) { return s.node == root; });
+  if (stack != out.stacks.end()) {
+    std::vector<Vec3> translations;
+    std::vector<Quat> rotations;
+    for (const RootStep& step : *steps) translations.push_back(step.translation), rotations.push_back(step.rotation);
+    place_cycles(repeat.curves(), translations, rotations, *stack, out.curves);
+  }
   const NodeTransform rest = decompose(node.local);
   const Channel* own = find_channel(clip, root);
   auto channel =
       std::find_if(out.channels.begin(), out.channels.end(), [&](const Channel& c) { return c.node == root; });
+  if (stack != out.stacks.end() && own == nullptr) return {};
   if (channel == out.channels.end()) {
     out.channels.emplace_back().node = root;
     channel = std::prev(out.channels.end());
   }
   const Vec3& t = rest.translation;
   const Quat& q = rest.rotation;
+  if (stack != out.stacks.end()) {  // what the channel has no keys for, the stack says
+    if (!own->translation.empty()) channel->translation = repeat.moved(own->translation, *steps);
+    if (!own->rotation.empty()) channel->rotation = repeat.turned(own->rotation, *steps);
+    return {};
+  }
   channel->translation =
       repeat.moved(own != nullptr && !own->translation.empty() ? own->translation
                                                                : constant_track({t.x(), t.y(), t.z()}, clip.start),
@@ -258,6 +278,8 @@ Status repeat_clip(PlacedCharacter& placed, const std::vector<int>& meshes, doub
   for (const Channel& channel : clip.channels)
     for (const Track* track : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights})
       keys += track->values.size();
+  for (const Curve& curve : clip.curves.curves)
+    keys += std::max(curve.times.size(), static_cast<std::size_t>(480 * cycle.period));
   const auto count = static_cast<std::size_t>(span.last - span.first + 1);
   if (keys > k_max_character_keys / count)
     return usage_error(fmt::format("its clip repeats {} times, which is more than {} million keys", count,
