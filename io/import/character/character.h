@@ -12,6 +12,7 @@
 #include "baker/core/hash.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
+#include "io/import/character/character_content.h"
 #include "io/import/character/transform_stack.h"
 
 namespace ft::inline io {
@@ -88,13 +89,6 @@ struct CharacterMesh {
 struct Dependency {
   std::string path;  ///< relative to the folder of the character's file
   Hash128 hash;
-};
-
-/// A kind of thing that a file holds, and what becomes of it.
-struct CharacterContent {
-  std::string what;        ///< plural, as the format calls it: "animation layers", "constraints"
-  std::int64_t count = 0;  ///< of them in the file
-  std::string use;         ///< "used", "not used: ..." with the reason
 };
 
 struct Character {

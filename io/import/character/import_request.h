@@ -10,7 +10,7 @@
 
 #include "baker/core/hash.h"
 #include "baker/core/trajectory.h"
-#include "io/import/character/character.h"
+#include "io/import/character/character_content.h"
 #include "io/reading/guarded_child.h"
 
 namespace ft::inline io {
