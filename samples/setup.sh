@@ -7,7 +7,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # What the program needs to build, and what the samples read.
 packages_build="g++ cmake ninja-build libeigen3-dev libassimp-dev libfcl-dev libccd-dev libtbb-dev libopenvdb-dev
   libboost-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libkissfft-dev
-  libjs-three libmeshoptimizer-dev libdraco-dev libpugixml-dev"
+  libjs-three libmeshoptimizer-dev libdraco-dev libpugixml-dev zlib1g-dev"
 packages_samples="assimp-testmodels"
 # What the tests need on top. Chromium opens the preview page. Blender, which reads our caches and is the peer of the
 # benchmarks, is 500 MB: tests that want it skip when it is absent.

@@ -187,26 +187,26 @@ CompareReport compare_caches(CacheReader& a, CacheReader& b, double tolerance, d
   }
 
   double square_sum = 0;
-  std::vector<Vec3f> x_a, x_b, v_a, v_b;
+  FrameData x_a, x_b;
   std::vector<float> distances;
+  r.scalars = paired_scalars(info_a, info_b);
   for (int i = 0; i < info_a.frame_count; ++i) {
-    if (const Status s = a.read_frame(i, x_a); !s) return give_up(s.error().text());
-    if (const Status s = b.read_frame(i, x_b); !s) return give_up(s.error().text());
-    const Difference d = difference(x_a, x_b, &distances);
+    if (const Status s = a.read(i, x_a); !s) return give_up(s.error().text());
+    if (const Status s = b.read(i, x_b); !s) return give_up(s.error().text());
+    const Difference d = difference(x_a.positions, x_b.positions, &distances);
     FrameDifference f;
     f.frame = r.first_frame + i;
     f.max = d.max;
-    f.rms = x_a.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(x_a.size()));
+    f.rms = distances.empty() ? 0 : std::sqrt(d.square_sum / static_cast<double>(distances.size()));
     f.vertex = d.vertex;
     square_sum += d.square_sum;
     if (r.velocities) {
-      if (const Status s = a.read_velocities(i, v_a); !s) return give_up(s.error().text());
-      if (const Status s = b.read_velocities(i, v_b); !s) return give_up(s.error().text());
-      const Difference v = difference(v_a, v_b, nullptr);
+      const Difference v = difference(x_a.velocities, x_b.velocities, nullptr);
       f.max_speed = v.max;
       f.speed_vertex = v.vertex;
     }
-    r.add(f, x_b, distances, i + 1 == info_a.frame_count);
+    compare_scalars(x_a, x_b, r.scalars, f);
+    r.add(f, x_b.positions, distances, i + 1 == info_a.frame_count);
   }
   const double count = static_cast<double>(r.frames.size()) * r.vertex_count;
   r.rms = count > 0 ? std::sqrt(square_sum / count) : 0;

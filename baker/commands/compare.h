@@ -13,6 +13,7 @@
 #include "baker/commands/compare_curves.h"
 #include "baker/commands/compare_instances.h"
 #include "baker/commands/compare_points.h"
+#include "baker/commands/compare_scalars.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
 #include "io/cache/cache.h"
@@ -21,7 +22,8 @@ namespace ft::inline baker {
 
 struct CompareOptions {
   std::filesystem::path a, b;               ///< two caches or two folders with caches
-  double tolerance = 0;                     ///< m, >= 0: distance of a vertex from its twin that still counts as equal
+  double tolerance = 0;                     ///< m, >= 0: distance of a vertex from its twin that still counts as equal;
+                                            ///< the same number of scales and of scalars of vertices
   std::filesystem::path json, html, junit;  ///< reports to write; empty: none
   double degrees = 0;                       ///< >= 0: rotation of an instance that still counts as equal
 };
@@ -44,6 +46,9 @@ struct FrameDifference {
   int turn_vertex = -1;
   double spin = 0;   ///< largest difference of angular velocities [degrees/s]
   double scale = 0;  ///< largest difference of scales [1]
+  // Of meshes with scalars of vertices.
+  double scalar = 0;                         ///< largest difference of one [1]
+  int scalar_vertex = -1, scalar_index = 0;  ///< where, and of which in ScalarsDifference::both
 };
 
 struct CompareReport {
@@ -68,10 +73,11 @@ struct CompareReport {
   std::optional<InstanceDifference> instances{};  ///< of caches of instances
   std::optional<CurveDifference> curves{};        ///< of caches of curves
   std::optional<PointDifference> points{};        ///< of caches of points
+  ScalarsDifference scalars{};                    ///< of caches of meshes
 
   bool diverges(const FrameDifference& f) const {
     return f.max > tolerance || f.max_speed > speed_tolerance || f.turn > turn_tolerance || f.spin > spin_tolerance ||
-           f.scale > tolerance;
+           f.scale > tolerance || f.scalar > tolerance;
   }
   /// The next frame; places: of b, the distances of each from a. Keeps the picture of the worst frame, of the last
   /// where nothing differs.

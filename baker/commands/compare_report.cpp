@@ -32,6 +32,10 @@ nlohmann::ordered_json to_json(const CompareReport& r, const FrameDifference& f)
   place("vertex", "instance", "strand", f.vertex);
   if (f.speed_vertex >= 0) j["max_speed"] = f.max_speed;
   place("speed_vertex", "speed_instance", "speed_strand", f.speed_vertex);
+  if (f.scalar_vertex >= 0)
+    j["max_scalar"] = {{"name", r.scalars.both[static_cast<std::size_t>(f.scalar_index)].name},
+                       {"max", f.scalar},
+                       {"vertex", f.scalar_vertex}};
   if (!r.instances) return j;
   j["max_degrees"] = f.turn;
   place("", "degrees_instance", "", f.turn_vertex);
@@ -97,6 +101,10 @@ std::string first_difference(const CompareReport& r, const FrameDifference& f) {
   if (f.max_speed > r.speed_tolerance)
     return fmt::format("velocities first beyond the tolerance of {:.4g} m/s in frame {}, {} ({:.4g} m/s)",
                        r.speed_tolerance, f.frame, r.element(f.speed_vertex), f.max_speed);
+  if (f.scalar > r.tolerance)
+    return fmt::format("\"{}\" first beyond the tolerance of {:.4g} in frame {}, {} ({:.4g})",
+                       r.scalars.both[static_cast<std::size_t>(f.scalar_index)].name, r.tolerance, f.frame,
+                       r.element(f.scalar_vertex), f.scalar);
   return fmt::format("angular velocities first beyond the tolerance of {:.4g} degrees/s in frame {} ({:.4g} degrees/s)",
                      r.spin_tolerance, f.frame, f.spin);
 }
@@ -139,12 +147,12 @@ std::string summary(const CompareReport& r) {
   if (r.verdict == CompareVerdict::k_incomparable) return r.reason;
   if (r.verdict == CompareVerdict::k_equal) {
     const bool speeds_equal = std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) {
-      return f.max_speed == 0 && f.turn == 0 && f.spin == 0 && f.scale == 0;
+      return f.max_speed == 0 && f.turn == 0 && f.spin == 0 && f.scale == 0 && f.scalar == 0;
     });
     if (r.worst < 0 && speeds_equal) return "no difference at all";
     if (r.worst < 0)
       return std::string("positions do not differ, ") + (r.instances ? "rotations and " : "") +
-             "velocities within the tolerance";
+             (r.scalars.both.empty() ? "" : "scalars of vertices and ") + "velocities within the tolerance";
     const FrameDifference& w = at(r, r.worst);
     return fmt::format("largest difference {} in frame {}, {}; RMS {}; tolerance {}", length_text(w.max), w.frame,
                        r.element(w.vertex), length_text(r.rms), length_text(r.tolerance));
@@ -170,6 +178,7 @@ std::string compare_text(const std::vector<CompareReport>& reports) {
     if (r.instances) out += instances_text(r);
     if (r.curves) out += curves_text(r);
     if (r.points) out += points_text(r);
+    out += scalars_text(r.scalars);
     if (r.verdict != CompareVerdict::k_different || r.first_diverging < 0) continue;
     const char* where = r.instances ? "instance" : r.curves ? "strand/vertex" : r.points ? "point" : "vertex";
     out += fmt::format("  {:>8} {:>12} {:>12} {:>14} {:>12}\n", "frame", "max [mm]", "rms [mm]", where,
@@ -204,6 +213,7 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
       if (r.curves) j["curves"] = to_json(*r.curves);
       if (r.points) j["points"] = to_json(*r.points);
       j["velocities_compared"] = r.velocities;
+      for (const ScalarDifference& d : r.scalars.both) j["scalars"][d.name] = d.max;
       j["rms"] = r.rms;
       j["diverging_frames"] = r.diverging_count();
       if (r.first_diverging >= 0) j["first_diverging"] = to_json(r, at(r, r.first_diverging));

@@ -37,6 +37,7 @@ struct Clip {
   std::vector<std::uint16_t> positions;
   std::vector<std::int8_t> strain;
   std::vector<std::uint8_t> gap;
+  std::vector<std::vector<std::uint8_t>> scalars{};  ///< of its vertices, 0 to 1 in 255 steps
 };
 
 /// Positions go to 16 bits per axis between the clip's bounds.
@@ -56,6 +57,18 @@ Status quantise(Clip& clip, int frames) {
         clip.positions.push_back(step[k] > 0
                                      ? static_cast<std::uint16_t>(std::lround((p[k] - clip.box.lo[k]) / step[k]))
                                      : std::uint16_t{0});
+  }
+  return {};
+}
+
+Status add_scalars(Clip& clip, int frames) {
+  clip.scalars.resize(clip.track.reader->info().content.scalars.size());
+  FrameData now;
+  for (int f = 0; f < frames && !clip.scalars.empty(); ++f) {
+    if (const Status read = clip.track.read(f, now); !read) return read;
+    for (std::size_t n = 0; n < clip.scalars.size(); ++n)
+      for (const float x : now.scalars[n])
+        clip.scalars[n].push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0f, 1.0f))));
   }
   return {};
 }
@@ -144,6 +157,8 @@ Json describe(const Clip& clip) {
   out["step"] = {step[0], step[1], step[2]};
   out["triangles"] = base64_of(corners);
   out["positions"] = base64_of(clip.positions);
+  for (std::size_t n = 0; n < clip.scalars.size(); ++n)
+    out["scalars"][clip.track.reader->info().content.scalars[n]] = base64_of(clip.scalars[n]);
   if (!clip.strain.empty()) out["strain"] = base64_of(clip.strain);
   if (!clip.gap.empty()) out["gap"] = base64_of(clip.gap);
   return out;
@@ -258,7 +273,7 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder, double curve
       return input_error(std::string("the page cannot show ") + std::string(shape_name(system.shape)) + " yet",
                          (bake_folder / system.caches[0].file).string());
     frames = std::min(frames, track->reader->info().frame_count);
-    clips.push_back({system, std::move(*track), {}, {}, {}, {}, {}});
+    clips.push_back({system, std::move(*track), {}, {}, {}, {}, {}, {}});
   }
   if (clips.empty() || frames < 1) return input_error("the bake has no finished frame to show", bake_folder.string());
   if (const Status measured = measure(clips, frames); !measured) return measured.error();
@@ -300,6 +315,7 @@ Result<Json> preview_bake(const std::filesystem::path& bake_folder, double curve
       continue;
     }
     if (const Status done = quantise(clip, frames); !done) return done.error();
+    if (const Status done = add_scalars(clip, frames); !done) return done.error();
     Json system = describe(clip);
     if (!is_secondary(clip.system.role)) system["absent"] = absent_rows(*manifest, clip.system, frames);
     // The body as drawn, where a secondary shows it as it is then; of several of them the last.

@@ -88,16 +88,16 @@ Result<std::vector<std::string>> write_volumes(const VolumesOptions& options) {
     if (!done) return done.error();
     if (*done != 0) return output_error("volumes of \"" + system.name + "\" could not be written", output.string());
     out.push_back(
-        fmt::format("{}/{}.{:04}.vdb and so on: grids surface (level set), vel (m/s), spray (fog); voxels of "
+        fmt::format("{}/{}.{:04}.vdb and so on: grids surface (level set), vel (m/s), spray (fog){}; voxels of "
                     "{:.3g} m; closed from below four voxels under the lowest place of the surface",
-                    output.string(), system.name, manifest->first_written, voxel));
+                    output.string(), system.name, manifest->first_written,
+                    std::ranges::count(system.scalars, "foam") > 0 ? ", foam (fog)" : "", voxel));
     out.push_back(
         fmt::format("in Blender: Rotation X = 90 degrees, Location = ({0:.6g}, {1:.6g}, {0:.6g}) m, for it draws all "
                     "volumes half a voxel too far along the axes of their files",
                     -0.5 * voxel, 0.5 * voxel));
   }
   if (out.empty()) return usage_error("there is no water in this bake", options.folder.string());
-  out.push_back("vel has how the surface goes up and down, and droplets whole; not how water goes along");
   out.push_back(
       "Blender: Sequence on, Velocity Unit = Second (its default, Frame, blurs by fps times too much); it finds "
       "`vel` by itself. Motion blur of volumes needs Cycles");

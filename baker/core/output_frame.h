@@ -19,6 +19,7 @@ struct CacheFrame {
   std::span<const Eigen::Quaternionf> orientations;  ///< instances: of length 1, prototype to world
   std::span<const Vec3f> angular_velocities;         ///< instances: in the world [rad/s]
   std::span<const Vec3f> scales;                     ///< instances: along the axes of the prototype
+  std::span<const std::vector<float>> scalars{};     ///< meshes: of vertices, a list for each name of the content
 };
 
 struct FrameData {
@@ -28,9 +29,11 @@ struct FrameData {
   std::vector<float> widths;
   std::vector<Eigen::Quaternionf> orientations;
   std::vector<Vec3f> angular_velocities, scales;
+  std::vector<std::vector<float>> scalars;
 
   CacheFrame view() const {
-    return {positions, velocities, face_sizes, face_vertices, ids, widths, orientations, angular_velocities, scales};
+    return {positions, velocities,   face_sizes,         face_vertices, ids,
+            widths,    orientations, angular_velocities, scales,        scalars};
   }
 };
 

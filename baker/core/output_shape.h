@@ -1,11 +1,10 @@
 // The shapes that an output may have, and what each needs once (at rest) and in every frame.
 //
 //   shape      once                                      every frame
-//   mesh       Mesh: faces, uvs, rest positions          positions, velocities; the faces, where they change
-//   curves     CurveSet: vertices of each curve, widths  positions, velocities
-//   points     nothing                                   ids, positions, velocities, widths; any number of points
-//   instances  InstanceSet: ids, prototypes              positions, orientations, scales, both kinds of velocity
-//   grid       no format takes it yet
+//   mesh       Mesh: faces, uvs, rest positions          positions, velocities, scalars by name; the faces, where they
+//   change curves     CurveSet: vertices of each curve, widths  positions, velocities points     nothing ids,
+//   positions, velocities, widths; any number of points instances  InstanceSet: ids, prototypes              positions,
+//   orientations, scales, both kinds of velocity grid       no format takes it yet
 //
 // Solvers say which of them a system has (solvers/base/solver.h); which format takes what is a property of the format
 // (io/cache/cache.h). A frame itself is output_frame.h.
@@ -41,6 +40,8 @@ struct FrameContent {
   bool widths = false;              ///< points: a width each, every frame
   bool angular_velocities = false;  ///< instances
   bool scales = false;              ///< instances
+  /// Meshes: names of scalars that each vertex has in every frame, "foam"; none twice.
+  std::vector<std::string> scalars{};
   bool operator==(const FrameContent&) const = default;
 };
 

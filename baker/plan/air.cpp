@@ -10,6 +10,7 @@
 #include "io/shot/patterns.h"
 #include "io/volume/vdb_read.h"
 #include "solvers/wind/body_paths.h"
+#include "solvers/wind/log_profile.h"
 #include "solvers/wind/registry.h"
 #include "solvers/wind/surface_shelter.h"
 #include "solvers/wind/velocity_grid.h"
@@ -139,6 +140,16 @@ Result<std::shared_ptr<const Wind>> plan_wind(const Shot& shot, std::span<const 
     if (!spec) return located(spec.error(), shot, owner);
     auto field = make_wind_field(*spec);
     if (!field) return located(field.error(), shot, owner);
+    if (keys.roughness_length) {
+      const LogProfile profile{*keys.roughness_length, keys.reference_height, keys.ground};
+      notes.push_back(fmt::format(
+          "{}: slower near the ground, by the logarithmic law: {:.2g} m/s at 2 m, {:.2g} m/s at 0.5 m, {:.2g} m/s at "
+          "0.05 m; from {:g} m on it is as fast as there",
+          owner, profile.share(keys.ground + 2) * keys.velocity.norm(),
+          profile.share(keys.ground + 0.5) * keys.velocity.norm(),
+          profile.share(keys.ground + 0.05) * keys.velocity.norm(), profile.top()));
+      *field = std::make_unique<ProfiledWind>(std::move(*field), profile);
+    }
     out->add(std::move(*field));
   }
   for (const PrimarySpec& spec : shot.primaries)

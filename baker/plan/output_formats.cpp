@@ -15,6 +15,12 @@ std::string who_takes(const FrameContent& content) {
   return out;
 }
 
+std::string quoted_list(std::span<const std::string> names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + in_quotes(name);
+  return out;
+}
+
 }  // namespace
 
 std::vector<const CacheFormat*> formats_for(const Shot& shot, const FrameContent& content) {
@@ -46,6 +52,11 @@ Status check_output_formats(BakePlan& plan) {
                                                                 others, shape_name(output.content().shape), others)),
                        shot, owner);
       }
+      for (const CacheFormat* format : taken)
+        if (const auto lost = format->leaves_out(output.content()); !lost.empty())
+          plan.notes.push_back(
+              fmt::format("{}: its {} not in its {} cache, which cannot hold values of vertices by name", owner,
+                          lost.size() == 1 ? quoted_list(lost) + " is" : quoted_list(lost) + " are", format->name));
       if (!refusals.empty())
         plan.notes.push_back(fmt::format("{}: {}; it is written as {} only", owner, refusals, names));
     }

@@ -18,6 +18,7 @@
       if (s.triangles) s.triangles = new Uint32Array(bytes(s.triangles).buffer);
       if (s.strain) s.strain = new Int8Array(bytes(s.strain).buffer);
       if (s.gap) s.gap = bytes(s.gap);
+      for (const name in s.scalars) s.scalars[name] = bytes(s.scalars[name]);
       if (s.curves) s.curves.bounds = new Float64Array(bytes(s.curves.bounds).buffer);
     }
   }
@@ -123,6 +124,9 @@
       s.plain = secondary(s) ? colour_of(s) : 0xc4beb4;
       const material = s.liquid ? makeWaterMaterial(s.plain, scene.background) : clothMaterial(s);
       s.mesh = new THREE.Mesh(geometry, material);
+      for (const name of s.liquid ? ['foam', 'wet'] : [])
+        geometry.setAttribute(name, new THREE.BufferAttribute(new Uint8Array(s.vertices), 1, true));
+      if (s.scalars?.wet) s.mesh.add(makeWetGround(geometry));
       s.mesh.castShadow = !s.stands && !s.liquid;
       s.mesh.receiveShadow = !s.liquid;
       s.mesh.frustumCulled = false;
@@ -235,6 +239,12 @@
           to[i + 2] = s.low[2] + s.positions[from + i + 2] * s.step[2];
         }
         attribute.needsUpdate = true;
+        for (const name in s.scalars) {
+          const values = s.mesh.geometry.attributes[name];
+          if (!values) continue;
+          values.array.set(s.scalars[name].subarray(index * s.vertices, (index + 1) * s.vertices));
+          values.needsUpdate = true;
+        }
         s.mesh.geometry.computeVertexNormals();
         paint(s);
       }

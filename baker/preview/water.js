@@ -1,5 +1,6 @@
 // The surface of a liquid: what it mirrors of a plain sky, by Fresnel's law for water (Schlick's approximation), the glint
-// of the sun, and its own colour, through which is seen what lies in it.
+// of the sun, and its own colour, through which is seen what lies in it. Where the scalar `foam` is above zero, bubbles lie
+// on it, as many as it says; they stay where they are, for the surface does not say where the water under them goes.
 /// colour: of the water where it is looked through. sky: of the page behind it.
 function makeWaterMaterial(colour, sky) {
   'use strict';
@@ -9,8 +10,12 @@ function makeWaterMaterial(colour, sky) {
     uniforms, lights: true, fog: true, transparent: true, side: THREE.DoubleSide,
     vertexShader: `
       #include <fog_pars_vertex>
-      varying vec3 seen, out_of_it;
+      attribute float foam;
+      varying vec3 seen, out_of_it, place;
+      varying float covered;
       void main() {
+        covered = foam;
+        place = (modelMatrix * vec4(position, 1.0)).xyz;
         vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
         seen = mvPosition.xyz;
         out_of_it = normalMatrix * normal;
@@ -22,7 +27,26 @@ function makeWaterMaterial(colour, sky) {
       #include <lights_pars_begin>
       #include <fog_pars_fragment>
       uniform vec3 colour, horizon;
-      varying vec3 seen, out_of_it;
+      varying vec3 seen, out_of_it, place;
+      varying float covered;
+      float any(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
+      // How far a place is from the wall between two bubbles, of one bubble in each square: 0 on it.
+      float bubbles(vec2 p) {
+        vec2 square = floor(p), at = p - square;
+        float nearest = 8.0, second = 8.0;
+        for (int k = -1; k <= 1; ++k)
+          for (int i = -1; i <= 1; ++i) {
+            vec2 cell = vec2(float(i), float(k)), middle = cell + vec2(any(square + cell), any(square + cell + 57.0)) - at;
+            float d = length(middle);
+            if (d < nearest) { second = nearest; nearest = d; } else second = min(second, d);
+          }
+        return second - nearest;
+      }
+      // Thin foam is a net of walls, thick foam is closed.
+      float foam_at(vec2 p, float share) {
+        float net = min(bubbles(p / 0.11), 0.6 * bubbles(p / 0.045) + 0.25);
+        return share <= 0.004 ? 0.0 : smoothstep(-0.12, 0.10, 1.15 * share - net) * smoothstep(0.0, 0.05, share);
+      }
       void main() {
         vec3 V = normalize(-seen), N = normalize(out_of_it), up = normalize((viewMatrix * vec4(0.0, 1.0, 0.0, 0.0)).xyz);
         float side = dot(N, V) < 0.0 ? -1.0 : 1.0;
@@ -38,10 +62,47 @@ function makeWaterMaterial(colour, sky) {
           own += 0.35 * colour * clamp(dot(N, L), 0.0, 1.0);
           glint = directionalLights[0].color * (1.2 * pow(max(dot(R, L), 0.0), 260.0) + 0.08 * pow(max(dot(R, L), 0.0), 16.0));
         #endif
-        gl_FragColor = vec4(mix(own, above, mirrored) + glint, mix(0.66, 1.0, clamp(mirrored + dot(glint, vec3(0.3)), 0.0, 1.0)));
+        float white = foam_at(place.xz, covered);
+        vec3 surface = mix(mix(own, above, mirrored) + glint, vec3(0.93, 0.95, 0.96) * (0.72 + 0.28 * clamp(dot(N, up), 0.0, 1.0)), white);
+        gl_FragColor = vec4(surface, mix(mix(0.66, 1.0, clamp(mirrored + dot(glint, vec3(0.3)), 0.0, 1.0)), 0.96, white));
         #include <fog_fragment>
       }`,
   });
   material.color = uniforms.colour.value;
   return material;
+}
+
+// Ground that is wet: a film above the surface of a water, which lies a little below the ground where that is dry, drawn
+// before the water. The scalar `wet` says how dark.
+function makeWetGround(geometry) {
+  'use strict';
+  const uniforms = THREE.UniformsUtils.merge([THREE.UniformsLib.fog, { lift: { value: 0.004 } }]);
+  const material = new THREE.ShaderMaterial({
+    uniforms, fog: true, transparent: true, depthWrite: false, side: THREE.DoubleSide,
+    polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -4,
+    vertexShader: `
+      #include <fog_pars_vertex>
+      attribute float wet;
+      uniform float lift;
+      varying float dark;
+      void main() {
+        dark = wet;
+        vec4 mvPosition = modelViewMatrix * vec4(position + vec3(0.0, lift, 0.0), 1.0);
+        gl_Position = projectionMatrix * mvPosition;
+        #include <fog_vertex>
+      }`,
+    fragmentShader: `
+      #include <common>
+      #include <fog_pars_fragment>
+      varying float dark;
+      void main() {
+        if (dark < 0.01) discard;
+        gl_FragColor = vec4(0.05, 0.045, 0.04, 0.5 * smoothstep(0.0, 0.6, dark));
+        #include <fog_fragment>
+      }`,
+  });
+  const film = new THREE.Mesh(geometry, material);
+  film.frustumCulled = false;
+  film.renderOrder = -1;
+  return film;
 }

@@ -1,6 +1,7 @@
 #include "baker/record/cache_track.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "baker/record/cached_instances.h"
 #include "io/shot/mesh_file.h"
@@ -36,16 +37,30 @@ struct OpenedCache {
   std::unique_ptr<CacheReader> reader;
 };
 
-/// The first of a system's caches that holds its shape, for a format may take curves and give their vertices alone;
-/// where none does, the first.
+/// Whether the cache's format keeps all that the manifest says of scalars.
+bool keeps_scalars(const ManifestCache& cache, const ManifestSystem& system) {
+  const CacheFormat* format = find_cache_format(cache.format);
+  return format && format->leaves_out({.shape = system.shape, .scalars = system.scalars}).empty();
+}
+
+/// The first of a system's caches that holds its shape, for a format may take curves and give their vertices alone, and
+/// its scalars; where none does, the first that holds its shape, else the first.
 Result<OpenedCache> open_cache_of(const std::filesystem::path& folder, const ManifestSystem& system) {
   OpenedCache first;
+  bool first_fits = false;
   for (const ManifestCache& cache : system.caches) {
     const auto path = folder / cache.file;
     auto reader = system.shape == OutputShape::k_mesh ? open_cache(path) : open_cache_of_any_shape(path);
     if (!reader) return reader.error();
-    if ((*reader)->info().content.shape == system.shape) return OpenedCache{path, std::move(*reader)};
-    if (!first.reader) first = {path, std::move(*reader)};
+    const bool fits = (*reader)->info().content.shape == system.shape;
+    if (fits && keeps_scalars(cache, system)) {
+      if ((*reader)->info().content.scalars == system.scalars) return OpenedCache{path, std::move(*reader)};
+      return input_error(
+          fmt::format("has the scalars [{}], the manifest says [{}]",
+                      fmt::join((*reader)->info().content.scalars, ", "), fmt::join(system.scalars, ", ")),
+          path.string());
+    }
+    if (!first.reader || (fits && !first_fits)) first = {path, std::move(*reader)}, first_fits = fits;
   }
   return first;
 }

@@ -37,6 +37,7 @@ Json system_json(const ManifestSystem& system) {
   if (system.weld > 0) out["weld"] = system.weld;
   if (!system.meets.empty()) out["meets"] = system.meets;
   if (system.sheet) out["sheet"] = true;
+  if (!system.scalars.empty()) out["scalars"] = system.scalars;
   return out;
 }
 
@@ -64,6 +65,7 @@ ManifestSystem system_from(const Json& json) {
   out.weld = json.value("weld", 0.0);
   out.meets = json.value("meets", std::vector<std::string>());
   out.sheet = json.value("sheet", false);
+  out.scalars = json.value("scalars", std::vector<std::string>());
   for (const Json& c : json.at("caches"))
     out.caches.push_back({c.at("format").get<std::string>(), c.at("file").get<std::string>(),
                           c.at("bytes").get<std::uint64_t>(), c.at("content").get<std::string>()});

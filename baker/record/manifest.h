@@ -52,6 +52,7 @@ struct ManifestSystem {
   OutputShape shape = OutputShape::k_mesh;
   int count = 0;        ///< of what is no mesh: its elements; 0: their number changes. Of curves all their vertices
   int curve_count = 0;  ///< of curves
+  std::vector<std::string> scalars{};  ///< of a mesh: names of those of its vertices, in caches whose format has them
   std::vector<ManifestPrototype> prototypes{};  ///< of instances, in the order in which the topology's file has them
 };
 

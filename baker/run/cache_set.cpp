@@ -25,10 +25,6 @@ std::shared_ptr<const Mesh> shared(Mesh mesh) {
   return std::make_shared<const Mesh>(std::move(mesh));
 }
 
-FrameContent content_of(const SystemShape* shape) {
-  return shape ? shape->content : FrameContent();
-}
-
 }  // namespace
 
 CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem::path folder,
@@ -46,6 +42,10 @@ CacheSet::CacheSet(const BakePlan& plan, const Solvers& solvers, std::filesystem
       Source source{.group = g, .garment = s, .primary = output.primary};
       source.mesh = output.mesh;
       source.shape = output.shape;
+      source.content = output.content();
+      source.scalars = output.scalars.empty() ? nullptr : dynamic_cast<const HasScalars*>(&solver);
+      CHECK(output.scalars.empty() ||
+            (source.scalars && std::ranges::equal(output.scalars, source.scalars->scalar_names(s))));
       const SystemShape* moved = solver.system_shape(s);
       CHECK((moved != nullptr) == (output.shape != nullptr));
       CHECK(!moved || (moved->content == output.content() && moved->instances.ids == output.shape->instances.ids));
@@ -125,7 +125,10 @@ void CacheSet::add(Source source, std::string name, const std::string& role, boo
     system.face_count = source.mesh->face_count();
     system.topology = system.name + ".obj";
   }
-  for (const CacheFormat* format : formats_for(plan_.shot(), content_of(source.shape.get()))) {
+  system.scalars = source.content.scalars;
+  const SystemKind* kind = find_system_kind(role);
+  source.flows = kind && kind->is_liquid() && !source.shape;
+  for (const CacheFormat* format : formats_for(plan_.shot(), source.content)) {
     system.caches.push_back({std::string(format->name), system.name + std::string(format->extension), 0, {}});
     if (!all_formats) break;
   }
@@ -140,7 +143,7 @@ CacheInfo CacheSet::info_of(std::size_t system) const {
   if (sources_[system].shape)
     fill_info(*sources_[system].shape, info);
   else
-    info.mesh = *sources_[system].mesh;
+    info.mesh = *sources_[system].mesh, info.content = sources_[system].content;
   info.fps = plan_.shot().fps;
   info.first_frame = plan_.first_written();
   info.frame_count = plan_.written_count();
@@ -179,6 +182,7 @@ Status CacheSet::open_motion(std::size_t system, const CacheInfo& info, int keep
   motions_.emplace_back(), flows_.emplace_back();
   if (plan_.is_last_stage() || sources_[system].garment < 0 || sources_[system].shape) return {};
   CacheInfo all = info;
+  all.content.scalars.clear();
   all.first_frame = begin();
   all.frame_count = plan_.shot().last_frame - begin() + 1;
   const auto record = [&](const std::filesystem::path& path, std::unique_ptr<CacheWriter>& out) -> Status {
@@ -189,8 +193,7 @@ Status CacheSet::open_motion(std::size_t system, const CacheInfo& info, int keep
   };
   const BakeFolder folder{folder_};
   if (const Status opened = record(folder.motion(info.system), motions_.back()); !opened) return opened;
-  const SystemKind* kind = find_system_kind(systems_[system].role);
-  if (!kind || !kind->is_liquid()) return {};
+  if (!sources_[system].flows) return {};
   return record(folder.flow(info.system), flows_.back());
 }
 
@@ -245,7 +248,8 @@ Snapshot CacheSet::take(std::span<const State> states) const {
       solvers_[source.group]->system_frame(state, source.garment, frame);
     else
       frame.positions = converted<Vec3f, Vec3>(positions_of_mesh(i, state));
-    if (i < flows_.size() && flows_[i]) {
+    if (source.scalars) source.scalars->system_scalars(state, source.garment, frame.scalars);
+    if (source.flows) {
       std::vector<Vec3> flow(frame.positions.size(), Vec3::Zero());
       solvers_[source.group]->surface_flow(state, source.garment, flow);
       frame.velocities = converted<Vec3f, Vec3>(flow);
@@ -286,8 +290,10 @@ Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
     if (sources_[i].garment >= 0)
       v = velocities_of(sources_[i], snapshot.frame, x,
                         before != nullptr ? std::span(before->systems[i].positions) : std::span<const Vec3f>());
+    for (std::size_t k = 0; sources_[i].flows && k < v.size(); ++k)
+      v[k] += snapshot.systems[i].velocities[k].cast<double>();
     for (auto& writer : writers_[i])
-      if (const Status written = writer->write_frame(x, v); !written) return written;
+      if (const Status written = writer->write_frame(x, v, snapshot.systems[i].scalars); !written) return written;
   }
   return {};
 }
@@ -318,8 +324,8 @@ std::uint64_t CacheSet::expected_bytes() const {
   const auto frames = static_cast<std::uint64_t>(std::max(0, plan_.written_count()));
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     const ManifestSystem& system = systems_[i];
-    const FrameContent content =
-        sources_[i].shape ? sources_[i].shape->content : FrameContent{.velocities = is_secondary(system.role)};
+    FrameContent content = sources_[i].content;
+    if (!sources_[i].shape) content.velocities = is_secondary(system.role);
     const FrameCounts counts{.elements = static_cast<std::uint64_t>(system.vertex_count + system.count)};
     for (const ManifestCache& cache : system.caches)
       sum += frames * find_cache_format(cache.format)->bytes_per_frame(content, counts);

@@ -11,6 +11,7 @@
 #include "baker/plan/plan.h"
 #include "baker/record/manifest.h"
 #include "io/cache/cache.h"
+#include "solvers/base/has_scalars.h"
 #include "solvers/base/moves_primaries.h"
 
 namespace ft::inline baker {
@@ -55,6 +56,9 @@ class CacheSet {
     std::vector<int> slice{};                    ///< of the collider's vertices; empty: all
     std::shared_ptr<const Mesh> mesh{};          ///< rest shape; null once the files have it
     std::shared_ptr<const SystemShape> shape{};  ///< of what is no mesh
+    FrameContent content{};                      ///< what its frames hold
+    const HasScalars* scalars = nullptr;         ///< whose; null: its vertices have none
+    bool flows = false;  ///< it is a liquid's surface: what flows at its vertices is added to how they move
   };
   /// Of a mesh.
   std::vector<Vec3> positions_of_mesh(std::size_t system, const State& state) const;

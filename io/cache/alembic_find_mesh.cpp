@@ -12,6 +12,34 @@ class MeshReader {
   MeshReader(const InputFile& file, ShapeView& view) : file_(file), view_(view) {}
 
   Status run(const Property& geom) {
+    const Status status = read_faces(geom);
+    if (status) find_scalars(geom);
+    return status;
+  }
+
+ private:
+  Error fault(std::string what) const { return input_error(std::move(what), file_.path().string()); }
+
+  /// What has a number for each vertex in every frame, under the names of the file.
+  void find_scalars(const Property& geom) {
+    const Property* parameters = geom.find(".arbGeomParams");
+    if (parameters == nullptr) return;
+    FrameContent& content = view_.info.content;
+    const Property& positions = view_.channels[k_positions];
+    for (const Property& p : parameters->children) {
+      if (p.kind != PropertyKind::k_array || p.pod != Pod::k_f32 || p.extent != 1 ||
+          p.metadata.find("geoScope=vtx") == std::string::npos || p.sample_count != positions.sample_count ||
+          content.scalars.size() == k_most_scalars)
+        continue;
+      const std::uint64_t count = static_cast<std::uint64_t>(view_.info.vertex_count);
+      const auto fits = [&](const Sample& s) { return s.size == (count > 0 ? 16 + 4 * count : 0); };
+      if (!content.changes && !std::ranges::all_of(p.samples, fits)) continue;
+      view_.channels[k_scalars + content.scalars.size()] = p;
+      content.scalars.push_back(p.name);
+    }
+  }
+
+  Status read_faces(const Property& geom) {
     const Property *sizes = geom.find(".faceCounts"), *corners = geom.find(".faceIndices");
     const auto is_numbers = [](const Property* p) {
       return p != nullptr && p->kind == PropertyKind::k_array && p->pod == Pod::k_i32 && p->extent == 1;
@@ -33,9 +61,6 @@ class MeshReader {
       return fault("has a mesh whose faces and positions do not come at the same times");
     return {};
   }
-
- private:
-  Error fault(std::string what) const { return input_error(std::move(what), file_.path().string()); }
 
   Status read_topology(const Property& sizes, const Property& corners) {
     auto face_sizes = values_of<int>(file_, sizes.samples.front());

@@ -22,6 +22,9 @@ Layout mesh_layout(const CacheInfo& info, ogawa::Builder& out) {
     geometry.push_back(channel_entry(k_face_corners, ".faceIndices", "", Pod::k_i32, 1, true));
     geometry.push_back(channel_entry(k_face_sizes, ".faceCounts", "", Pod::k_i32, 1, true));
     geometry.push_back(channel_entry(k_velocities, ".velocities", "interpretation=vector", Pod::k_f32, 3));
+    std::vector<Entry> parameters;
+    add_scalars(info.content.scalars, parameters);
+    if (!parameters.empty()) geometry.push_back(compound_entry(".arbGeomParams", "", std::move(parameters)));
     return layout;
   }
   const Mesh& mesh = info.mesh;
@@ -43,9 +46,10 @@ Layout mesh_layout(const CacheInfo& info, ogawa::Builder& out) {
                                       {constant_entry(".vals", metadata, Pod::k_f32, 2, vals),
                                        constant_entry(".indices", "", Pod::k_u32, 1, indices)}));
   }
-  geometry.push_back(compound_entry(
-      ".arbGeomParams", "",
-      {constant_entry("Pref", parameter_metadata("vtx", "point", 3, "float32_t"), Pod::k_f32, 3, rest)}));
+  std::vector<Entry> parameters = {
+      constant_entry("Pref", parameter_metadata("vtx", "point", 3, "float32_t"), Pod::k_f32, 3, rest)};
+  add_scalars(info.content.scalars, parameters);
+  geometry.push_back(compound_entry(".arbGeomParams", "", std::move(parameters)));
   return layout;
 }
 

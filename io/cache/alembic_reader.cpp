@@ -49,6 +49,9 @@ class AlembicReader final : public CacheReader {
     if (status) status = each(k_orientations, index, count, frame.orientations);
     if (status) status = each(k_angular_velocities, index, count, frame.angular_velocities);
     if (status) status = each(k_scales, index, count, frame.scales);
+    frame.scalars.resize(view_.info.content.scalars.size());
+    for (std::size_t i = 0; status && i < frame.scalars.size(); ++i)
+      status = each(static_cast<Channel>(k_scalars + i), index, count, frame.scalars[i]);
     return status;
   }
 

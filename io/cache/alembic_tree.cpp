@@ -118,6 +118,13 @@ std::string parameter_metadata(std::string_view scope, std::string_view interpre
                      extent, pod);
 }
 
+void add_scalars(std::span<const std::string> names, std::vector<Entry>& to) {
+  CHECK(names.size() <= k_most_scalars);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    to.push_back(channel_entry(static_cast<Channel>(k_scalars + i), names[i],
+                               parameter_metadata("vtx", "", 1, "float32_t"), Pod::k_f32, 1, true));
+}
+
 void add_attributes(std::span<const CacheAttribute> attributes, std::array<std::string_view, 3> scopes,
                     ogawa::Builder& out, std::vector<Entry>& to) {
   for (const CacheAttribute& a : attributes) {

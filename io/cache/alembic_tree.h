@@ -27,9 +27,11 @@ enum Channel : std::uint8_t {
   k_orientations,
   k_angular_velocities,
   k_scales,
-  k_bounds,
+  k_scalars,  ///< the first of them, the others behind it
+  k_bounds = k_scalars + 8,
   k_channel_count
 };
+inline constexpr std::size_t k_most_scalars = k_bounds - k_scalars;
 
 /// The samples of the frames so far, one each per frame; a channel that the cache does not have is empty.
 struct FrameSamples {
@@ -61,6 +63,8 @@ std::vector<Entry> first_entries(std::string_view scope);
 /// "arrayExtent=1;geoScope=...;interpretation=...;isGeomParam=true;podExtent=...;podName=..."
 std::string parameter_metadata(std::string_view scope, std::string_view interpretation, int extent,
                                std::string_view pod);
+/// Entries of scalars of vertices, a channel for each name.
+void add_scalars(std::span<const std::string> names, std::vector<Entry>& to);
 /// Entries of attributes; scopes: of one for all, for each, for each vertex.
 void add_attributes(std::span<const CacheAttribute> attributes, std::array<std::string_view, 3> scopes,
                     ogawa::Builder& out, std::vector<Entry>& to);

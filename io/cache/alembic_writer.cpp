@@ -144,6 +144,8 @@ class AlembicWriter final : public CacheWriter {
       if (content.angular_velocities) add(out, k_angular_velocities, std::as_bytes(frame.angular_velocities));
       if (content.scales) add(out, k_scales, std::as_bytes(frame.scales));
     }
+    for (std::size_t i = 0; i < frame.scalars.size(); ++i)
+      add(out, static_cast<Channel>(k_scalars + i), std::as_bytes(std::span(frame.scalars[i])));
     const std::array<double, 6> box = box_of(frame.positions);
     add(out, k_bounds, std::as_bytes(std::span(box)));
     const std::uint64_t place = end_;
@@ -259,6 +261,14 @@ Status AlembicWriter::restore_slots(ogawa::Reference live_root) {
 }  // namespace
 
 Status alembic_accepts(const FrameContent& content) {
+  if (!content.scalars.empty() && content.shape != OutputShape::k_mesh)
+    return usage_error("Alembic files of ours hold scalars by name of meshes alone, and not of " +
+                       std::string(shape_name(content.shape)));
+  if (content.scalars.size() > k_most_scalars)
+    return usage_error("Alembic files of ours hold up to " + std::to_string(k_most_scalars) +
+                       " scalars by name of a mesh, and not " + std::to_string(content.scalars.size()));
+  if (std::ranges::count(content.scalars, "Pref") > 0)
+    return usage_error("Alembic has \"Pref\" for rest positions, and cannot hold scalars of that name");
   switch (content.shape) {
     case OutputShape::k_mesh:
     case OutputShape::k_points: return {};
@@ -274,6 +284,7 @@ Status alembic_accepts(const FrameContent& content) {
 
 std::uint64_t alembic_bytes_per_frame(const FrameContent& c, const FrameCounts& counts) {
   std::uint64_t each = 12 + (c.velocities ? 12 : 0);  // float32, x y z
+  each += 4 * c.scalars.size();
   if (c.shape == OutputShape::k_points) each += 8 + (c.widths ? 4 : 0);
   if (c.shape == OutputShape::k_instances) each += 16 + (c.angular_velocities ? 12 : 0) + (c.scales ? 12 : 0);
   const bool faces = c.shape == OutputShape::k_mesh && c.changes;

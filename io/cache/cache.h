@@ -51,8 +51,9 @@ class CacheWriter {
   virtual int frame_count() const = 0;
   /// Appends one frame. Durable when it returns.
   virtual Status write_frame(const CacheFrame& frame) = 0;
-  /// The same for positions [m] and velocities [m/s] (may be empty).
-  Status write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities);
+  /// The same for positions [m], velocities [m/s] (may be empty) and scalars of vertices.
+  Status write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                     std::span<const std::vector<float>> scalars = {});
   virtual Status close() = 0;
 };
 
@@ -82,6 +83,8 @@ struct CacheFormat {
   std::function<Result<std::unique_ptr<CacheWriter>>(const std::filesystem::path&, const CacheInfo&, int keep_frames)>
       open_writer;
   std::function<Result<std::unique_ptr<CacheReader>>(const std::filesystem::path&)> open_reader;
+  /// Names of what it takes and does not keep: scalars of vertices; velocities are its description's.
+  std::function<std::vector<std::string>(const FrameContent&)> leaves_out;
   std::string_view magic;  ///< first bytes of every file of the format
 };
 

@@ -56,6 +56,17 @@ std::string fault_of_instances(const InstanceSet& s) {
   return {};
 }
 
+std::string fault_of_scalars(std::span<const std::string> names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty() || names[i].find('/') != std::string::npos || names[i].find('\0') != std::string::npos)
+      return fmt::format("\"{}\" is no name for scalars", names[i]);
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      return fmt::format("there are two scalars \"{}\"", names[i]);
+  }
+  return {};
+}
+
 /// All checks of one frame share where they are.
 class FrameCheck {
  public:
@@ -80,6 +91,10 @@ class FrameCheck {
     for (std::size_t i = 0; status && i < values.size(); ++i)
       if (!(std::isfinite(values[i]) && values[i] >= 0)) diverged("width is not finite or negative", i);
   }
+  void numbers(std::string_view what, std::span<const float> values) {
+    for (std::size_t i = 0; status && i < values.size(); ++i)
+      if (!std::isfinite(values[i])) diverged(fmt::format("\"{}\" is not finite", what), i);
+  }
   void bug(std::string what) { status = Error{ErrorKind::k_bug, std::move(what), where_, {}}; }
 
  private:
@@ -100,6 +115,7 @@ Status check_rest(const CacheInfo& info) {
   if (instances) fault = fault_of_instances(info.instances);
   if (!curves && !instances && !info.attributes.empty())
     fault = fmt::format("{} with attributes", shape_name(info.content.shape));
+  if (fault.empty()) fault = fault_of_scalars(info.content.scalars);
   for (const CacheAttribute& a : info.attributes)
     if (fault.empty()) fault = fault_of_attribute(a, each, curves ? info.curves.rest.size() : each);
   if (fault.empty()) return {};
@@ -125,6 +141,11 @@ Status check_frame(const CacheFrame& f, const CacheInfo& info, int frame_index, 
   check.finite("angular velocity", f.angular_velocities);
   check.count("scales", f.scales.size(), instances && c.scales ? count : 0);
   check.finite("scale", f.scales);
+  check.count("scalars", f.scalars.size(), c.scalars.size());
+  for (std::size_t i = 0; check.status && i < c.scalars.size(); ++i) {
+    check.count(fmt::format("values of \"{}\"", c.scalars[i]), f.scalars[i].size(), count);
+    check.numbers(c.scalars[i], f.scalars[i]);
+  }
   if (check.status && has_twins(f.ids)) check.bug("two points have the same id");
   if (!faces) {
     check.count("faces", f.face_sizes.size() + f.face_vertices.size(), 0);

@@ -3,8 +3,8 @@
 // change, and the vertices of curves in turn, which come back as points. Points are refused, for their number changes
 // and ids say who is who; instances, for they turn. A frame counts when the header says so: its floats are written and
 // synced first, the number of samples after them, so that the file is whole at every moment and its bytes depend on
-// nothing but the frames. Careful: the format stores no frame rate, no velocity and no checksum; a flipped bit in a
-// coordinate cannot be seen.
+// nothing but the frames. Careful: the format stores no frame rate, no velocity, no scalars of vertices and no
+// checksum; a flipped bit in a coordinate cannot be seen.
 #include <cmath>
 
 #include "baker/core/file.h"

@@ -10,11 +10,18 @@
 namespace ft::inline io {
 namespace {
 
+std::vector<std::string> nothing(const FrameContent&) {
+  return {};
+}
+std::vector<std::string> all_scalars(const FrameContent& content) {
+  return content.scalars;
+}
+
 const std::array k_formats = {
     CacheFormat{"abc", ".abc", "Alembic (Ogawa): meshes, curves, points, instances, with velocities", alembic_accepts,
-                alembic_bytes_per_frame, open_alembic_writer, open_alembic_reader, "Ogawa"},
+                alembic_bytes_per_frame, open_alembic_writer, open_alembic_reader, nothing, "Ogawa"},
     CacheFormat{"pc2", ".pc2", "PointCache2: positions only", pc2_accepts, pc2_bytes_per_frame, open_pc2_writer,
-                open_pc2_reader, "POINTCACHE2"},
+                open_pc2_reader, all_scalars, "POINTCACHE2"},
 };
 
 }  // namespace
@@ -56,11 +63,14 @@ Result<std::unique_ptr<CacheReader>> open_cache_of_any_shape(const std::filesyst
   return input_error("is not a cache", path.string(), "formats that can be read: " + names);
 }
 
-Status CacheWriter::write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+Status CacheWriter::write_frame(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                std::span<const std::vector<float>> scalars) {
   FrameData frame;
   for (const Vec3& p : positions) frame.positions.push_back(p.cast<float>());
   for (const Vec3& v : velocities) frame.velocities.push_back(v.cast<float>());
-  return write_frame(frame.view());
+  CacheFrame view = frame.view();
+  view.scalars = scalars;
+  return write_frame(view);
 }
 
 Status CacheReader::read_velocities(int, std::vector<Vec3f>&) {

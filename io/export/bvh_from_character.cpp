@@ -33,8 +33,10 @@ std::vector<Joint> find_joints(const Character& character, int clip) {
   std::vector<char> wanted(count, 0);
   for (const CharacterMesh& mesh : character.meshes)
     for (const SkinBone& bone : mesh.bones) wanted[at(bone.node)] = 1;
-  if (clip >= 0)
+  if (clip >= 0) {
     for (const Channel& channel : character.clips[at(clip)].channels) wanted[at(channel.node)] = 1;
+    for (const TransformStack& stack : character.clips[at(clip)].stacks) wanted[at(stack.node)] = 1;
+  }
   if (std::none_of(wanted.begin(), wanted.end(), [](char w) { return w != 0; })) wanted.assign(count, 1);
   std::vector<int> below(count, 0);  // wanted nodes in the branch
   int all = 0;

@@ -5,7 +5,7 @@
 
 #include "baker/core/bytes.h"
 #include "baker/core/result.h"
-#include "io/import/files/gltf_file.h"
+#include "io/import/gltf/gltf_file.h"
 
 namespace ft::inline io {
 

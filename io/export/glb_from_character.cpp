@@ -6,6 +6,7 @@
 
 #include "io/export/glb_bytes.h"
 #include "io/import/character/motion_change.h"
+#include "io/import/character/plain_clip.h"
 #include "io/import/character/pose.h"
 
 namespace ft::inline io {
@@ -68,7 +69,7 @@ Result<Bytes> glb_from_character(const Character& character, int clip, const Mat
     return usage_error("units and axes are no scale and rotation");
   const bool turned = (axes - Mat3::Identity()).cwiseAbs().maxCoeff() > 1e-9;
 
-  const Clip& moved_by = character.clips[at(clip)];
+  const Clip moved_by = plain_clip(character, character.clips[at(clip)]);
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "followthrough"}}}, {"scene", 0}};
   Json& nodes = json["nodes"] = Json::array();
   Json roots = Json::array();

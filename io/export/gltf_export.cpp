@@ -6,7 +6,7 @@
 #include "baker/core/file.h"
 #include "io/export/glb_bytes.h"
 #include "io/import/character/pose.h"
-#include "io/import/files/gltf_file.h"
+#include "io/import/gltf/gltf_nodes.h"
 
 namespace ft::inline io {
 namespace {

@@ -79,7 +79,7 @@ void describe(const Character& character, const std::vector<int>& meshes, Charac
   }
   info.bone_count = static_cast<int>(std::count(is_bone.begin(), is_bone.end(), 1));
   for (const Clip& clip : character.clips)
-    info.clips.push_back({clip.name, clip.start, clip.duration(), static_cast<int>(clip.channels.size())});
+    info.clips.push_back({clip.name, clip.start, clip.duration(), clip.moved_count()});
   info.mesh_names = mesh_names(character);
   info.notes.insert(info.notes.begin(), character.notes.begin(), character.notes.end());
 }
@@ -135,7 +135,7 @@ Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
     if (Status s = check_height(measured, placement, name); !s) return s.error();
   }
   const Mat3 linear = placement.unit_scale * placement.axes;
-  const Clip whole{cache->format, 0, cache->times.back(), {}};
+  const Clip whole{.name = cache->format, .start = 0, .end = cache->times.back()};
   if (Status s = check_clip_range(whole, request.clip_start, request.duration, request.speed, request.shot_fps, name);
       !s)
     return s.error();
@@ -253,7 +253,7 @@ Result<PlacedCharacter> place_character(const ImportRequest& request) {
       return s.error();
   out.info.still = clip == nullptr || clip->duration() <= 0;
   if (clip != nullptr && out.info.still && request.duration > 0)
-    notes.push_back("clip \"" + clip->name + "\" has " + (clip->channels.empty() ? "no keys" : "one key only") +
+    notes.push_back("clip \"" + clip->name + "\" has " + (clip->moved_count() == 0 ? "no keys" : "one key only") +
                     ": the character stands still");
   assign_parts(character, positions, skin);
   if (bind.from_inverse_binds)

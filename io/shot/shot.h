@@ -114,29 +114,32 @@ struct WindSpec {
 /// [wind.NAME]: a field of moving air. Members have the names of their keys.
 struct WindKeys {
   std::string name;
-  std::string kind;                 ///< "uniform", "source", "sink", "vortex", "doublet", "turbulence", "grid", "wake"
-  Vec3 velocity = Vec3::Zero();     ///< m/s
-  double gusts = 0;                 ///< root mean square of a uniform wind's changes, by its speed
-  double gust_time = 3;             ///< s
-  Vec3 position = Vec3::Zero();     ///< m
-  Vec3 axis = Vec3::UnitY();        ///< of a vortex
-  double flow = 0;                  ///< of a source or sink [m3/s]
-  double circulation = 0;           ///< of a vortex [m2/s]
-  double radius = 0.1;              ///< m
-  double intensity = 0;             ///< of turbulence, root mean square of each component [m/s]
-  double length = 1;                ///< of its larger eddies [m]
-  int seed = 1;                     ///< of gusts and turbulence
-  std::filesystem::path file;       ///< of a grid: OpenVDB, or many with #### in the place of the frame
-  std::string grid;                 ///< name of the velocities in it; empty: the one that is there
-  double unit_scale = 1;            ///< of a grid: m per file unit
-  std::string up = "y";             ///< of a grid
-  std::string of;                   ///< of a wake: name of the primary
-  std::vector<std::string> parts;   ///< of a wake: patterns (* and ?) of its parts; empty: all
-  std::optional<double> drag_area;  ///< of a wake: C_d A [m2]
-  double turbulence = 0.4;          ///< of a wake, root mean square by its mean velocity
-  double gain = 1;                  ///< of its velocity
-  std::optional<double> from, until;  ///< frames at which it begins and ends to blow
-  double fade = 0;                    ///< frames
+  std::string kind;              ///< "uniform", "source", "sink", "vortex", "doublet", "turbulence", "grid", "wake"
+  Vec3 velocity = Vec3::Zero();  ///< m/s
+  double gusts = 0;              ///< root mean square of a uniform wind's changes, by its speed
+  double gust_time = 3;          ///< s
+  std::optional<double> roughness_length;  ///< of the ground under a uniform wind, z0 [m]; none: as fast at all heights
+  double reference_height = 10;            ///< above the ground, where a uniform wind has its velocity [m]
+  double ground = 0;                       ///< height of that ground [m]
+  Vec3 position = Vec3::Zero();            ///< m
+  Vec3 axis = Vec3::UnitY();               ///< of a vortex
+  double flow = 0;                         ///< of a source or sink [m3/s]
+  double circulation = 0;                  ///< of a vortex [m2/s]
+  double radius = 0.1;                     ///< m
+  double intensity = 0;                    ///< of turbulence, root mean square of each component [m/s]
+  double length = 1;                       ///< of its larger eddies [m]
+  int seed = 1;                            ///< of gusts and turbulence
+  std::filesystem::path file;              ///< of a grid: OpenVDB, or many with #### in the place of the frame
+  std::string grid;                        ///< name of the velocities in it; empty: the one that is there
+  double unit_scale = 1;                   ///< of a grid: m per file unit
+  std::string up = "y";                    ///< of a grid
+  std::string of;                          ///< of a wake: name of the primary
+  std::vector<std::string> parts;          ///< of a wake: patterns (* and ?) of its parts; empty: all
+  std::optional<double> drag_area;         ///< of a wake: C_d A [m2]
+  double turbulence = 0.4;                 ///< of a wake, root mean square by its mean velocity
+  double gain = 1;                         ///< of its velocity
+  std::optional<double> from, until;       ///< frames at which it begins and ends to blow
+  double fade = 0;                         ///< frames
 };
 
 struct SolverSpec {

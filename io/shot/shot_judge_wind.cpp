@@ -9,7 +9,7 @@ namespace ft::inline io {
 namespace {
 
 constexpr ChoiceKeys k_winds[] = {
-    {"uniform", "velocity", "gusts gust_time seed"},
+    {"uniform", "velocity", "gusts gust_time seed roughness_length reference_height ground"},
     {"source", "flow", "position radius"},
     {"sink", "flow", "position radius"},
     {"vortex", "circulation", "position axis radius"},
@@ -42,6 +42,13 @@ void judge_wind(const Value& table, const Shot& shot, WindKeys& wind, FaultList&
   judge_choice(owner, table, "kind", wind.kind, k_winds, faults);
   if (const std::string_view what = lacks(wind, table); !what.empty())
     faults.add(table.place, owner + ": does nothing without " + std::string(what));
+  for (const char* key : {"reference_height", "ground"})
+    if (const Member* alone = table.find(key); alone && wind.kind == "uniform" && !wind.roughness_length)
+      faults.add(alone->place, owner + ": " + key + " does nothing without roughness_length");
+  if (const Member* rough = table.find("roughness_length");
+      rough && wind.roughness_length && !(*wind.roughness_length < wind.reference_height))
+    faults.add(rough->place, owner + ": roughness_length = " + number_text(*wind.roughness_length) +
+                                 " is not below reference_height = " + number_text(wind.reference_height));
   if (const Member* until = table.find("until"); until && wind.from && wind.until && !(*wind.from < *wind.until))
     faults.add(until->place, owner + ": until = " + number_text(*wind.until) +
                                  " is not after from = " + number_text(*wind.from) + ": it would never blow");

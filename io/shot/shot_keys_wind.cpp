@@ -22,6 +22,13 @@ std::span<const ShotKey<WindKeys>> wind_field_keys() {
        "Uniform: root mean square of its changes, by its speed; 0.2 is a fresh breeze over a town"},
       {"gust_time", &WindKeys::gust_time, 0.1, 1000, "s", "", false, "gust_length period",
        "Uniform: how long a gust lasts, about"},
+      {"roughness_length", &WindKeys::roughness_length, 1e-5, 10, "m", "", false, "roughness z0",
+       "Uniform: the wind is slower near the ground, by the logarithmic law; 0.0002 open water, 0.01 short grass, 0.03 "
+       "a field, 0.1 scattered bushes, 0.5 a suburb. Without it the wind is as fast at the ground as above"},
+      {"reference_height", &WindKeys::reference_height, 0.05, 1000, "m", "", false, "height",
+       "Uniform with a `roughness_length`: how far above the ground it has its velocity; weather reports say 10"},
+      {"ground", &WindKeys::ground, -1e4, 1e4, "m", "", false, "floor level",
+       "Uniform with a `roughness_length`: height of the ground"},
       {"position", &WindKeys::position, -1e4, 1e4, "m", "", false, "centre center place location offset",
        "Centre of source, sink, vortex and doublet; added to a grid"},
       {"axis", &WindKeys::axis, -1e4, 1e4, "", "", false, "about", "Vortex: about which it turns, right-handed"},

@@ -18,7 +18,9 @@ namespace {
 
 namespace vdb = openvdb;
 
-constexpr int k_band = 3;  ///< voxels on both sides of the surface
+constexpr int k_band = 3;              ///< voxels on both sides of the surface
+constexpr double k_foam_band = 1.5;    ///< the same, where foam fades to nothing
+constexpr double k_least_foam = 1e-3;  ///< of the surface; less is none
 /// Motion blur looks up the velocity where something may come from or go to, not only where it is: so far both ways
 /// [frames]. Half a frame is a shutter that is open for all of it, about its middle.
 constexpr double k_shutter = 0.5;
@@ -36,8 +38,13 @@ class Heights {
     return {low_.x() + cell_ * static_cast<float>(water_.across - 1),
             low_.z() + cell_ * static_cast<float>(water_.along - 1)};
   }
-  /// x, z: brought onto the surface. Height, slope and velocity there.
-  void at_place(double x, double z, double& height, double& slope, Vec3& velocity) const {
+  /// Height, slope, velocity and foam there.
+  struct Place {
+    double height = 0, slope = 0, foam = 0;
+    Vec3 velocity = Vec3::Zero();
+  };
+  /// x, z: brought onto the surface.
+  Place at_place(double x, double z) const {
     const double u = std::clamp((x - low_.x()) / cell_, 0.0, water_.across - 1.001),
                  w = std::clamp((z - low_.z()) / cell_, 0.0, water_.along - 1.001);
     const int i = static_cast<int>(u), k = static_cast<int>(w);
@@ -46,15 +53,16 @@ class Heights {
     const std::size_t v[4] = {vertex(0, 0), vertex(1, 0), vertex(0, 1), vertex(1, 1)};
     const double share[4] = {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
     double y[4];
-    height = 0;
-    velocity.setZero();
+    Place out;
     for (int c = 0; c < 4; ++c) {
       y[c] = water_.surface[v[c]].y();
-      height += share[c] * y[c];
-      if (!water_.velocities.empty()) velocity += share[c] * water_.velocities[v[c]].cast<double>();
+      out.height += share[c] * y[c];
+      if (!water_.velocities.empty()) out.velocity += share[c] * water_.velocities[v[c]].cast<double>();
+      if (!water_.foam.empty()) out.foam += share[c] * water_.foam[v[c]];
     }
-    slope =
+    out.slope =
         std::hypot((1 - b) * (y[1] - y[0]) + b * (y[3] - y[2]), (1 - a) * (y[2] - y[0]) + a * (y[3] - y[1])) / cell_;
+    return out;
   }
 
  private:
@@ -63,19 +71,19 @@ class Heights {
   float cell_;
 };
 
-void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SGrid& velocity) {
+void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SGrid& velocity, vdb::FloatGrid& foam) {
   const Heights heights(water);
   const double h = water.voxel, far = k_band * h;
   const auto index = [&](double place) { return static_cast<int>(std::floor(place / h)); };
   auto to_surface = surface.getAccessor();
   auto to_velocity = velocity.getAccessor();
+  auto to_foam = foam.getAccessor();
   for (int iz = index(heights.low().y()) - k_band; iz <= index(heights.high().y()) + k_band + 1; ++iz)
     for (int ix = index(heights.low().x()) - k_band; ix <= index(heights.high().x()) + k_band + 1; ++ix) {
       const double x = ix * h, z = iz * h;
-      double height = 0, slope = 0;
-      Vec3 v;
-      heights.at_place(x, z, height, slope, v);
-      const double steep = std::sqrt(1 + slope * slope);
+      const Heights::Place place = heights.at_place(x, z);
+      const double height = place.height, steep = std::sqrt(1 + place.slope * place.slope);
+      const Vec3& v = place.velocity;
       const double beside = std::max(std::max(heights.low().x() - x, x - heights.high().x()),
                                      std::max(heights.low().y() - z, z - heights.high().y()));
       const double blurred = far + k_shutter / water.fps * std::abs(v.y());
@@ -83,6 +91,8 @@ void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SG
         const double y = iy * h, above = (y - height) / steep;
         const double distance = std::max({above, beside, water.floor - y});
         if (std::abs(distance) < far) to_surface.setValue({ix, iy, iz}, static_cast<float>(distance));
+        const double covered = place.foam * (1 - std::abs(above) / (k_foam_band * h));
+        if (covered > k_least_foam && beside <= 0) to_foam.setValue({ix, iy, iz}, static_cast<float>(covered));
         if (std::abs(above) < blurred && beside < far && water.floor - y < far)
           to_velocity.setValue({ix, iy, iz}, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
       }
@@ -171,14 +181,16 @@ Status write_liquid_vdb(const std::filesystem::path& path, const LiquidFrame& wa
   const auto transform = vdb::math::Transform::createLinearTransform(water.voxel);
   const auto surface = vdb::FloatGrid::create(static_cast<float>(k_band * water.voxel));
   const auto velocity = vdb::Vec3SGrid::create(vdb::Vec3s(0));
-  const auto spray = vdb::FloatGrid::create(0);
-  surface->setName("surface"), velocity->setName("vel"), spray->setName("spray");
-  surface->setGridClass(vdb::GRID_LEVEL_SET), spray->setGridClass(vdb::GRID_FOG_VOLUME);
+  const auto spray = vdb::FloatGrid::create(0), foam = vdb::FloatGrid::create(0);
+  surface->setName("surface"), velocity->setName("vel"), spray->setName("spray"), foam->setName("foam");
+  surface->setGridClass(vdb::GRID_LEVEL_SET);
+  for (const auto& fog : {spray, foam}) fog->setGridClass(vdb::GRID_FOG_VOLUME);
   velocity->setVectorType(vdb::VEC_CONTRAVARIANT_RELATIVE);
   velocity->insertMeta("unit", vdb::StringMetadata("m/s"));
-  fill_surface(water, *surface, *velocity);
+  fill_surface(water, *surface, *velocity, *foam);
   fill_spray(water, *surface, *spray, *velocity);
   vdb::GridPtrVec grids{surface, velocity, spray};
+  if (!water.foam.empty()) grids.push_back(foam);
   for (const auto& grid : grids) {
     grid->setTransform(transform->copy());
     grid->insertMeta("fps", vdb::DoubleMetadata(water.fps));

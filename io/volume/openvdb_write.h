@@ -1,7 +1,8 @@
 // A frame of a liquid whose surface is a height field, and of its droplets, as an OpenVDB file: grids `surface` (a
-// level set [m]), `vel` (m/s) and `spray` (a fog: share of a voxel that is water). `vel` goes on beside what moves, as
-// far as it comes in half a frame, since that is where renderers look it up. The same input gives the same bytes: the
-// file's random identifier becomes a hash of it.
+// level set [m]), `vel` (m/s), `spray` (a fog: share of a voxel that is water) and, of a liquid that has it, `foam` (a
+// fog about the surface: share of it that is covered, less with the distance from it). `vel` goes on beside what moves,
+// as far as it comes in half a frame, since that is where renderers look it up. The same input gives the same bytes:
+// the file's random identifier becomes a hash of it.
 #pragma once
 
 #include <filesystem>
@@ -17,6 +18,7 @@ struct LiquidFrame {
   int across = 0, along = 0;      ///< vertices of the surface in x and z, 2 or more each
   std::vector<Vec3f> surface;     ///< its vertices, x fastest, over a grid of equal squares [m]
   std::vector<Vec3f> velocities;  ///< of those [m/s]; may be empty
+  std::vector<float> foam;        ///< of those, 0 to 1; empty: the liquid has none, and the file no such grid
   FrameData droplets;             ///< points with velocities and widths; may be empty
   double floor = 0;               ///< the level set is closed by its sides and, at this height, from below [m]
   double voxel = 0.05;            ///< m

@@ -1,5 +1,6 @@
 // followthrough_write_vdb SURFACE DROPLETS FOLDER NAME FLOOR VOXEL: started by `followthrough volumes`, not by people.
 // Writes FOLDER/NAME.0001.vdb and so on, of all frames of two caches; DROPLETS may be "-".
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -23,9 +24,12 @@ ft::Status write_all(char** argv) {
   const ft::CacheInfo& info = (*surface)->info();
   water.fps = info.fps;
   for (int i = 0; i < info.frame_count; ++i) {
-    if (ft::Status s = (*surface)->read_frame(i, water.surface); !s) return s;
-    if (info.has_velocity)
-      if (ft::Status s = (*surface)->read_velocities(i, water.velocities); !s) return s;
+    ft::FrameData now;
+    if (ft::Status s = (*surface)->read(i, now); !s) return s;
+    water.surface = std::move(now.positions), water.velocities = std::move(now.velocities);
+    const auto& names = info.content.scalars;
+    if (const auto foam = std::ranges::find(names, "foam"); foam != names.end())
+      water.foam = std::move(now.scalars[static_cast<std::size_t>(foam - names.begin())]);
     if (droplets && i < droplets->info().frame_count)
       if (ft::Status s = droplets->read(i, water.droplets); !s) return s;
     if (i == 0) {

@@ -2,8 +2,11 @@
 // droplets that fly above it. Each keeps its own numbers in the blocks of a State; see shallow/, pond/ and paper/.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "baker/core/state.h"
 #include "baker/core/wrench.h"
@@ -71,6 +74,13 @@ class WaterCore {
   virtual void surface(const State& state, WaterSurface& out) const = 0;
   /// Of the water at the surface, in each cell [m/s]; y is not used.
   virtual void surface_flow(const State& state, std::span<Vec3> out) const = 0;
+  /// Names of what else is known of the surface in each cell, 0 to 1, and the values of one of them:
+  ///   foam   share of the surface that foam covers
+  ///   wet    1 under water; below 1 the mark that water has left, as it dries; 0 where there has been none
+  virtual std::span<const std::string> scalar_names() const { return {}; }
+  virtual void scalar(const State& /*state*/, std::size_t /*index*/, std::span<double> out) const {
+    std::fill(out.begin(), out.end(), 0.0);
+  }
   virtual std::vector<Droplet> droplets(const State& state) const = 0;
   /// Of all that floats, in the order of the setup.
   virtual std::vector<RigidMotion> floating(const State& state) const = 0;

@@ -107,6 +107,21 @@ void WaterSolver::system_positions(const State& state, int, std::span<Vec3> posi
   });
 }
 
+void WaterSolver::system_scalars(const State& state, int system, std::vector<std::vector<float>>& values) const {
+  const std::size_t count = scalar_names(system).size();
+  values.resize(count);
+  std::vector<double> of_cells(core_->grid().count());
+  for (std::size_t n = 0; n < count; ++n) {
+    core_->scalar(state, n, of_cells);
+    values[n].resize(mesh_.positions.size());
+    for_each_corner(core_->grid(), [&](const Corner& corner) {
+      double sum = 0;
+      for (const std::size_t c : corner.cells()) sum += of_cells[c];
+      values[n][corner.vertex] = static_cast<float>(sum / static_cast<double>(corner.count));
+    });
+  }
+}
+
 void WaterSolver::surface_flow(const State& state, int, std::span<Vec3> velocities) const {
   const WaterGrid grid = core_->grid();
   WaterSurface now;
@@ -116,9 +131,22 @@ void WaterSolver::surface_flow(const State& state, int, std::span<Vec3> velociti
   for_each_corner(grid, [&](const Corner& corner) {
     Vec3 sum = Vec3::Zero();
     double count = 0;
-    for (const std::size_t c : corner.cells())
-      if (now.wet[c] != 0) sum += flow[c], ++count;
-    velocities[corner.vertex] = count > 0 ? Vec3(sum / count) : Vec3::Zero();
+    // Heights on the four sides of the corner, means over wet cells.
+    double west = 0, east = 0, north = 0, south = 0;
+    int wests = 0, easts = 0, norths = 0, souths = 0;
+    for (const std::size_t c : corner.cells()) {
+      if (now.wet[c] == 0) continue;
+      sum += flow[c], ++count;
+      const bool is_west = static_cast<int>(c % at(grid.nx)) < corner.i;
+      const bool is_north = static_cast<int>(c / at(grid.nx)) < corner.k;
+      (is_west ? west : east) += now.height[c], ++(is_west ? wests : easts);
+      (is_north ? north : south) += now.height[c], ++(is_north ? norths : souths);
+    }
+    Vec3 v = count > 0 ? Vec3(sum / count) : Vec3::Zero();
+    v.y() = 0;
+    if (wests > 0 && easts > 0) v.y() += v.x() * (east / easts - west / wests) / grid.cell;
+    if (norths > 0 && souths > 0) v.y() += v.z() * (south / souths - north / norths) / grid.cell;
+    velocities[corner.vertex] = v;
   });
 }
 

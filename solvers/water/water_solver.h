@@ -2,13 +2,15 @@
 // surface and its droplets are cached. The water itself is a WaterCore (water_core.h).
 //
 // The surface is a mesh of constant topology: a vertex at each corner of the grid's cells, as high as the wet cells
-// around it; where all of them are dry, a little below the ground, so that the ground hides it.
+// around it; where all of them are dry, a little below the ground, so that the ground hides it. Its scalars are means
+// over all cells around, wet or dry.
 //
 // In the pre-roll the water stands still: bodies come out of their bind poses then, and nobody is to see their waves.
 #pragma once
 
 #include "baker/core/output_shape.h"
 #include "baker/core/trajectory.h"
+#include "solvers/base/has_scalars.h"
 #include "solvers/base/moves_primaries.h"
 #include "solvers/base/solver.h"
 #include "solvers/water/water_core.h"
@@ -44,7 +46,7 @@ SystemShape droplets_shape(const std::string& name);
 
 /// A report's `own`: water_volume [m3] and water_error, by which all that the ledger knows has changed since the start
 /// [1]; water_airborne [m3], water_outflow [m3], water_droplets, water_steps, water_energy [J], water_fastest [m/s].
-class WaterSolver final : public Solver, public MovesPrimaries {
+class WaterSolver final : public Solver, public MovesPrimaries, public HasScalars {
  public:
   WaterSolver(WaterScene scene, std::unique_ptr<WaterCore> core);
 
@@ -52,6 +54,13 @@ class WaterSolver final : public Solver, public MovesPrimaries {
   const SystemShape* system_shape(int system) const override { return system == 1 ? &droplets_ : nullptr; }
   const Mesh& system_mesh(int) const override { return mesh_; }
   void system_positions(const State& state, int system, std::span<Vec3> positions) const override;
+  std::span<const std::string> scalar_names(int system) const override {
+    return system == 0 ? core_->scalar_names() : std::span<const std::string>();
+  }
+  void system_scalars(const State& state, int system, std::vector<std::vector<float>>& values) const override;
+  /// Of the water at the vertices: along, and up as it comes along the slope that it is on. With how fast the surface
+  /// rises at the vertices this is the water's whole velocity, and moves the surface to where it is a moment later. Zero
+  /// where it is dry.
   void surface_flow(const State& state, int system, std::span<Vec3> velocities) const override;
   void system_frame(const State& state, int system, FrameData& frame) const override;
   std::span<const Triangle> collider_triangles() const override { return {}; }

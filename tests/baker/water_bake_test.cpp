@@ -2,6 +2,8 @@
 // interruptions, what floats goes where the water takes it, and what makes no sense is refused with its place.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "baker/commands/base64.h"
@@ -173,6 +175,69 @@ TEST_F(WaterBakeTest, The_page_has_as_many_droplets_in_each_frame_as_the_cache) 
     EXPECT_EQ(system["points"]["counts"].get<std::string>(), base64_of(counts));
   }
   EXPECT_TRUE(found);
+}
+
+TEST_F(WaterBakeTest, What_its_surface_has_by_name_goes_from_the_caches_to_whoever_looks_at_them) {
+  write_shot(std::string(k_pond) + k_puddle, 12);
+  const auto plan = plan_shot_in(folder_.path());
+  ASSERT_TRUE(plan) << plan.error().text();
+  std::string notes;
+  for (const std::string& note : plan->notes) notes += note + "\n";
+  EXPECT_NE(notes.find("its \"wet\" is not in its pc2 cache"), std::string::npos) << notes;
+  ASSERT_EQ(run("out").exit_code, 0);
+  const auto page = preview_bake(folder_ / "out", 1e6);
+  ASSERT_TRUE(page) << page.error().text();
+  for (const auto& [system, name] : {std::pair("pond", "foam"), {"puddle", "wet"}}) {
+    auto cache = open_cache(folder_ / "out" / (std::string(system) + ".abc"));
+    ASSERT_TRUE(cache) << cache.error().text();
+    EXPECT_EQ((*cache)->info().content.scalars, std::vector<std::string>{name});
+    std::vector<std::uint8_t> wanted;
+    FrameData frame;
+    for (int f = 0; f < 12; ++f) {
+      ASSERT_TRUE((*cache)->read(f, frame));
+      ASSERT_EQ(frame.scalars.at(0).size(), frame.positions.size());
+      for (const float x : frame.scalars[0]) wanted.push_back(static_cast<std::uint8_t>(std::lround(255 * x)));
+    }
+    const Json& systems = (*page)["systems"];
+    const auto shown = std::find_if(systems.begin(), systems.end(), [&](const Json& s) { return s["name"] == system; });
+    ASSERT_NE(shown, systems.end());
+    EXPECT_EQ((*shown)["scalars"][name].get<std::string>(), base64_of(wanted));
+  }
+  const auto manifest = read_manifest(folder_ / "out");
+  ASSERT_TRUE(manifest) << manifest.error().text();
+  const auto pond = std::ranges::find(manifest->systems, "pond", &ManifestSystem::name);
+  ASSERT_NE(pond, manifest->systems.end());
+  EXPECT_EQ(pond->scalars, std::vector<std::string>{"foam"});
+  // A cache without them is not this bake's; one with others differs.
+  auto old = open_cache(folder_ / "out/pond.abc");
+  ASSERT_TRUE(old);
+  CacheInfo info = (*old)->info();
+  std::vector<FrameData> frames(12);
+  for (int f = 0; f < 12; ++f) ASSERT_TRUE((*old)->read(f, frames[at(f)]));
+  old->reset();
+  const auto rewrite = [&] {
+    auto writer = find_cache_format("abc")->open_writer(folder_ / "other.abc", info, 0);
+    ASSERT_TRUE(writer) << writer.error().text();
+    for (const FrameData& frame : frames) ASSERT_TRUE((*writer)->write_frame(frame.view()));
+    ASSERT_TRUE((*writer)->close());
+  };
+  frames[5].scalars[0][7] += 0.25f;
+  rewrite();
+  const CompareReport other = compare_paths(folder_ / "out/pond.abc", folder_ / "other.abc", 1e-3).at(0);
+  EXPECT_EQ(other.verdict, CompareVerdict::k_different);
+  ASSERT_EQ(other.scalars.both.size(), 1u);
+  EXPECT_NEAR(other.scalars.both[0].max, 0.25, 1e-6);
+  EXPECT_EQ(other.scalars.both[0].frame, 6);
+  EXPECT_EQ(other.scalars.both[0].vertex, 7);
+  info.content.scalars.clear();
+  for (FrameData& frame : frames) frame.scalars.clear();
+  rewrite();
+  std::filesystem::copy_file(folder_ / "other.abc", folder_ / "out/pond.abc",
+                             std::filesystem::copy_options::overwrite_existing);
+  const auto judged = judge_caches(folder_ / "out");
+  ASSERT_FALSE(judged);
+  EXPECT_NE(judged.error().text().find("has the scalars [], the manifest says [foam]"), std::string::npos)
+      << judged.error().text();
 }
 
 TEST_F(WaterBakeTest, Its_frames_are_written_as_volumes_with_the_same_bytes_whose_velocities_are_read_back) {

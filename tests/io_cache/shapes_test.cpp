@@ -57,6 +57,7 @@ void expect_same(const FrameData& wanted, const FrameData& found) {
   EXPECT_EQ(numbers(wanted.orientations), numbers(found.orientations));
   EXPECT_EQ(numbers(wanted.angular_velocities), numbers(found.angular_velocities));
   EXPECT_EQ(numbers(wanted.scales), numbers(found.scales));
+  EXPECT_EQ(wanted.scalars, found.scalars);
   EXPECT_EQ(wanted.face_sizes, found.face_sizes);
   EXPECT_EQ(wanted.face_vertices, found.face_vertices);
 }
@@ -69,6 +70,7 @@ FrameData positions_alone(const FrameData& frame) {
 
 void expect_same_rest(const CacheInfo& wanted, const CacheInfo& found) {
   EXPECT_EQ(found.content.shape, wanted.content.shape);
+  EXPECT_EQ(found.content.scalars, wanted.content.scalars);
   EXPECT_EQ(found.system, wanted.system);
   EXPECT_EQ(found.metadata, wanted.metadata);
   EXPECT_EQ(found.curves.vertices_per_curve, wanted.curves.vertices_per_curve);
@@ -119,6 +121,7 @@ std::string content(const std::filesystem::path& path) {
   add(i.mesh.face_sizes), add(i.mesh.face_vertices), add(i.curves.vertices_per_curve), add(i.curves.ids);
   add(i.curves.widths), add(i.curves.rest), add(i.instances.ids), add(i.instances.prototypes);
   for (const std::string& name : i.instances.prototype_names) hasher.text(name);
+  for (const std::string& name : i.content.scalars) hasher.text(name);
   for (const CacheAttribute& a : i.attributes) {
     hasher.text(a.name).number(static_cast<std::uint8_t>(a.scope)).number(a.values.index());
     if (const auto* texts = std::get_if<std::vector<std::string>>(&a.values)) {
@@ -132,6 +135,7 @@ std::string content(const std::filesystem::path& path) {
     if (!(*reader)->read(k, f)) return {};
     add(f.positions), add(f.velocities), add(f.face_sizes), add(f.face_vertices), add(f.ids), add(f.widths);
     add(f.orientations), add(f.angular_velocities), add(f.scales);
+    for (const auto& values : f.scalars) add(values);
   }
   return hasher.digest().hex();
 }
@@ -229,6 +233,12 @@ TEST_P(Shapes, A_frame_that_does_not_fit_is_refused_and_the_next_good_one_is_not
   refused([](FrameData& f) { f.scales.push_back(Vec3f(1, 1, 1)); });
   refused([](FrameData& f) { f.orientations.push_back(Eigen::Quaternionf::Identity()); });
   refused([](FrameData& f) { f.face_sizes = {3}, f.face_vertices = {0, 1, 9999}; });
+  refused([](FrameData& f) { f.scalars.emplace_back(f.positions.size(), 1.0f); });
+  if (!s.info.content.scalars.empty()) {
+    refused([](FrameData& f) { f.scalars.pop_back(); });
+    refused([](FrameData& f) { f.scalars[0].pop_back(); });
+    refused([](FrameData& f) { f.scalars[0][1] = std::numeric_limits<float>::quiet_NaN(); });
+  }
   if (GetParam().shape == "spray") refused([](FrameData& f) { f.ids[0] = f.ids[1]; });
   if (GetParam().shape == "leaves") refused([](FrameData& f) { f.orientations[2].coeffs() *= 1.01f; });
   for (int f = 1; f < 4; ++f) ASSERT_TRUE((*writer)->write_frame(s.frames[at(f)].view()));
@@ -244,6 +254,7 @@ TEST_P(Shapes, The_estimate_of_a_frame_is_what_it_adds_to_the_file) {
   for (std::size_t i = 0; before > 0 && i < 2000; ++i) {
     f.positions.push_back(f.positions[i % before] + Vec3f(1, static_cast<float>(i), 0));
     f.velocities.push_back(f.positions.back());
+    for (auto& values : f.scalars) values.push_back(f.positions.back().y());
     if (s.info.content.widths) f.widths.push_back(0.5f), f.ids.push_back(i + (std::uint64_t{1} << 50));
   }
   ASSERT_TRUE(write_shaped(format(), path("short"), s, 8));
@@ -258,7 +269,7 @@ TEST_P(Shapes, The_estimate_of_a_frame_is_what_it_adds_to_the_file) {
 TEST_P(Shapes, Only_meshes_of_constant_topology_open_where_these_are_wanted) {
   ASSERT_TRUE(write_shaped(format(), path(), sample(9), 9));
   const auto reader = open_cache(path());
-  const bool wanted = GetParam().shape == "sheet" || format().name == "pc2";
+  const bool wanted = GetParam().shape == "sheet" || GetParam().shape == "pool" || format().name == "pc2";
   EXPECT_EQ(reader.ok(), wanted);
 }
 
@@ -300,6 +311,16 @@ TEST(CacheShapes, Rest_data_that_do_not_agree_are_refused) {
   refused(leaves(1), [](CacheInfo& i) { i.instances.ids[0] = i.instances.ids[3]; });
   refused(leaves(1), [](CacheInfo& i) { i.instances.ids.pop_back(); });
   refused(spray(1), [](CacheInfo& i) { i.attributes = leaves(1).info.attributes; });
+  for (const char* name : {"", "a/b", "foam", "Pref"})
+    refused(pool(1), [&](CacheInfo& i) { i.content.scalars[1] = name; });
+  refused(sheet(1), [](CacheInfo& i) { i.content.scalars = {"1", "2", "3", "4", "5", "6", "7", "8", "9"}; });
+  refused(spray(1), [](CacheInfo& i) { i.content.scalars = {"foam"}; });
+}
+
+TEST(CacheShapes, A_format_says_which_scalars_it_does_not_keep) {
+  const FrameContent content = pool(1).info.content;
+  EXPECT_TRUE(find_cache_format("abc")->leaves_out(content).empty());
+  EXPECT_EQ(find_cache_format("pc2")->leaves_out(content), content.scalars);
 }
 
 TEST(CacheShapes, Widths_for_each_curve_come_back_for_each_vertex) {

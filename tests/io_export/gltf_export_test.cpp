@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "baker/core/file.h"
-#include "io/import/files/gltf_file.h"
+#include "io/import/gltf/gltf_file.h"
 #include "io/import/import_cache.h"
 #include "tests/support/assets.h"
 #include "tests/support/damage.h"

@@ -132,3 +132,12 @@ for k in (frame, frame + 1):
     tops.append(max((mesh_object.matrix_world @ v.co).z for v in mesh.vertices))
 print("BLENDER mesh_at %.6f" % tops[0])
 print("BLENDER mesh_moved %.6f" % (tops[1] - tops[0]))
+
+# Where half of the foam is.
+modifier.grid_name, modifier.threshold = "foam", 0.5
+scene.frame_set(frame)
+mesh = mesh_object.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+places = [mesh_object.matrix_world @ v.co for v in mesh.vertices]
+print("BLENDER foam_top %.6f" % max(p.z for p in places))
+print("BLENDER foam_bottom %.6f" % min(p.z for p in places))
+print("BLENDER foam_right %.6f" % max(p.x for p in places))

@@ -41,10 +41,11 @@ CacheInfo info_of(const std::string& name) {
   return out;
 }
 
-/// A surface between x = 0 and x = 0.4 that rises.
+/// A surface between x = 0 and x = 0.4 that rises, with foam where x is below 0.2.
 void write_surface(const std::filesystem::path& path) {
   constexpr int across = 21, along = 11;
   CacheInfo info = info_of("pool");
+  info.content.scalars = {"wet", "foam"};
   for (int k = 0; k < along; ++k)
     for (int i = 0; i < across; ++i) info.mesh.positions.emplace_back(0.02 * i, k_start, 0.02 * k);
   for (int k = 0; k + 1 < along; ++k)
@@ -58,7 +59,9 @@ void write_surface(const std::filesystem::path& path) {
   for (int f = 0; f < k_frames; ++f) {
     std::vector<Vec3> x = info.mesh.positions;
     for (Vec3& p : x) p += f / static_cast<double>(k_fps) * v.front();
-    const Status written = (*writer)->write_frame(x, v);
+    std::vector<std::vector<float>> scalars(2);
+    for (const Vec3& p : x) scalars[0].push_back(1), scalars[1].push_back(p.x() < 0.19 ? 1.0f : 0.0f);
+    const Status written = (*writer)->write_frame(x, v, scalars);
     ASSERT_TRUE(written) << written.error().text();
   }
   ASSERT_TRUE((*writer)->close());
@@ -102,7 +105,7 @@ TEST(Blender, Blurs_the_volumes_of_water_by_as_much_as_it_moves_slow) {
   auto seen =
       output_of("blender -b --factory-startup --python-exit-code 1 --python " + script.string() + " -- " + folder +
                 " pool " + std::to_string(k_frames) + " " + std::to_string(k_fps) + " " + std::to_string(k_voxel));
-  EXPECT_EQ(seen["grids"], "spray+surface+vel");
+  EXPECT_EQ(seen["grids"], "foam+spray+surface+vel");
   EXPECT_EQ(seen["velocity"], "vel") << "it is found by its name";
   EXPECT_EQ(seen["default_unit"], "FRAME") << "`followthrough volumes` says to set another";
   ASSERT_TRUE(seen.contains("mesh_moved"));
@@ -111,6 +114,10 @@ TEST(Blender, Blurs_the_volumes_of_water_by_as_much_as_it_moves_slow) {
   EXPECT_NEAR(number("still_at"), 0.2, 0.1 * k_voxel);
   EXPECT_NEAR(number("moving_at"), 0.2, 0.1 * k_voxel);
   EXPECT_NEAR(number("rising_at"), k_start + 2.0 * k_rising / k_fps, 0.1 * k_voxel);
+  // Half of the foam is within three quarters of a voxel of the surface, and ends between two of its vertices.
+  EXPECT_NEAR(number("foam_top"), k_start + 2.0 * k_rising / k_fps + 0.75 * k_voxel, 0.3 * k_voxel);
+  EXPECT_NEAR(number("foam_bottom"), k_start + 2.0 * k_rising / k_fps - 0.75 * k_voxel, 0.3 * k_voxel);
+  EXPECT_NEAR(number("foam_right"), 0.19, 0.6 * k_voxel);
   EXPECT_NEAR(number("mesh_at"), k_start + 2.0 * k_rising / k_fps, 1e-5);
   // From a frame to the next.
   EXPECT_NEAR(number("still_moved"), 0, 0.1 * k_voxel);

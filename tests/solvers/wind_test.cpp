@@ -9,6 +9,7 @@
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
 #include "solvers/wind/body_paths.h"
+#include "solvers/wind/log_profile.h"
 #include "solvers/wind/registry.h"
 #include "solvers/wind/surface_shelter.h"
 #include "solvers/wind/velocity_grid.h"
@@ -242,6 +243,34 @@ TEST(Wind, Gusts_have_the_strength_that_they_are_given) {
 }
 
 /// rho U times the flow is the momentum that a plane behind the body sees; C_d A U^2 / 2 times rho is its drag.
+TEST(Wind, Over_level_ground_it_grows_with_the_logarithm_of_height) {
+  const LogProfile profile{.roughness_length = 0.03, .reference_height = 10, .ground = -2};
+  EXPECT_EQ(profile.share(-2), 0);
+  EXPECT_EQ(profile.share(-3), 0) << "under the ground it is still";
+  EXPECT_DOUBLE_EQ(profile.share(8), 1) << "ten metres above it";
+  // From a height to its double, in the middle of the layer: always the same, by the roughness a little more low down.
+  for (const double height : {0.5, 2.0, 20.0})
+    EXPECT_NEAR(profile.share(2 * height - 2) - profile.share(height - 2), std::log(2) / std::log(10 / 0.03),
+                std::log(2) * 0.03 / height);
+  for (double y = -2; y < 150; y += 0.37) EXPECT_LE(profile.share(y), profile.share(y + 0.37));
+  EXPECT_EQ(profile.share(profile.top() - 2), profile.share(1e6)) << "above the surface layer it is even";
+
+  WindFieldSpec spec = usual("uniform");
+  spec.velocity = Vec3(4, 0, -1);
+  const auto even = make(spec);
+  const ProfiledWind wind(make(spec), profile);
+  EXPECT_TRUE(wind.is_divergence_free());
+  EXPECT_EQ(wind.spec().gain, even->spec().gain);
+  const auto air = wind.at_time(0.7), without = even->at_time(0.7);
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Vec3 place = some_place(i, i % 2 == 0 ? 3 : 1e4);
+    EXPECT_EQ(air->velocity(place), profile.share(place.y()) * without->velocity(place));
+    EXPECT_LE(air->velocity(place).norm(), wind.fastest());
+  }
+  spec.velocity.y() = 0.5;
+  EXPECT_FALSE(ProfiledWind(make(spec), profile).is_divergence_free()) << "what goes up becomes faster as it goes";
+}
+
 TEST(Wind, Through_every_plane_behind_a_body_goes_the_momentum_of_its_drag) {
   WindFieldSpec spec = usual("wake");
   for (const double turbulence : {0.0, 0.4}) {

@@ -40,13 +40,33 @@ ShapedSample sheet(int frame_count) {
   return s;
 }
 
+ShapedSample pool(int frame_count) {
+  ShapedSample s = sheet(frame_count);
+  s.name = s.info.system = s.info.mesh.name = "pool";
+  s.info.content.scalars = {"foam", "wet; \"nearly\""};
+  for (int i = 0; i < frame_count; ++i) {
+    FrameData& f = s.frames[at(i)];
+    f.scalars.resize(2);
+    for (std::uint64_t v = 0; v < f.positions.size(); ++v) {
+      f.scalars[0].push_back(i < 3 ? 0 : (place(i, v).y() + 2) / 4);  // none for a while
+      f.scalars[1].push_back(static_cast<float>(v) / 64);             // never another
+    }
+  }
+  return s;
+}
+
 ShapedSample splash(int frame_count) {
   ShapedSample s = named("splash", OutputShape::k_mesh, frame_count);
   s.info.content.changes = true;
+  s.info.content.scalars = {"foam"};
   for (int i = 0; i < frame_count; ++i) {
     FrameData& f = s.frames.emplace_back();
     const int rows = (i == 4 ? 3 : i) % 4;  // of two vertices each, a quad between two, a triangle at the end
-    for (int v = 0; v < 2 * rows; ++v) move(f, i, static_cast<std::uint64_t>(v));
+    f.scalars.resize(1);
+    for (int v = 0; v < 2 * rows; ++v) {
+      move(f, i, static_cast<std::uint64_t>(v));
+      f.scalars[0].push_back(static_cast<float>(v * rows) / 32);
+    }
     for (int q = 0; q + 1 < rows; ++q) {
       f.face_sizes.push_back(q % 2 == 0 ? 4 : 3);
       for (const int v : {2 * q, 2 * q + 1, 2 * q + 3, 2 * q + 2})
@@ -115,7 +135,8 @@ ShapedSample leaves(int frame_count) {
 }
 
 std::vector<ShapedSample> all_shapes(int frame_count) {
-  return {sheet(frame_count), splash(frame_count), strands(frame_count), spray(frame_count), leaves(frame_count)};
+  return {sheet(frame_count),   pool(frame_count),  splash(frame_count),
+          strands(frame_count), spray(frame_count), leaves(frame_count)};
 }
 
 Status write_shaped(const CacheFormat& format, const std::filesystem::path& path, const ShapedSample& sample, int end,

@@ -17,6 +17,7 @@ struct ShapedSample {
 };
 
 ShapedSample sheet(int frame_count);    ///< a mesh of constant topology
+ShapedSample pool(int frame_count);     ///< the same with scalars of its vertices
 ShapedSample splash(int frame_count);   ///< a mesh whose faces change, first frame empty
 ShapedSample strands(int frame_count);  ///< curves with ids, widths for each vertex, attributes of all kinds
 ShapedSample spray(int frame_count);    ///< points that are born and die

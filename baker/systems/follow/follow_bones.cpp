@@ -132,6 +132,15 @@ class BoneFollower {
   std::vector<Follower> followers_;
 };
 
+/// Of a joint against its parent, as the clip has it [s of the clip].
+Quat rotation_at(const PlacedCharacter& placed, int joint, double time) {
+  const ClipPose pose(placed.character, &placed.character.clips[at(placed.clip)]);
+  std::vector<Mat4> locals(placed.character.nodes.size());
+  std::vector<double> morphs(pose.rest_morphs().size());
+  pose.sample(time, locals, morphs);
+  return decompose(locals[at(joint)]).rotation;
+}
+
 /// The joint's keys outside of the shot stay, and within it there is one for each frame.
 ChangedChannel channel_of(const PlacedCharacter& placed, const Follower& f, const FollowTiming& timing) {
   ChangedChannel out{f.joint, ChannelPath::k_rotation, {}};
@@ -148,11 +157,21 @@ ChangedChannel channel_of(const PlacedCharacter& placed, const Follower& f, cons
     out.track.times.push_back(time);
     for (int k = 0; k < 4; ++k) out.track.values.push_back(round_to_float(q.coeffs()[k]));
   };
-  const Channel* channel = find_channel(placed.character.clips[at(placed.clip)], f.joint);
+  const Clip& clip = placed.character.clips[at(placed.clip)];
+  const Channel* channel = find_channel(clip, f.joint);
+  std::vector<double> stack_keys;
+  if (find_stack(clip, f.joint) != nullptr) {
+    stack_keys = key_times(clip, f.joint);
+    std::sort(stack_keys.begin(), stack_keys.end());
+    const auto one_float = [](double a, double b) { return round_to_float(a) == round_to_float(b); };
+    stack_keys.erase(std::unique(stack_keys.begin(), stack_keys.end(), one_float), stack_keys.end());
+  }
   const NodeTransform rest = decompose(placed.character.nodes[at(f.joint)].local);
   const double begin = time_of(0), end = time_of(f.rotations.size() - 1);
   const auto keep = [&](auto&& wanted) {
-    if (!channel) return;
+    for (const double time : stack_keys)
+      if (wanted(round_to_float(time))) append(round_to_float(time), rotation_at(placed, f.joint, time));
+    if (!channel || !stack_keys.empty()) return;
     for (const double time : channel->rotation.times)
       if (wanted(round_to_float(time))) append(round_to_float(time), sample_channel(*channel, rest, time).rotation);
   };

@@ -42,10 +42,11 @@ struct SystemOutput {
   double pattern_scale = 0;                  ///< of what is cut from a flat pattern: m per unit of its uvs; else 0
   double weld = 0;                           ///< what is nearer than this was joined [m]; 0: nothing
   FileNumbers in_file;                       ///< of the simulated mesh
+  std::vector<std::string> scalars{};        ///< of a mesh: names of those of its vertices
 
   const std::string& name() const { return shape ? shape->name : mesh->name; }
   /// What formats are asked with.
-  FrameContent content() const { return shape ? shape->content : FrameContent(); }
+  FrameContent content() const { return shape ? shape->content : FrameContent{.scalars = scalars}; }
   /// In one frame.
   FrameCounts counts() const;
 };

@@ -35,6 +35,16 @@ class JudgedWater final : public JudgedGroup {
                                   now.positions[at(beside)].cast<double>(), 0,
                                   "a vertex of the surface is not over its place on the grid"});
     report.finite = beside < 0;
+    for (std::size_t n = 0; n < now.scalars.size(); ++n) {
+      const auto off = std::ranges::find_if(now.scalars[n], [](float x) { return !(x >= 0 && x <= 1); });
+      if (off == now.scalars[n].end()) continue;
+      const int v = static_cast<int>(off - now.scalars[n].begin());
+      report.incidents.push_back({Incident::Kind::k_unsettled, frame, track_.name, v,
+                                  now.positions[at(v)].cast<double>(), 0,
+                                  fmt::format("{} of the surface is {} at a vertex, and not within 0 and 1",
+                                              track_.reader->info().content.scalars[n], *off)});
+      report.finite = false;
+    }
     return report;
   }
 

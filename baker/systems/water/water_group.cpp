@@ -212,6 +212,8 @@ Result<std::unique_ptr<WaterGroup>> plan_water(const Shot& shot, const WaterSpec
   SystemOutput& surface = group->outputs.emplace_back();
   surface.primary = primary;
   surface.mesh = std::make_shared<const Mesh>(group->solver->system_mesh(0));
+  const auto scalars = group->solver->scalar_names(0);
+  surface.scalars.assign(scalars.begin(), scalars.end());
   if (!(spec.splash > 0)) return group;
   SystemOutput& droplets = group->outputs.emplace_back();
   droplets.primary = primary;

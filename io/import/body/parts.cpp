@@ -48,8 +48,10 @@ std::vector<double> volumes(std::span<const Vec3> positions, const std::vector<T
 /// rigid shell hung on a bone is a piece of that bone.
 std::vector<int> carriers(const Character& character) {
   std::vector<char> moves(character.nodes.size(), 0);
-  for (const Clip& clip : character.clips)
+  for (const Clip& clip : character.clips) {
     for (const Channel& channel : clip.channels) moves[static_cast<std::size_t>(channel.node)] = 1;
+    for (const TransformStack& stack : clip.stacks) moves[static_cast<std::size_t>(stack.node)] = 1;
+  }
   for (const CharacterMesh& mesh : character.meshes)
     for (const SkinBone& bone : mesh.bones) moves[static_cast<std::size_t>(bone.node)] = 1;
   std::vector<int> out;

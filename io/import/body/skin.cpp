@@ -1,9 +1,11 @@
 #include "io/import/body/skin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
 #include "baker/core/parallel.h"
+#include "io/import/body/dual_quaternions.h"
 
 namespace ft::inline io {
 namespace {
@@ -51,6 +53,7 @@ void drop_unused(Skin& skin) {
     to[i] = static_cast<int>(kept.base.size());
     kept.base.push_back(skin.base[i]);
     kept.origins.push_back(skin.origins[i]);
+    if (!skin.dual_share.empty()) kept.dual_share.push_back(skin.dual_share[i]);
     for (int k = skin.start[i]; k < skin.start[i + 1]; ++k) {
       kept.binding.push_back(skin.binding[static_cast<std::size_t>(k)]);
       kept.weight.push_back(skin.weight[static_cast<std::size_t>(k)]);
@@ -82,6 +85,9 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
   std::vector<int> morph_start{0};
   for (const CharacterNode& node : character.nodes)
     morph_start.push_back(morph_start.back() + static_cast<int>(node.morph_weights.size()));
+  const bool any_dual = std::any_of(meshes.begin(), meshes.end(), [&](int m) {
+    return !character.meshes[static_cast<std::size_t>(m)].dual_share.empty();
+  });
   int split = 0, flat = 0;
   std::string key;
   for (const int m : meshes) {
@@ -118,6 +124,8 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
           key.append(reinterpret_cast<const char*>(&skin.morphs[morphs_before + k].weight_index), sizeof(int));
           append(key, d);
         }
+      const double dual_share = mesh.dual_share.empty() ? 0 : mesh.dual_share[v];
+      if (dual_share > 0) key.append(reinterpret_cast<const char*>(&dual_share), sizeof dual_share);
       const auto [entry, fresh] = seen.emplace(key, static_cast<int>(skin.base.size()));
       to[v] = entry->second;
       if (!fresh) {
@@ -128,6 +136,7 @@ Skin weld(const Character& character, const std::vector<int>& meshes, std::vecto
       skin.base.push_back(mesh.positions[v]);
       skin.origins.push_back({m, static_cast<int>(v)});
       skin.start.push_back(static_cast<int>(skin.binding.size()));
+      if (any_dual) skin.dual_share.push_back(dual_share);
       for (std::size_t k = 0; k < morph_count; ++k)
         if (const Vec3& d = mesh.morphs[k].deltas[v]; !d.isZero(0)) {
           skin.morphs[morphs_before + k].vertices.push_back(to[v]);
@@ -157,6 +166,9 @@ void deform(const Skin& skin, const Mat4& placement, std::span<const Mat4> globa
     const Skin::Binding& binding = skin.bindings[b];
     matrices[b] = (placement * globals[static_cast<std::size_t>(binding.node)] * binding.inverse_bind).topRows<3>();
   }
+  std::vector<RigidPart> parts;
+  if (!skin.dual_share.empty())
+    for (const Mat34& m : matrices) parts.push_back(rigid_part(m));
   std::copy(skin.base.begin(), skin.base.end(), positions.begin());
   for (const Skin::Morph& morph : skin.morphs) {
     const double w = morph_weights[static_cast<std::size_t>(morph.weight_index)];
@@ -171,6 +183,13 @@ void deform(const Skin& skin, const Mat4& placement, std::span<const Mat4> globa
       for (int k = skin.start[i]; k < skin.start[i + 1]; ++k)
         sum += skin.weight[static_cast<std::size_t>(k)] *
                (matrices[static_cast<std::size_t>(skin.binding[static_cast<std::size_t>(k)])] * p);
+      if (const double share = skin.dual_share.empty() ? 0 : skin.dual_share[i]; share > 0) {
+        const auto row = static_cast<std::size_t>(skin.start[i]);
+        const std::size_t count = static_cast<std::size_t>(skin.start[i + 1]) - row;
+        const Vec3 turned = dual_blend(parts, std::span(skin.binding).subspan(row, count),
+                                       std::span(skin.weight).subspan(row, count), positions[i]);
+        sum = share < 1 ? Vec3((1 - share) * sum + share * turned) : turned;
+      }
       positions[i] = sum;
     }
   });

@@ -1,6 +1,6 @@
 // The deforming surface of a character: vertices of the chosen meshes welded and flattened, with everything that moves
-// them. Linear blend skinning as glTF 2.0 defines it (section 3.7.3.3), in double precision; morph targets are added
-// before.
+// them. Linear blend skinning as glTF 2.0 defines it (section 3.7.3.3), in double precision, or dual quaternions (see
+// dual_quaternions.h); morph targets are added before.
 #pragma once
 
 #include <span>
@@ -29,6 +29,7 @@ struct Skin {
   std::vector<Binding> bindings;
   std::vector<int> start, binding;  ///< rows of each vertex
   std::vector<double> weight;
+  std::vector<double> dual_share;  ///< of each vertex, as CharacterMesh has it; empty: all linear
 
   struct Morph {
     int weight_index = 0;  ///< into the weights of all nodes (ClipPose::morph_start)

@@ -12,6 +12,7 @@
 #include "baker/core/hash.h"
 #include "baker/core/result.h"
 #include "baker/core/types.h"
+#include "io/import/character/transform_stack.h"
 
 namespace ft::inline io {
 
@@ -35,12 +36,19 @@ struct Channel {
   Track translation, rotation, scale, weights;
 };
 
+/// A node is moved by its stack, if it has one; a channel of the same node replaces the parts that it has keys for.
 struct Clip {
   std::string name;
-  double start = 0, end = 0;  ///< s, first and last key
-  std::vector<Channel> channels;
+  double start = 0, end = 0;  ///< s: what the file says that it lasts, else first and last key
+  std::vector<Channel> channels = {};
+  std::vector<TransformStack> stacks = {};  ///< at most one per node
+  std::vector<ShapeChannel> shapes = {};
+  CurveSet curves = {};        ///< of the stacks and shapes
+  bool has_own_range = false;  ///< the file says how long it lasts; a pose that is held is part of it
   double duration() const { return end - start; }
-  /// Sets start and end from the channels' keys; 0 and 0 without keys.
+  /// Nodes and shapes that it moves.
+  int moved_count() const { return static_cast<int>(channels.size() + stacks.size() + shapes.size()); }
+  /// Sets start and end from the keys, 0 and 0 without any, unless the file says them.
   void find_range();
 };
 
@@ -71,6 +79,8 @@ struct CharacterMesh {
   std::vector<int> influence_start;      ///< vertex count + 1 rows; empty when bones is
   std::vector<int> influence_bone;       ///< into bones
   std::vector<double> influence_weight;  ///< a row sums to 1, or is empty: the vertex follows `node`
+  /// Per vertex: the share of it that is skinned by dual quaternions instead of linearly, 0..1; empty: none.
+  std::vector<double> dual_share = {};
   std::vector<MorphTarget> morphs;
 };
 

@@ -68,6 +68,144 @@ Track get_track(ByteReader& in) {
   return track;
 }
 
+void put_curve(ByteWriter& out, const Curve& curve) {
+  put_vector(out, curve.times);
+  put_vector(out, curve.values);
+  put_vector(out, curve.interpolation);
+  put_vector(out, curve.handles);
+  for (const CurveEnd* end : {&curve.before, &curve.after})
+    out.write(static_cast<std::uint8_t>(end->rule)).write(end->count);
+}
+Curve get_curve(ByteReader& in) {
+  Curve curve;
+  curve.times = get_vector<double>(in);
+  curve.values = get_vector<double>(in);
+  curve.interpolation = get_vector<CurveInterpolation>(in);
+  curve.handles = get_vector<CurveHandles>(in);
+  for (CurveEnd* end : {&curve.before, &curve.after}) {
+    end->rule = static_cast<CurveInfinity>(in.read<std::uint8_t>());
+    end->count = in.read<std::int32_t>();
+  }
+  return curve;
+}
+
+void put_numbers(ByteWriter& out, const AnimatedNumbers& numbers) {
+  put_matrix(out, numbers.rest);
+  out.write(static_cast<std::uint64_t>(numbers.layers.size()));
+  for (const LayeredNumbers& said : numbers.layers) {
+    out.write(said.layer);
+    put_matrix(out, said.fixed);
+    for (const std::int32_t curve : said.curves) out.write(curve);
+  }
+}
+AnimatedNumbers get_numbers(ByteReader& in) {
+  AnimatedNumbers numbers;
+  numbers.rest = get_matrix<Vec3>(in);
+  numbers.layers.resize(get_count(in, 4 + sizeof(Vec3) + 12));
+  for (LayeredNumbers& said : numbers.layers) {
+    said.layer = in.read<std::int32_t>();
+    said.fixed = get_matrix<Vec3>(in);
+    for (std::int32_t& curve : said.curves) curve = in.read<std::int32_t>();
+  }
+  return numbers;
+}
+
+void put_stack(ByteWriter& out, const TransformStack& stack) {
+  out.write(stack.node).write(static_cast<std::uint8_t>(stack.inheritance));
+  out.write(static_cast<std::uint64_t>(stack.elements.size()));
+  for (const ElementaryTransform& e : stack.elements) {
+    out.write(static_cast<std::uint8_t>(e.kind)).write(static_cast<std::uint8_t>(e.order));
+    if (e.kind == TransformKind::k_matrix) {
+      put_matrix(out, e.matrix);
+      continue;
+    }
+    out.write(static_cast<std::uint8_t>(e.inverted)).write(e.unit);
+    put_matrix(out, e.axis);
+    put_numbers(out, e.numbers);
+  }
+}
+TransformStack get_stack(ByteReader& in) {
+  TransformStack stack;
+  stack.node = in.read<std::int32_t>();
+  stack.inheritance = static_cast<ScaleInheritance>(in.read<std::uint8_t>());
+  stack.elements.resize(get_count(in, 2 + sizeof(Vec3)));
+  for (ElementaryTransform& e : stack.elements) {
+    e.kind = static_cast<TransformKind>(in.read<std::uint8_t>());
+    e.order = static_cast<RotationOrder>(in.read<std::uint8_t>());
+    if (e.kind == TransformKind::k_matrix) {
+      e.matrix = get_matrix<Mat4>(in);
+      continue;
+    }
+    e.inverted = in.read<std::uint8_t>() != 0;
+    e.unit = in.read<double>();
+    e.axis = get_matrix<Vec3>(in);
+    e.numbers = get_numbers(in);
+  }
+  return stack;
+}
+
+void put_clip(ByteWriter& out, const Clip& clip) {
+  out.write_string(clip.name).write(clip.start).write(clip.end).write(static_cast<std::uint8_t>(clip.has_own_range));
+  out.write(static_cast<std::uint64_t>(clip.channels.size()));
+  for (const Channel& channel : clip.channels) {
+    out.write(static_cast<std::int32_t>(channel.node));
+    for (const Track* t : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights})
+      put_track(out, *t);
+  }
+  out.write(static_cast<std::uint64_t>(clip.curves.curves.size()));
+  for (const Curve& curve : clip.curves.curves) put_curve(out, curve);
+  out.write(static_cast<std::uint64_t>(clip.curves.layers.size()));
+  for (const AnimationLayer& layer : clip.curves.layers)
+    out.write(static_cast<std::uint8_t>(layer.mode))
+        .write(layer.weight)
+        .write(layer.weight_curve)
+        .write(static_cast<std::uint8_t>(layer.composes_rotations))
+        .write(static_cast<std::uint8_t>(layer.multiplies_scales));
+  out.write(static_cast<std::uint64_t>(clip.stacks.size()));
+  for (const TransformStack& stack : clip.stacks) put_stack(out, stack);
+  out.write(static_cast<std::uint64_t>(clip.shapes.size()));
+  for (const ShapeChannel& channel : clip.shapes) {
+    out.write(channel.node).write(static_cast<std::uint64_t>(channel.shapes.size()));
+    for (const ShapeChannel::Shape& shape : channel.shapes) out.write(shape.morph).write(shape.full);
+    put_numbers(out, channel.percent);
+  }
+}
+Clip get_clip(ByteReader& in) {
+  Clip clip;
+  clip.name = in.read_string();
+  clip.start = in.read<double>();
+  clip.end = in.read<double>();
+  clip.has_own_range = in.read<std::uint8_t>() != 0;
+  clip.channels.resize(get_count(in, 4 + 4 * 21));
+  for (Channel& channel : clip.channels) {
+    channel.node = in.read<std::int32_t>();
+    for (Track* t : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights}) *t = get_track(in);
+  }
+  clip.curves.curves.resize(get_count(in, 4 * 8 + 10));
+  for (Curve& curve : clip.curves.curves) curve = get_curve(in);
+  clip.curves.layers.resize(get_count(in, 15));
+  for (AnimationLayer& layer : clip.curves.layers) {
+    layer.mode = static_cast<LayerMode>(in.read<std::uint8_t>());
+    layer.weight = in.read<double>();
+    layer.weight_curve = in.read<std::int32_t>();
+    layer.composes_rotations = in.read<std::uint8_t>() != 0;
+    layer.multiplies_scales = in.read<std::uint8_t>() != 0;
+  }
+  clip.stacks.resize(get_count(in, 13));
+  for (TransformStack& stack : clip.stacks) stack = get_stack(in);
+  clip.shapes.resize(get_count(in, 12 + sizeof(Vec3) + 8));
+  for (ShapeChannel& channel : clip.shapes) {
+    channel.node = in.read<std::int32_t>();
+    channel.shapes.resize(get_count(in, 12));
+    for (ShapeChannel::Shape& shape : channel.shapes) {
+      shape.morph = in.read<std::int32_t>();
+      shape.full = in.read<double>();
+    }
+    channel.percent = get_numbers(in);
+  }
+  return clip;
+}
+
 void put_mesh(ByteWriter& out, const CharacterMesh& mesh) {
   out.write_string(mesh.name)
       .write(static_cast<std::int32_t>(mesh.node))
@@ -82,6 +220,7 @@ void put_mesh(ByteWriter& out, const CharacterMesh& mesh) {
   put_vector(out, mesh.influence_start);
   put_vector(out, mesh.influence_bone);
   put_vector(out, mesh.influence_weight);
+  put_vector(out, mesh.dual_share);
   out.write(static_cast<std::uint64_t>(mesh.morphs.size()));
   for (const MorphTarget& morph : mesh.morphs) {
     out.write_string(morph.name);
@@ -103,6 +242,7 @@ CharacterMesh get_mesh(ByteReader& in) {
   mesh.influence_start = get_vector<int>(in);
   mesh.influence_bone = get_vector<int>(in);
   mesh.influence_weight = get_vector<double>(in);
+  mesh.dual_share = get_vector<double>(in);
   mesh.morphs.resize(get_count(in, 12));
   for (MorphTarget& morph : mesh.morphs) {
     morph.name = in.read_string();
@@ -127,15 +267,7 @@ Bytes save_character(const Character& character) {
   out.write(static_cast<std::uint64_t>(character.meshes.size()));
   for (const CharacterMesh& mesh : character.meshes) put_mesh(out, mesh);
   out.write(static_cast<std::uint64_t>(character.clips.size()));
-  for (const Clip& clip : character.clips) {
-    out.write_string(clip.name).write(clip.start).write(clip.end);
-    out.write(static_cast<std::uint64_t>(clip.channels.size()));
-    for (const Channel& channel : clip.channels) {
-      out.write(static_cast<std::int32_t>(channel.node));
-      for (const Track* t : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights})
-        put_track(out, *t);
-    }
-  }
+  for (const Clip& clip : character.clips) put_clip(out, clip);
   out.write(static_cast<std::uint64_t>(character.dependencies.size()));
   for (const Dependency& d : character.dependencies) out.write_string(d.path).write(d.hash.low).write(d.hash.high);
   out.write(static_cast<std::uint64_t>(character.contents.size()));
@@ -179,16 +311,7 @@ Result<Character> load_character_bytes(std::span<const std::byte> data) {
   c.meshes.resize(get_count(in, 32));
   for (CharacterMesh& mesh : c.meshes) mesh = get_mesh(in);
   c.clips.resize(get_count(in, 24));
-  for (Clip& clip : c.clips) {
-    clip.name = in.read_string();
-    clip.start = in.read<double>();
-    clip.end = in.read<double>();
-    clip.channels.resize(get_count(in, 4 + 4 * 21));
-    for (Channel& channel : clip.channels) {
-      channel.node = in.read<std::int32_t>();
-      for (Track* t : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights}) *t = get_track(in);
-    }
-  }
+  for (Clip& clip : c.clips) clip = get_clip(in);
   c.dependencies.resize(get_count(in, 20));
   for (Dependency& d : c.dependencies) {
     d.path = in.read_string();

@@ -40,6 +40,73 @@ Status check_track(const Track& track, int width, const std::string& where) {
   return {};
 }
 
+Status check_curve(const Curve& curve, const std::string& where) {
+  const std::size_t n = curve.times.size();
+  if (curve.values.size() != n || (!curve.interpolation.empty() && curve.interpolation.size() != n) ||
+      (!curve.handles.empty() && curve.handles.size() != n))
+    return fault(where, "key times and values of a curve do not match");
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!usable(curve.times[i])) return fault(where, "a key's time is not a finite number");
+    if (i > 0 && curve.times[i] < curve.times[i - 1]) return fault(where, "key times of a curve do not ascend");
+    if (!usable(curve.values[i])) return fault(where, "a key's value is not a finite number, or is beyond 1e9");
+  }
+  for (const CurveInterpolation how : curve.interpolation)
+    if (how > CurveInterpolation::k_cubic) return fault(where, "interpolation is unknown");
+  for (const CurveHandles& h : curve.handles)
+    if (!std::isfinite(h.before_value) || !std::isfinite(h.after_value) || !(h.before_time >= 0 && h.after_time >= 0) ||
+        !usable(h.before_time) || !usable(h.after_time))
+      return fault(where, "a curve's tangent is not finite, or goes backwards in time");
+  for (const CurveEnd* end : {&curve.before, &curve.after})
+    if (end->rule > CurveInfinity::k_repeat_relative) return fault(where, "what follows a curve's keys is unknown");
+  return {};
+}
+
+Status check_numbers(const AnimatedNumbers& numbers, const CurveSet& set, const std::string& where) {
+  if (!usable(numbers.rest)) return fault(where, "an animated number's rest is not finite");
+  for (const LayeredNumbers& said : numbers.layers) {
+    if (said.layer < 0 || static_cast<std::size_t>(said.layer) >= set.layers.size())
+      return fault(where, "an animation layer is missing");
+    if (!usable(said.fixed)) return fault(where, "an animated number is not finite");
+    for (const std::int32_t c : said.curves)
+      if (c < -1 || c >= static_cast<std::int32_t>(set.curves.size())) return fault(where, "a curve is missing");
+  }
+  return {};
+}
+
+Status check_stacks(const Clip& clip, const Character& character, const std::string& where) {
+  const int node_count = static_cast<int>(character.nodes.size());
+  for (const Curve& curve : clip.curves.curves)
+    if (Status s = check_curve(curve, where); !s) return s;
+  for (const AnimationLayer& layer : clip.curves.layers)
+    if (layer.mode > LayerMode::k_blend || !std::isfinite(layer.weight) || layer.weight_curve < -1 ||
+        layer.weight_curve >= static_cast<std::int32_t>(clip.curves.curves.size()))
+      return fault(where, "an animation layer is of an unknown kind or has no weight");
+  std::vector<char> seen(character.nodes.size(), 0);
+  for (const TransformStack& stack : clip.stacks) {
+    if (stack.node < 0 || stack.node >= node_count) return fault(where, "transforms move no node");
+    const auto node = static_cast<std::size_t>(stack.node);
+    const std::string here = where + ", node \"" + character.nodes[node].name + "\"";
+    if (seen[node]++ != 0) return fault(here, "is moved by two lists of transforms");
+    if (stack.inheritance > ScaleInheritance::k_compensated) return fault(here, "inherits scale in an unknown way");
+    for (const ElementaryTransform& e : stack.elements) {
+      if (e.kind > TransformKind::k_matrix || e.order > RotationOrder::k_zyx)
+        return fault(here, "has a transform of an unknown kind");
+      if (!usable(e.matrix) || !usable(e.unit) || !usable(e.axis) || !(e.axis.norm() > 0))
+        return fault(here, "has a transform that is not finite");
+      if (Status s = check_numbers(e.numbers, clip.curves, here); !s) return s;
+    }
+  }
+  for (const ShapeChannel& channel : clip.shapes) {
+    if (channel.node < 0 || channel.node >= node_count) return fault(where, "a shape channel belongs to no node");
+    const auto& node = character.nodes[static_cast<std::size_t>(channel.node)];
+    for (const ShapeChannel::Shape& shape : channel.shapes)
+      if (shape.morph < 0 || static_cast<std::size_t>(shape.morph) >= node.morph_weights.size() || !usable(shape.full))
+        return fault(where + ", node \"" + node.name + "\"", "a shape channel names a shape that is not there");
+    if (Status s = check_numbers(channel.percent, clip.curves, where); !s) return s;
+  }
+  return {};
+}
+
 Status check_mesh(const CharacterMesh& mesh, int node_count) {
   const std::string where = "mesh \"" + mesh.name + "\"";
   const auto n = mesh.positions.size();
@@ -69,6 +136,10 @@ Status check_mesh(const CharacterMesh& mesh, int node_count) {
   } else if (!mesh.influence_bone.empty() || !mesh.influence_weight.empty()) {
     return fault(where, "skin is incomplete");
   }
+  if (!mesh.dual_share.empty() && (mesh.bones.empty() || mesh.dual_share.size() != n))
+    return fault(where, "shares of dual quaternions do not match the vertices");
+  for (const double share : mesh.dual_share)
+    if (!(share >= 0 && share <= 1)) return fault(where, "a share of dual quaternions is outside [0, 1]");
   for (const MorphTarget& morph : mesh.morphs) {
     if (morph.deltas.size() != n) return fault(where, "a morph target does not match the vertices");
     for (const Vec3& d : morph.deltas)
@@ -80,10 +151,18 @@ Status check_mesh(const CharacterMesh& mesh, int node_count) {
 }  // namespace
 
 void Clip::find_range() {
+  if (has_own_range) return;
   double first = std::numeric_limits<double>::infinity(), last = -first;
   for (const Channel& c : channels)
     for (const Track* t : {&c.translation, &c.rotation, &c.scale, &c.weights})
       if (!t->empty()) first = std::min(first, t->times.front()), last = std::max(last, t->times.back());
+  std::vector<std::int32_t> used;
+  for (const TransformStack& stack : stacks) add_curves(stack, used);
+  for (const ShapeChannel& shape : shapes) add_curves(shape.percent, used);
+  for (const std::int32_t c : used) {
+    const std::vector<double>& times = curves.curves[static_cast<std::size_t>(c)].times;
+    if (!times.empty()) first = std::min(first, times.front()), last = std::max(last, times.back());
+  }
   start = first <= last ? first : 0;
   end = first <= last ? last : 0;
 }
@@ -123,6 +202,7 @@ Status check_character(const Character& character) {
                                          {&channel.weights, 0}})
         if (Status s = check_track(*track, width, here); !s) return s;
     }
+    if (Status s = check_stacks(clip, character, where); !s) return s;
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <unordered_map>
 
 namespace ft::inline io {
@@ -37,10 +38,10 @@ std::size_t letters_changed(const std::string& a, const std::string& b) {
 }
 
 template <class Key>
-std::unordered_map<std::string, int> index_names(const Character& character, Key key) {
-  std::unordered_map<std::string, int> out;
+std::unordered_map<std::string, std::vector<int>> index_names(const Character& character, Key key) {
+  std::unordered_map<std::string, std::vector<int>> out;
   for (std::size_t i = 0; i < character.nodes.size(); ++i)
-    out.emplace(key(character.nodes[i].name), static_cast<int>(i));
+    out[key(character.nodes[i].name)].push_back(static_cast<int>(i));
   return out;
 }
 
@@ -99,13 +100,15 @@ Result<int> select_clip(const Character& character, const std::string& name, con
 std::vector<int> match_names(const Character& source, const Character& target) {
   const auto exact = index_names(target, [](const std::string& n) { return n; });
   const auto loose = index_names(target, bare);
+  std::unordered_map<std::string, std::size_t> met;  // nodes that share a name are matched in their order
   std::vector<int> to(source.nodes.size(), -1);
   for (std::size_t i = 0; i < source.nodes.size(); ++i) {
     const std::string& name = source.nodes[i].name;
+    const std::size_t nth = met[name]++;
     if (const auto found = exact.find(name); found != exact.end())
-      to[i] = found->second;
+      to[i] = found->second[nth < found->second.size() ? nth : 0];
     else if (const auto near = loose.find(bare(name)); near != loose.end())
-      to[i] = near->second;
+      to[i] = near->second.front();
   }
   return to;
 }
@@ -122,7 +125,9 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
   std::vector<char> is_missing(source.nodes.size(), 0);
   std::size_t matched = 0;
   for (const Clip& clip : source.clips) {
-    Clip moved{clip.name, clip.start, clip.end, {}};
+    Clip moved = clip;
+    moved.channels.clear(), moved.stacks.clear(), moved.shapes.clear();
+    std::set<int> moved_nodes;
     for (Channel channel : clip.channels) {
       const auto node = static_cast<std::size_t>(channel.node);
       if (to[node] < 0) {
@@ -137,7 +142,31 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
         channel.weights = {};
       moved.channels.push_back(std::move(channel));
     }
-    if (!moved.channels.empty()) moved.find_range();  // cameras and lights of the other file may be longer
+    for (TransformStack stack : clip.stacks) {
+      const auto node = static_cast<std::size_t>(stack.node);
+      if (to[node] < 0) {
+        is_missing[node] = 1;
+        continue;
+      }
+      ++matched;
+      stack.node = to[node];
+      if (!moved_nodes.insert(stack.node).second) continue;  // two of the source are one here
+      for (ElementaryTransform& e : stack.elements) {
+        e.unit *= scale;
+        e.matrix.topRightCorner<3, 1>() *= scale;
+      }
+      moved.stacks.push_back(std::move(stack));
+    }
+    for (ShapeChannel channel : clip.shapes) {
+      const auto node = static_cast<std::size_t>(channel.node);
+      if (to[node] < 0 || source.nodes[node].morph_weights.size() !=
+                              target.nodes[static_cast<std::size_t>(to[node])].morph_weights.size())
+        continue;
+      channel.node = to[node];
+      moved.shapes.push_back(std::move(channel));
+    }
+    if (!moved.channels.empty() || !moved.stacks.empty())
+      moved.find_range();  // cameras and lights of the other file may be longer
     out.push_back(std::move(moved));
   }
   if (source.clips.empty()) return input_error("has no animation", source_file);

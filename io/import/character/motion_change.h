@@ -26,8 +26,17 @@ double round_to_float(double value);
 Track& track_of(Channel& channel, ChannelPath path);
 const Track& track_of(const Channel& channel, ChannelPath path);
 
-/// The channel of a node; null when the clip does not move it.
+/// The channel of a node; null when the clip has none for it.
 const Channel* find_channel(const Clip& clip, int node);
+/// The stack of transforms of a node; null when the clip has none for it.
+const TransformStack* find_stack(const Clip& clip, int node);
+/// Whether anything in the clip moves the node: it has a channel, or a stack with curves.
+bool clip_moves(const Clip& clip, int node);
+/// Whether the node is anywhere else at one time of the clip than at another.
+bool varies(const Clip& clip, int node);
+/// Times [s] at which the clip has keys of the node, in any order, some of them twice. Where a value jumps at a key,
+/// the last time before it that a 32-bit float holds is among them.
+std::vector<double> key_times(const Clip& clip, int node);
 
 /// Puts the new keys in place; a node that the clip does not move gets a channel. Nodes and widths are checked.
 Status apply_changes(Character& character, int clip, std::span<const ChangedChannel> changes);

@@ -117,21 +117,50 @@ ClipPose::ClipPose(const Character& character, const Clip* clip) {
     rest_.push_back(node.local);
     rest_morphs_.insert(rest_morphs_.end(), node.morph_weights.begin(), node.morph_weights.end());
     morph_start_.push_back(static_cast<int>(rest_morphs_.size()));
+    parents_.push_back(node.parent);
   }
   if (clip == nullptr) return;
-  for (const Channel& channel : clip->channels)
-    moving_.push_back({channel, decompose(rest_[static_cast<std::size_t>(channel.node)])});
+  stacks_ = clip->stacks, shapes_ = clip->shapes, curves_ = clip->curves;
+  std::sort(stacks_.begin(), stacks_.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
+  std::vector<char> stacked(rest_.size(), 0);
+  for (const TransformStack& stack : stacks_) stacked[static_cast<std::size_t>(stack.node)] = 1;
+  for (const Channel& channel : clip->channels) {
+    const auto node = static_cast<std::size_t>(channel.node);
+    moving_.push_back({channel, decompose(rest_[node]), stacked[node] != 0});
+  }
+}
+
+void ClipPose::sample_stacks(double time, std::span<Mat4> locals) const {
+  ScalePassing passing(rest_.size());
+  std::vector<char> given(rest_.size(), 0);
+  for (const TransformStack& stack : stacks_) {
+    const auto node = static_cast<std::size_t>(stack.node);
+    const int parent = parents_[node];
+    if (stack.inheritance != ScaleInheritance::k_product && parent >= 0 && !given[static_cast<std::size_t>(parent)])
+      passing.set_scale(parent, locals[static_cast<std::size_t>(parent)].topLeftCorner<3, 3>().colwise().norm());
+    locals[node] = passing.local(stack.node, parent, stack.inheritance, stack_pose(stack, curves_, time));
+    given[node] = 1;
+  }
 }
 
 void ClipPose::sample(double time, std::span<Mat4> locals, std::span<double> morphs) const {
   std::copy(rest_.begin(), rest_.end(), locals.begin());
   std::copy(rest_morphs_.begin(), rest_morphs_.end(), morphs.begin());
   std::vector<double> weights;
+  if (!stacks_.empty()) sample_stacks(time, locals);
+  for (const ShapeChannel& channel : shapes_) {
+    const Vec3 percent = numbers_at(channel.percent, TransformKind::k_translate, RotationOrder::k_xyz, curves_, time);
+    weights.resize(channel.shapes.size());
+    shape_weights(channel.shapes, percent[0], weights);
+    const auto begin = static_cast<std::size_t>(morph_start_[static_cast<std::size_t>(channel.node)]);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      morphs[begin + static_cast<std::size_t>(channel.shapes[k].morph)] = weights[k];
+  }
   for (const Moving& moving : moving_) {
     const Channel& c = moving.channel;
     const auto node = static_cast<std::size_t>(c.node);
     if (!c.translation.empty() || !c.rotation.empty() || !c.scale.empty())
-      locals[node] = sample_channel(c, moving.rest, time).matrix();
+      locals[node] = sample_channel(c, moving.over_stack ? decompose(locals[node]) : moving.rest, time).matrix();
     if (!c.weights.empty()) {
       weights.resize(static_cast<std::size_t>(c.weights.width));
       sample_track(c.weights, time, false, weights);

@@ -1,6 +1,7 @@
 // Where the nodes of a character are at a time of a clip. Own evaluator, in double: keys are searched by time, held
 // outside their range, steps stay steps, rotations go the short way round, cubic keys follow the glTF 2.0 specification
-// (appendix C).
+// (appendix C). Stacks of transforms are evaluated as they are (transform_stack.h); a node's matrix relative to its
+// parent is always one whose product with the parent's is its place, whatever scale it inherits.
 #pragma once
 
 #include <span>
@@ -47,7 +48,14 @@ class ClipPose {
   struct Moving {
     Channel channel;
     NodeTransform rest;
+    bool over_stack = false;  // its rest is then what the stack says at the time
   };
+  void sample_stacks(double time, std::span<Mat4> locals) const;
+
+  std::vector<int> parents_;
+  std::vector<TransformStack> stacks_;  // parents first
+  std::vector<ShapeChannel> shapes_;
+  CurveSet curves_;
   std::vector<Mat4> rest_;
   std::vector<double> rest_morphs_;
   std::vector<int> morph_start_;

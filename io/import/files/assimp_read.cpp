@@ -1,9 +1,11 @@
 // File -> Character through assimp: opening, units and axes, nodes. Meshes and clips are in the files beside this one.
 // assimp converts neither units nor axes of FBX; both are passed on as metadata (a float and five ints) and applied by
-// us, in double. Collada and glTF arrive as metres and Y-up. A BVH carries neither.
+// us, in double. Collada and glTF arrive as metres and Y-up (collada_read.h takes the metres back). A BVH carries
+// neither.
 #include "io/import/files/assimp_read.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
@@ -11,10 +13,12 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <map>
 #include <set>
 
 #include "baker/core/file.h"
-#include "io/import/files/gltf_clips.h"
+#include "io/import/collada/collada_file.h"
+#include "io/import/collada/collada_read.h"
 
 namespace ft::inline io {
 namespace {
@@ -24,13 +28,23 @@ class RecordingFiles : public Assimp::DefaultIOSystem {
  public:
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
-    if (stream != nullptr) opened_.insert(file);
-    return stream;
+    if (stream == nullptr) return stream;
+    opened_.insert(file);
+    if (const std::string end = std::filesystem::path(file).extension(); end != ".dae" && end != ".DAE") return stream;
+    const auto [found, is_new] = repaired_.try_emplace(file);
+    if (is_new) found->second = with_bind_shape_matrices(file);
+    const std::string& text = found->second;
+    if (text.empty()) return stream;
+    Close(stream);
+    auto* copy = new std::uint8_t[text.size()];
+    std::copy(text.begin(), text.end(), copy);
+    return new Assimp::MemoryIOStream(copy, text.size(), true);
   }
   const std::set<std::string>& opened() const { return opened_; }
 
  private:
   std::set<std::string> opened_;
+  std::map<std::string, std::string> repaired_;  // texts, by file; empty where it is good as it is
 };
 
 std::string format_name(const Assimp::Importer& importer) {
@@ -182,7 +196,8 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   if (out.format != "BVH") read_meshes(*scene, nodes, out);
   read_clips(*scene, nodes, out);
   record_dependencies(file, files->opened(), out);
-  if (out.format == "glTF") read_gltf_clips(file, out);
+  if (out.format == "glTF") out.notes.emplace_back("is glTF 1.0: only its shapes were read");
+  if (out.format == "Collada") read_collada_over(file, out);
   return out;
 }
 

@@ -1,12 +1,39 @@
 #include "io/import/files/read_character.h"
 
+#include <algorithm>
+
+#include "baker/core/file.h"
 #include "io/import/bvh/bvh_character.h"
+#include "io/import/fbx/fbx_tree.h"
+#include "io/import/fbx/read_fbx.h"
 #include "io/import/files/assimp_read.h"
+#include "io/import/gltf/gltf_read.h"
 
 namespace ft::inline io {
+namespace {
+
+bool is_named_fbx(const std::filesystem::path& file) {
+  std::string end = file.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+  return end == ".fbx";
+}
+
+}  // namespace
 
 Result<Character> read_character(const std::filesystem::path& file) {
   if (is_bvh(file)) return read_bvh_character(file);
+  if (is_gltf(file)) {
+    auto out = read_gltf(file);
+    if (out || !is_still_gltf_1(file)) return out;
+  }
+  {
+    auto bytes = read_file(file);
+    if (!bytes) return bytes.error();
+    if (is_fbx(*bytes)) return read_fbx(std::move(*bytes));
+  }
+  if (is_named_fbx(file))
+    return input_error("is no FBX file: it begins with neither \"Kaydara FBX Binary\" nor an FBX header in text", "",
+                       "copy or export it again");
   return read_with_assimp(file);
 }
 

@@ -16,14 +16,6 @@ bool is_below(const Character& character, int node, int ancestor) {
   return node == ancestor;
 }
 
-bool varies(const Channel* channel) {
-  if (channel == nullptr) return false;
-  for (const Track* track : {&channel->translation, &channel->rotation, &channel->scale})
-    for (std::size_t v = track->stride(); v < track->values.size(); ++v)
-      if (track->values[v] != track->values[v - track->stride()]) return true;
-  return false;
-}
-
 Status check(const Character& character, int clip, const Mat4& placement, const MotionAdjustment& adjustment) {
   if (clip < 0 || at(clip) >= character.clips.size())
     return usage_error("clip " + std::to_string(clip) + " to be adjusted does not exist");
@@ -57,8 +49,8 @@ struct KeyTimes {
 
 /// All times at which something on the way from the scene to the nodes has a key, the clip's ends, and the frames
 /// between.
-KeyTimes key_times(const Character& character, const Clip& clip, const std::vector<int>& nodes,
-                   const MotionAdjustment& adjustment) {
+KeyTimes all_key_times(const Character& character, const Clip& clip, const std::vector<int>& nodes,
+                       const MotionAdjustment& adjustment) {
   const double step = adjustment.frame_time, first = adjustment.first_frame;
   const double end = std::max(clip.end, round_to_float(first + step * (adjustment.frame_count - 1)));
   std::vector<double> keys{clip.start, end};
@@ -66,18 +58,8 @@ KeyTimes key_times(const Character& character, const Clip& clip, const std::vect
   for (int node : nodes)
     for (; node >= 0 && !seen[at(node)]; node = character.nodes[at(node)].parent) {
       seen[at(node)] = 1;
-      const Channel* channel = find_channel(clip, node);
-      if (channel == nullptr) continue;
-      for (const Track* track : {&channel->translation, &channel->rotation, &channel->scale}) {
-        keys.insert(keys.end(), track->times.begin(), track->times.end());
-        if (track->interpolation != KeyInterpolation::k_step) continue;
-        const auto width = static_cast<std::ptrdiff_t>(track->stride());
-        for (std::size_t k = 1; k < track->times.size(); ++k) {  // a step between two straight lines
-          const auto value = track->values.begin() + static_cast<std::ptrdiff_t>(k) * width;
-          if (!std::equal(value, value + width, value - width))
-            keys.push_back(std::nextafter(static_cast<float>(track->times[k]), -1e30f));
-        }
-      }
+      const std::vector<double> own = key_times(clip, node);
+      keys.insert(keys.end(), own.begin(), own.end());
     }
   std::sort(keys.begin(), keys.end());
   const auto one_float = [](double a, double b) { return static_cast<float>(a) == static_cast<float>(b); };
@@ -169,8 +151,8 @@ std::vector<int> motion_roots(const Character& character, int clip, const std::v
   if (clip < 0 || at(clip) >= character.clips.size() || character.nodes.empty()) return {top};
   const Clip& moved_by = character.clips[at(clip)];
   for (int node = top; node >= 0; node = character.nodes[at(node)].parent)
-    if (varies(find_channel(moved_by, node))) top = node;
-  if (top > 0 || character.nodes[0].local != Mat4::Identity() || find_channel(moved_by, 0) != nullptr) return {top};
+    if (varies(moved_by, node)) top = node;
+  if (top > 0 || character.nodes[0].local != Mat4::Identity() || clip_moves(moved_by, 0)) return {top};
   // Above several roots the importer puts a node that the file does not have: those below it that carry something.
   std::vector<int> out;
   for (int i = 1; i < static_cast<int>(character.nodes.size()); ++i) {
@@ -191,7 +173,7 @@ Result<AdjustedMotion> adjust_motion(const Character& character, int clip_index,
   if (Status s = check(character, clip_index, placement, adjustment); !s) return s.error();
   const Clip& clip = character.clips[at(clip_index)];
   const PoseAdjuster adjuster(character, clip, placement, adjustment);
-  const KeyTimes keys = key_times(character, clip, adjuster.nodes(), adjustment);
+  const KeyTimes keys = all_key_times(character, clip, adjuster.nodes(), adjustment);
   AdjustedMotion out;
   std::vector<AdjustedPose> poses;
   for (const double time : keys.times) {

@@ -33,6 +33,7 @@ PoseAdjuster::PoseAdjuster(const Character& character, const Clip& clip, const M
     nodes_.insert(nodes_.end(), {limb.chain.upper, limb.chain.lower, limb.chain.end});
   for (const int node : nodes_) {
     channels_.push_back(find_channel(clip, node));
+    stacked_.push_back(find_stack(clip, node) != nullptr);
     rest_.push_back(decompose(character.nodes[at(node)].local));
   }
   find_axes();
@@ -125,7 +126,9 @@ Result<AdjustedPose> PoseAdjuster::solve(double time) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const int parent = character_.nodes[at(nodes_[i])].parent;
     AdjustedNode node;
-    node.source = channels_[i] != nullptr ? sample_channel(*channels_[i], rest_[i], time) : rest_[i];
+    node.source = stacked_[i]               ? decompose(locals[at(nodes_[i])])
+                  : channels_[i] != nullptr ? sample_channel(*channels_[i], rest_[i], time)
+                                            : rest_[i];
     node.now = node.source;
     node.scale = (parent < 0 ? placement_ : Mat4(placement_ * all[at(parent)])).topLeftCorner<3, 1>().norm();
     out.nodes.push_back(node);

@@ -48,6 +48,7 @@ class PoseAdjuster {
   ClipPose pose_;
   std::vector<int> nodes_;
   std::vector<const Channel*> channels_;  ///< of nodes_; null: it rests
+  std::vector<char> stacked_;             ///< of nodes_: a stack of transforms moves it
   std::vector<NodeTransform> rest_;       ///< of nodes_
   std::vector<Vec3> axes_;                ///< about which a limb usually bends, in the frame of its upper bone
 };

@@ -46,12 +46,15 @@ class PondCore final : public WaterCore {
     out.wet.assign(count, 1);
     solver_->surface_heights(state, out.height);
   }
-  void surface_flow(const State& state, std::span<Vec3> out) const override { solver_->surface_velocity(state, out); }
+  void surface_flow(const State& state, std::span<Vec3> out) const override { solver_->surface_flow(state, out); }
+  std::span<const std::string> scalar_names() const override { return scalars_; }
+  void scalar(const State& state, std::size_t, std::span<double> out) const override { solver_->foam(state, out); }
   std::vector<Droplet> droplets(const State& state) const override { return solver_->droplets(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_->float_motions(state); }
 
  private:
   std::unique_ptr<PondSolver> solver_;
+  std::vector<std::string> scalars_{"foam"};
 };
 
 }  // namespace

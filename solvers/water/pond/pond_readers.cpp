@@ -27,12 +27,10 @@ void PondSolver::surface_heights(const State& state, std::span<double> out) cons
       out[j * at(nx()) + i] = setup_.corner.y() + height[j * at(modes_.stride) + i];
 }
 
-void PondSolver::surface_velocity(const State& state, std::span<Vec3> out) const {
+void PondSolver::surface_flow(const State& state, std::span<Vec3> out) const {
   CHECK(out.size() == at(nx()) * at(nz()));
-  std::vector<double> potential = block_of(state, "potential", modes_.size()), climb = potential;
-  for (std::size_t n = 0; n < climb.size(); ++n) climb[n] *= modes_.rise[n];
+  std::vector<double> potential = block_of(state, "potential", modes_.size());
   modes_.transform.to_values(potential);
-  modes_.transform.to_values(climb);
   const std::size_t stride = at(modes_.stride);
   parallel_for(at(nz()), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j)
@@ -41,11 +39,19 @@ void PondSolver::surface_velocity(const State& state, std::span<Vec3> out) const
         const std::size_t below = j > 0 ? j - 1 : j, above = std::min(j + 1, at(nz()) - 1);
         // Beyond a wall stands its mirror image: half the difference there, too.
         out[j * at(nx()) + i] = {
-            (potential[j * stride + right] - potential[j * stride + left]) / (2 * modes_.cell_x()),
-            climb[j * stride + i],
+            (potential[j * stride + right] - potential[j * stride + left]) / (2 * modes_.cell_x()), 0,
             (potential[above * stride + i] - potential[below * stride + i]) / (2 * modes_.cell_z())};
       }
   });
+}
+
+void PondSolver::surface_velocity(const State& state, std::span<Vec3> out) const {
+  surface_flow(state, out);
+  std::vector<double> climb = block_of(state, "potential", modes_.size());
+  for (std::size_t n = 0; n < climb.size(); ++n) climb[n] *= modes_.rise[n];
+  modes_.transform.to_values(climb);
+  for (std::size_t j = 0; j < at(nz()); ++j)
+    for (std::size_t i = 0; i < at(nx()); ++i) out[j * at(nx()) + i].y() = climb[j * at(modes_.stride) + i];
 }
 
 void PondSolver::foam(const State& state, std::span<double> out) const {

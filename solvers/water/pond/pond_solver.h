@@ -69,6 +69,8 @@ class PondSolver {
   void surface_heights(const State& state, std::span<double> out) const;
   /// Of water at the surface [m/s].
   void surface_velocity(const State& state, std::span<Vec3> out) const;
+  /// The same along x and z alone, for half the work; y is 0.
+  void surface_flow(const State& state, std::span<Vec3> out) const;
   /// 0 none to 1 covered.
   void foam(const State& state, std::span<double> out) const;
   std::vector<Droplet> droplets(const State& state) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baker/core/parallel.h"
+#include "solvers/water/pond/decay.h"
 
 namespace ft::inline solvers {
 
@@ -48,7 +49,7 @@ void VolumeLayers::pour(std::span<double> waves) {
     parallel_for(waves.size(), 4096, [&](std::size_t b, std::size_t e) {
       for (std::size_t m = b; m < e; ++m) {
         const double x = modes_->k[m] * depths_[l];
-        if (x < 40 && layers_[l][m] != 0) waves[m] += layers_[l][m] * std::exp(-x);
+        waves[m] += layers_[l][m] * (x < k_nothing ? decay(x) : 0.0);
       }
     });
     used_[l] = 0;

@@ -1,10 +1,12 @@
 #include "solvers/water/pond/wave_step.h"
 
-#include <bit>
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "baker/core/parallel.h"
+#include "solvers/water/pond/decay.h"
 
 // Functions that return vectors stay in this file: their calling convention is nobody else's concern.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -35,39 +37,36 @@ inline double sum(const Four& f) {
   return (f[0] + f[1]) + (f[2] + f[3]);
 }
 
-/// exp(-x) for x >= 0, to 1e-12; zero beyond 700.
-inline double decay(double x) {
-  constexpr double shift = 6755399441055744.0;  // rounds to a whole number, kept in the low bits
-  const double y = -(x < 700 ? x : 700);
-  const double t = y * 1.4426950408889634 + shift;
-  const double n = t - shift;
-  const double r = (y - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10;
-  double p = 1.0 / 39916800;
-  p = p * r + 1.0 / 3628800, p = p * r + 1.0 / 362880, p = p * r + 1.0 / 40320, p = p * r + 1.0 / 5040;
-  p = p * r + 1.0 / 720, p = p * r + 1.0 / 120, p = p * r + 1.0 / 24, p = p * r + 1.0 / 6;
-  p = p * r + 0.5, p = p * r + 1, p = p * r + 1;
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(p) + (std::bit_cast<std::uint64_t>(t) << 52));
-}
-
 /// Kernels of a row, with the attenuation of what lies under water.
 struct KernelRow {
   const float *phi, *chi;
   const double* fade;  ///< null: 1
+  std::size_t reach;   ///< waves of the row from here on are attenuated to nothing
 };
 
+/// Of a row whose waves have at least k_row across it [1/m], those that are felt under so much water; a multiple of
+/// four.
+std::size_t felt(const PondModes& modes, double k_row, double top_depth, std::size_t stride) {
+  const double most = k_nothing / top_depth;
+  if (!(most > k_row)) return 0;
+  const double along = std::sqrt(most * most - k_row * k_row) * modes.length_x / std::numbers::pi;
+  if (along >= static_cast<double>(stride)) return stride;
+  return std::min(stride, (static_cast<std::size_t>(along) / 4 + 1) * 4);
+}
+
 void add_source(const WaveSource& s, const WaveStepScratch::Source& w, const KernelRow& row, const double* k,
-                std::size_t j, double scale_z, std::size_t stride, double* eta) {
+                std::size_t j, double scale_z, double* eta) {
   const double cz = scale_z * w.here.cos_z[j], sz = scale_z * w.here.sin_z[j];
   const double a = s.volume * cz, b = s.way_x * cz, c = s.way_z * sz, d = -s.sinking * cz;
   const double *dc = w.deposit_cos.data(), *ds = w.deposit_sin.data();
   if (row.fade == nullptr) {
-    for (std::size_t i = 0; i < stride; i += 4) {
+    for (std::size_t i = 0; i < row.reach; i += 4) {
       const Four cx = load(dc + i), sx = load(ds + i);
       store(eta + i, load(eta + i) + load(row.phi + i) * (a * cx) + load(row.chi + i) * (b * sx + c * cx));
     }
     return;
   }
-  for (std::size_t i = 0; i < stride; i += 4) {
+  for (std::size_t i = 0; i < row.reach; i += 4) {
     const Four cx = load(dc + i), sx = load(ds + i), fade = load(row.fade + i);
     store(eta + i, load(eta + i) + fade * (load(row.phi + i) * ((a + d * load(k + i)) * cx) +
                                            load(row.chi + i) * (b * sx + c * cx)));
@@ -76,10 +75,10 @@ void add_source(const WaveSource& s, const WaveStepScratch::Source& w, const Ker
 
 /// Sums along a row, still without the phases along z.
 void read_row(const WaveStepScratch::Source& w, const KernelRow& row, const double* k, const double* rise,
-              std::size_t stride, const double* eta, const double* potential, double* sums) {
+              const double* eta, const double* potential, double* sums) {
   Four level{}, slope{}, side{}, pull{}, run{}, run_side{}, climb{};
   const double *pc = w.next.cos_x.data(), *ps = w.next.sin_x.data();
-  for (std::size_t i = 0; i < stride; i += 4) {
+  for (std::size_t i = 0; i < row.reach; i += 4) {
     const Four cx = load(pc + i), e = load(eta + i), p = load(potential + i);
     Four phi = load(row.phi + i), chi = load(row.chi + i);
     if (row.fade != nullptr) {
@@ -146,16 +145,18 @@ void step_waves(const PondModes& modes, std::span<const WaveSource> sources, dou
       const std::size_t at = j * stride;
       const double *k = modes.k.data() + at, *rise = modes.rise.data() + at;
       const auto kernel = [&](const WaveSource& s, double top_depth) {
-        if (top_depth > 0) fade_row(top_depth, k, stride, fade.data());
-        return KernelRow{s.kernel->phi.data() + at, s.kernel->chi.data() + at, top_depth > 0 ? fade.data() : nullptr};
+        const std::size_t reach = top_depth > 0 ? felt(modes, modes.kz[j], top_depth, stride) : stride;
+        if (top_depth > 0) fade_row(top_depth, k, reach, fade.data());
+        return KernelRow{s.kernel->phi.data() + at, s.kernel->chi.data() + at, top_depth > 0 ? fade.data() : nullptr,
+                         reach};
       };
       for (std::size_t b = 0; b < count; ++b)
         if (pushes(sources[b]))
           add_source(sources[b], scratch.sources[b], kernel(sources[b], sources[b].top_depth), k, j,
-                     (j == 0 ? 1 : 2) / modes.length_z, stride, eta.data() + at);
+                     (j == 0 ? 1 : 2) / modes.length_z, eta.data() + at);
       advance_row(modes, at, kick, drift, stride, eta.data() + at, potential.data() + at);
       for (std::size_t b = 0; b < count; ++b)
-        read_row(scratch.sources[b], kernel(sources[b], sources[b].next_top_depth), k, rise, stride, eta.data() + at,
+        read_row(scratch.sources[b], kernel(sources[b], sources[b].next_top_depth), k, rise, eta.data() + at,
                  potential.data() + at, scratch.row_sums.data() + (j * count + b) * k_sums);
     }
   });

@@ -70,11 +70,16 @@ class ShallowCore final : public WaterCore {
     const std::vector<Vec2> velocity = solver_.velocities(state);
     for (std::size_t c = 0; c < out.size(); ++c) out[c] = Vec3(velocity[c].x(), 0, velocity[c].y());
   }
+  std::span<const std::string> scalar_names() const override { return scalars_; }
+  void scalar(const State& state, std::size_t, std::span<double> out) const override {
+    std::ranges::copy(solver_.wet(state), out.begin());
+  }
   std::vector<Droplet> droplets(const State& state) const override { return solver_.droplets(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_.floats(state); }
 
  private:
   ShallowSolver solver_;
+  std::vector<std::string> scalars_{"wet"};
   double still_ = 0;  ///< potential of the columns at the start [J]
 };
 

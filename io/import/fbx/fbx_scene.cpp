@@ -1,0 +1,89 @@
+#include "io/import/fbx/fbx_scene.h"
+
+#include <algorithm>
+
+#include "io/import/fbx/fbx_transform.h"
+
+namespace ft::inline io {
+int FbxScene::node_of(const FbxObject* model) const {
+  const auto found = model != nullptr ? node_of_model.find(model->id) : node_of_model.end();
+  return found != node_of_model.end() ? found->second : -1;
+}
+
+std::vector<Mat4> rest_globals(const std::vector<CharacterNode>& nodes) {
+  std::vector<Mat4> out(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const int parent = nodes[i].parent;
+    out[i] = parent < 0 ? nodes[i].local : Mat4(out[static_cast<std::size_t>(parent)] * nodes[i].local);
+  }
+  return out;
+}
+
+Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
+  FbxScene scene;
+  std::vector<const FbxObject*> models;
+  std::unordered_map<std::int64_t, std::size_t> index;
+  for (const FbxObject& object : document.objects())
+    if (object.kind == "Model") index.emplace(object.id, models.size()), models.push_back(&object);
+  if (models.size() > k_max_character_nodes) return input_error("has more than 200,000 nodes");
+
+  // Each model below one other; of several the last in the file, which is how other readers draw it.
+  constexpr std::size_t k_none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> parent(models.size(), k_none);
+  std::vector<std::vector<std::size_t>> children(models.size());
+  std::vector<std::size_t> roots;
+  std::string several;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    bool more = false;
+    for (const FbxConnection& c : document.out_of(models[m]->id)) {
+      const auto found =
+          c.destination_property.empty() && c.source_property.empty() ? index.find(c.destination) : index.end();
+      if (found == index.end()) continue;
+      more = more || (parent[m] != k_none && parent[m] != found->second);
+      if (parent[m] == k_none || found->second > parent[m]) parent[m] = found->second;
+    }
+    if (more) several += (several.empty() ? "\"" : ", \"") + models[m]->name + "\"";
+    if (parent[m] == k_none) roots.push_back(m);
+  }
+  std::vector<char> listed(models.size(), 0);
+  for (std::size_t m = 0; m < models.size(); ++m)
+    for (const FbxConnection& c : document.into(models[m]->id)) {
+      const auto found = index.find(c.source);
+      if (found == index.end() || parent[found->second] != m || listed[found->second]) continue;
+      listed[found->second] = 1;
+      children[m].push_back(found->second);
+    }
+  if (!several.empty()) out.notes.push_back("nodes stand below several others, and were put below one: " + several);
+
+  struct Visit {
+    std::size_t model;
+    int parent;
+  };
+  std::vector<Visit> stack;
+  for (auto r = roots.rbegin(); r != roots.rend(); ++r) stack.push_back({*r, -1});
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const int node = static_cast<int>(out.nodes.size());
+    out.nodes.push_back({models[visit.model]->name, visit.parent, Mat4::Identity(), {}});
+    scene.models.push_back(models[visit.model]);
+    scene.node_of_model.emplace(models[visit.model]->id, node);
+    const auto& below = children[visit.model];
+    for (auto c = below.rbegin(); c != below.rend(); ++c) stack.push_back({*c, node});
+  }
+  if (out.nodes.size() < models.size()) {
+    for (const FbxObject* model : models)
+      if (scene.node_of(model) < 0)
+        return input_error("is damaged: node \"" + model->name + "\" stands below itself", "",
+                           "open the file in its program and export it again");
+  }
+  std::vector<int> parents(out.nodes.size());
+  std::vector<Mat4> locals(out.nodes.size(), Mat4::Identity());
+  for (std::size_t i = 0; i < parents.size(); ++i) parents[i] = out.nodes[i].parent;
+  fbx_rest_locals(scene.models, parents, locals);
+  for (std::size_t i = 0; i < parents.size(); ++i) out.nodes[i].local = locals[i];
+  if (out.nodes.empty()) return input_error("has no nodes: there is nothing in its scene");
+  return scene;
+}
+
+}  // namespace ft::inline io
