@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/lids.h"
+
 namespace ft {
 namespace {
 
@@ -23,10 +25,16 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& p) {
 
 }  // namespace
 
-std::optional<double> enclosed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+std::optional<double> enclosed_volume(std::span<const Vec3> own_positions, std::span<const Triangle> own_triangles,
                                       double spacing) {
   CHECK(spacing > 0);
-  if (positions.empty() || triangles.empty()) return {};
+  if (own_positions.empty() || own_triangles.empty()) return {};
+  const Lids lids = close_rims(own_positions, own_triangles);
+  if (lids.share() > k_most_open) return {};
+  std::vector<Vec3> positions(own_positions.begin(), own_positions.end());
+  positions.insert(positions.end(), lids.middles.begin(), lids.middles.end());
+  std::vector<Triangle> triangles(own_triangles.begin(), own_triangles.end());
+  triangles.insert(triangles.end(), lids.triangles.begin(), lids.triangles.end());
   const Box box = bounds(positions);
   // Off the round numbers on which modelled vertices lie.
   const Vec2 origin = Vec2(box.lo.x() - 0.5137 * spacing, box.lo.z() - 0.5291 * spacing);

@@ -27,6 +27,7 @@ ImportRequest import_request(const Shot& shot, const PrimarySpec& spec, const st
   request.clip_start = spec.clip_start;
   request.clip_bind = spec.clip_bind;
   request.speed = spec.speed;
+  request.loop = spec.loop;
   request.unit_scale = spec.unit_scale.value_or(0);
   request.up = spec.up;
   request.source_fps = spec.source_fps.value_or(0);
@@ -86,6 +87,21 @@ TeleportScan scan_of(const Shot& shot, const PrimarySpec& spec, const Trajectory
   settings.detect = spec.teleports == Teleports::k_detect;
   settings.frames = spec.teleport_frames;
   return scan_teleports(trajectory, settings);
+}
+
+/// Without the jumps at seams after the first one: each cycle has the same, and the note on the cycle names them.
+TeleportScan told_once(const TeleportScan& scan, const std::vector<int>& seam_frames) {
+  TeleportScan out;
+  std::vector<int> later(seam_frames.begin() + (seam_frames.empty() ? 0 : 1), seam_frames.end());
+  const auto is_told = [&](int frame) { return std::binary_search(later.begin(), later.end(), frame); };
+  for (std::size_t i = 0; i < scan.teleports.size(); ++i) {
+    if (is_told(scan.teleports[i].frame)) continue;
+    out.teleports.push_back(scan.teleports[i]);
+    out.distances.push_back(scan.distances[i]), out.turns.push_back(scan.turns[i]);
+  }
+  for (const PartJump& jump : scan.part_jumps)
+    if (!is_told(jump.frame)) out.part_jumps.push_back(jump);
+  return out;
 }
 
 /// As often in a row as `repeat` says.
@@ -148,8 +164,11 @@ Result<PrimaryPlan> plan_character(const Shot& shot, const PrimarySpec& spec, co
   if (const Status placed = place_character(shot, spec, *imported, out.place); !placed) return placed.error();
   out.name = spec.name;
   out.scan = scan_of(shot, spec, *imported->trajectory);
-  for (std::string& note : teleport_notes(out.scan, spec.name)) notes.push_back(std::move(note));
+  for (std::string& note : teleport_notes(told_once(out.scan, imported->info.seam_frames), spec.name))
+    notes.push_back(std::move(note));
   out.mass = primary_mass(spec, *imported->trajectory);
+  if (const std::string note = out.mass.note(); !note.empty())
+    notes.push_back("primary \"" + spec.name + "\": " + note);
   out.trajectory = std::move(imported->trajectory);
   out.info = std::move(imported->info);
   out.character = imported->character;

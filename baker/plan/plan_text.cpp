@@ -59,6 +59,8 @@ std::vector<std::string> character_lines(const CharacterInfo& info) {
                               clip.start, clip.channel_count, clip.duration > 0 ? "" : ", a still"));
   if (info.clips.empty()) out.push_back("  no clips");
   for (const std::string& name : info.mesh_names) out.push_back("  mesh \"" + name + "\"");
+  for (const CharacterContent& content : info.contents)
+    out.push_back(fmt::format("  {} {}: {}", content.count, content.what, content.use));
   for (const SurfacePart& part : info.parts)
     out.push_back(fmt::format("  part \"{}\": {:.3g} litres{}", part.name, 1e3 * part.size,
                               part.parent < 0 ? "" : ", on \"" + info.parts[at(part.parent)].name + "\""));

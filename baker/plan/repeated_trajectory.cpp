@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baker/core/check.h"
+#include "baker/core/level_fit.h"
 
 namespace ft::inline baker {
 
@@ -13,19 +14,7 @@ RepeatedTrajectory::RepeatedTrajectory(std::shared_ptr<const Trajectory> own, do
   std::vector<Vec3> first(static_cast<std::size_t>(own_->surface().vertex_count())), last(first.size());
   own_->sample(0, first);
   own_->sample(period, last);
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  for (std::size_t i = 0; i < first.size(); ++i) from += first[i], to += last[i];
-  from /= static_cast<double>(first.size()), to /= static_cast<double>(first.size());
-  double along = 0, across = 0;  // of the turn that brings the points' level places together
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const Vec3 a = first[i] - from, b = last[i] - to;
-    along += a.x() * b.x() + a.z() * b.z();
-    across += a.z() * b.x() - a.x() * b.z();
-  }
-  step_.linear() = Eigen::AngleAxisd(std::atan2(across, along), Vec3::UnitY()).toRotationMatrix();
-  Vec3 way = to - step_.linear() * from;
-  way.y() = 0;
-  step_.translation() = way;
+  step_ = level_fit(first, last);
   for (std::size_t i = 0; i < first.size(); ++i) misfit_ += (step_ * first[i] - last[i]).squaredNorm();
   misfit_ = std::sqrt(misfit_ / static_cast<double>(first.size()));
 }

@@ -7,19 +7,12 @@
 #include "baker/record/bake_folder.h"
 #include "baker/record/version.h"
 #include "baker/run/cached_shape.h"
+#include "baker/run/converted.h"
 #include "io/shot/mesh_file.h"
 #include "io/shot/weld.h"
 
 namespace ft::inline baker {
 namespace {
-
-template <class To, class From>
-std::vector<To> converted(std::span<const From> points) {
-  std::vector<To> out;
-  out.reserve(points.size());
-  for (const From& p : points) out.push_back(p.template cast<typename To::Scalar>());
-  return out;
-}
 
 std::shared_ptr<const Mesh> shared(Mesh mesh) {
   return std::make_shared<const Mesh>(std::move(mesh));
@@ -258,18 +251,10 @@ Snapshot CacheSet::take(std::span<const State> states) const {
   return out;
 }
 
-std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::span<const Vec3> x,
-                                          std::span<const Vec3f> before) const {
-  if (before.empty()) return std::vector<Vec3>(x.size(), Vec3::Zero());
-  std::vector<Vec3> v = converted<Vec3, Vec3f>(before);
-  // Motion blur must not see the way from one place to the other.
-  const auto& teleports = plan_.primaries[source.primary].scan.teleports;
-  if (const Teleport* teleport = teleport_into(teleports, frame)) carry(*teleport, std::span(v));
-  for (std::size_t k = 0; k < x.size(); ++k) v[k] = (x[k] - v[k]) * plan_.shot().fps;
-  return v;
-}
-
-Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
+Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before, const Snapshot* after) {
+  const auto positions_in = [](const Snapshot* other, std::size_t system) {
+    return other != nullptr ? std::span<const Vec3f>(other->systems[system].positions) : std::span<const Vec3f>();
+  };
   for (std::size_t i = 0; i < writers_.size(); ++i) {
     const bool is_cached = snapshot.frame >= plan_.first_written();
     if (!is_cached && !motions_[i]) continue;
@@ -287,9 +272,8 @@ Status CacheSet::write(const Snapshot& snapshot, const Snapshot* before) {
         return written;
     if (!is_cached) continue;
     std::vector<Vec3> v;
-    if (sources_[i].garment >= 0)
-      v = velocities_of(sources_[i], snapshot.frame, x,
-                        before != nullptr ? std::span(before->systems[i].positions) : std::span<const Vec3f>());
+    if (has_differences(i))
+      v = velocities_of(sources_[i], snapshot.frame, x, positions_in(before, i), positions_in(after, i));
     for (std::size_t k = 0; sources_[i].flows && k < v.size(); ++k)
       v[k] += snapshot.systems[i].velocities[k].cast<double>();
     for (auto& writer : writers_[i])

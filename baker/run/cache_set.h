@@ -36,9 +36,14 @@ class CacheSet {
   Snapshot take(std::span<const State> states) const;
   /// What a group's systems do not meet, in the numbers of the cached colliders.
   std::vector<AbsentRuns> as_cached(std::size_t group, std::vector<AbsentRuns> absent) const;
-  /// Frames of the pre-roll go where all are recorded, and into caches if the shot says so. before: the snapshot of the
-  /// frame before, for the velocities of what moves by itself; null: they are zero.
-  Status write(const Snapshot& snapshot, const Snapshot* before);
+  /// Frames of the pre-roll go where all are recorded, and into caches if the shot says so. before, after: snapshots of
+  /// the frames beside it, for the velocities of what moves by itself: central differences, one-sided ones where one is
+  /// null, zero where both are.
+  Status write(const Snapshot& snapshot, const Snapshot* before, const Snapshot* after);
+  /// Of a snapshot what write() needs as `before`: see Checkpoint.
+  std::vector<std::vector<float>> to_numbers(const Snapshot& before) const;
+  /// Back again; null where the numbers are not those of these systems.
+  std::shared_ptr<const Snapshot> from_numbers(int frame, const std::vector<std::vector<float>>& numbers) const;
   Status close();
 
   /// For the manifest, with those of earlier stages in front; sizes and content hashes once close() has succeeded.
@@ -64,9 +69,11 @@ class CacheSet {
   std::vector<Vec3> positions_of_mesh(std::size_t system, const State& state) const;
   /// Of a garment, in the order of its file.
   void positions_of(const Source& source, const State& state, std::span<Vec3> x) const;
-  /// Of a garment at `frame` [m/s].
+  /// Of a garment at `frame` [m/s]; before, after: in the frames beside it, empty where not known.
   std::vector<Vec3> velocities_of(const Source& source, int frame, std::span<const Vec3> x,
-                                  std::span<const Vec3f> before) const;
+                                  std::span<const Vec3f> before, std::span<const Vec3f> after) const;
+  /// Whether its velocities are differences of its positions.
+  bool has_differences(std::size_t system) const { return sources_[system].garment >= 0 && !sources_[system].shape; }
   void slice_of(const Source& source, const State& state, std::span<Vec3> x) const;
   void add_collider(std::size_t group, const ColliderSlice& slice, std::span<const Vec3> collider);
   void add_body(std::size_t group, std::size_t primary);

@@ -5,7 +5,7 @@
 namespace ft::inline baker {
 namespace {
 
-constexpr std::uint64_t k_magic = 0x3230454b41425446;  // "FTBAKE02"
+constexpr std::uint64_t k_magic = 0x3330454b41425446;  // "FTBAKE03"
 
 }  // namespace
 
@@ -25,6 +25,9 @@ ByteParts parts_of(const Checkpoint& checkpoint) {
     reports.push_back(std::move(row));
   }
   out.write_string(checkpoint.manifest);
+  out.write(static_cast<std::uint64_t>(checkpoint.before.size()));
+  for (const std::vector<float>& numbers : checkpoint.before)
+    out.write(static_cast<std::uint64_t>(numbers.size())).view_array(std::span<const float>(numbers));
   out.write_string(reports.dump(-1, ' ', false, Json::error_handler_t::replace));
   const Hash128 content = hash_bytes(out.parts());
   out.write(content.low).write(content.high);
@@ -56,6 +59,9 @@ Result<Checkpoint> load_checkpoint(std::span<const std::byte> data) {
     out.states.push_back(std::move(*state));
   }
   out.manifest = in.read_string();
+  const auto systems = in.read<std::uint64_t>();
+  for (std::uint64_t i = 0; i < systems && in.ok(); ++i)
+    out.before.push_back(in.read_array<float>(in.read<std::uint64_t>()));
   auto reports = parse_json(in.read_string(), "checkpoint");
   if (!in.ok() || in.remaining() != 0 || !reports || !reports->is_array())
     return refuse("does not hold what it states");

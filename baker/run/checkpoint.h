@@ -1,6 +1,6 @@
 // .state/checkpoint: all that a bake needs to go on as if it had never stopped: the solvers' states, and the reports of
-// the frames so far. One file, replaced whole, written after the caches of its frame; so caches may be ahead of it,
-// never behind.
+// the frames so far. One file, replaced whole, written after the caches of the frame before it: a frame's velocities
+// need the next one, so that caches follow one frame behind. They may be ahead of that, never behind.
 #pragma once
 
 #include <filesystem>
@@ -21,6 +21,9 @@ struct Checkpoint {
   std::vector<State> states;         ///< one per group of the plan
   std::vector<FrameReport> reports;  ///< of all frames up to this one, profiles included
   std::string manifest;              ///< of finished stages: what the caches are; else empty
+  /// Per cached system: x y z of its vertices [m] in the frame before this one, where its velocities need them; nothing
+  /// before the first.
+  std::vector<std::vector<float>> before{};
 };
 
 /// What is saved of a checkpoint, which must outlive it.

@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
+#include <memory>
+#include <utility>
 
 #include "baker/core/file.h"
 #include "baker/core/parallel.h"
 #include "baker/record/report_json.h"
 #include "baker/run/finished_stages.h"
 #include "baker/run/interaction.h"
+#include "baker/run/pace.h"
 #include "baker/run/signals.h"
 #include "baker/run/writer_thread.h"
 #include "baker/systems/interface/absent_runs.h"
@@ -41,23 +43,6 @@ bool finite(const Snapshot& snapshot) {
                      [](const FrameData& frame) { return all_finite(frame); });
 }
 
-/// Mean of the last frames [s].
-class Pace {
- public:
-  void add(double seconds) {
-    recent_.push_back(seconds);
-    if (recent_.size() > 20) recent_.pop_front();
-  }
-  double mean() const {
-    double sum = 0;
-    for (const double s : recent_) sum += s;
-    return recent_.empty() ? 0 : sum / static_cast<double>(recent_.size());
-  }
-
- private:
-  std::deque<double> recent_;
-};
-
 class Walk {
  public:
   Walk(const BakePlan& plan, const Solvers& solvers, CacheSet& caches, const BakeFolder& folder, Manifest manifest,
@@ -77,6 +62,7 @@ class Walk {
     Status status = start(std::move(from));
     if (status) status = frames();
     // What was computed is kept, whatever happened; the first fault is the one that counts.
+    if (const Status written = write_held(nullptr); status && !written) status = written;
     if (const Status written = writer_.finish(); status && !written) status = written;
     manifest_.systems = caches_.systems();
     if (status)
@@ -103,8 +89,10 @@ class Walk {
   void number_as_in_file(std::size_t group, std::span<Incident> incidents) const;
   using SharedSnapshot = std::shared_ptr<const Snapshot>;
   SharedSnapshot take() const { return std::make_shared<const Snapshot>(caches_.take(states_)); }
-  /// before: null at the start.
-  Status emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, bool checkpoint);
+  /// The snapshot of the states as they are: writes the one that is held, and holds this one.
+  Status emit(SharedSnapshot snapshot, bool checkpoint);
+  /// The held one, whose velocities need its neighbours; after: null at the end.
+  Status write_held(const SharedSnapshot& after);
   Status save_checkpoint();  ///< of the states as they are
   static Status interrupted(std::string what);
   int begin() const { return plan_.shot().first_frame - plan_.shot().preroll; }
@@ -119,6 +107,7 @@ class Walk {
   Progress& progress_;
   const Clock::time_point clock_ = Clock::now();
   std::vector<State> states_;
+  SharedSnapshot held_, before_;  ///< of the states as they are, not written yet; of the frame before it
   WriterThread writer_;
 };
 
@@ -127,7 +116,14 @@ Status Walk::start(std::optional<Checkpoint> from) {
     states_ = std::move(from->states);
     manifest_.frames = std::move(from->reports);
     CHECK(states_.size() == solvers_.size());
-    return caches_.open(manifest_.frames.empty() ? begin() - 1 : states_[0].frame);
+    if (manifest_.frames.empty()) return caches_.open(begin() - 1);
+    const int frame = states_[0].frame;
+    if (frame > begin()) before_ = caches_.from_numbers(frame - 1, from->before);
+    if (frame > begin() && !before_)
+      return input_error("is not of these systems", folder_.checkpoint().string(), "bake without --resume");
+    if (const Status opened = caches_.open(frame - 1); !opened) return opened;
+    held_ = take();
+    return {};
   }
   // The old checkpoint goes first: it must never stand beside caches that are not its own. Of the stage before it may
   // stay, whose caches are closed.
@@ -164,19 +160,28 @@ FrameReport Walk::advance() {
   return report;
 }
 
-Status Walk::emit(const SharedSnapshot& snapshot, const SharedSnapshot& before, bool checkpoint) {
+Status Walk::write_held(const SharedSnapshot& after) {
+  if (!held_) return {};
+  const Status taken = writer_.submit(
+      [this, held = held_, before = before_, after] { return caches_.write(*held, before.get(), after.get()); });
+  before_ = std::exchange(held_, nullptr);
+  return taken;
+}
+
+Status Walk::emit(SharedSnapshot snapshot, bool checkpoint) {
   if (!finite(*snapshot))
     return Error{ErrorKind::k_diverged,
                  "the solver returned positions that are not finite; nothing of this frame was written",
                  fmt::format("frame {}", snapshot->frame), "try more substeps ([solver] max_substeps)"};
-  const Status taken = writer_.submit([this, snapshot, before] { return caches_.write(*snapshot, before.get()); });
-  if (!taken) return taken;
+  if (const Status taken = write_held(snapshot); !taken) return taken;
+  held_ = std::move(snapshot);
   if (!checkpoint) return {};
   return save_checkpoint();
 }
 
 Status Walk::save_checkpoint() {
   Checkpoint now{plan_.inputs.fingerprint, plan_.stage, states_[0].frame, states_, manifest_.frames, {}};
+  if (before_) now.before = caches_.to_numbers(*before_);
   return writer_.submit(
       [this, now = std::move(now)] { return write_file_durably(folder_.checkpoint(), parts_of(now).parts()); });
 }
@@ -237,10 +242,9 @@ Status Walk::frames() {
                    shot.preroll, states_[0].frame + 1, vertices, thread_count(), instances});
   if (const Status settled = settle(); !settled) return settled;
   Pace pace;
-  SharedSnapshot before = take();  // in the caches already, where a bake goes on
   if (manifest_.frames.empty()) {
     manifest_.frames.push_back(certify_start(plan_, solvers_, caches_, states_));
-    if (const Status emitted = emit(before, nullptr, true); !emitted) return emitted;
+    if (const Status emitted = emit(take(), true); !emitted) return emitted;
   }
   const int interval = checkpoint_interval(states_);
   int newest_checkpoint = states_[0].frame;
@@ -255,11 +259,9 @@ Status Walk::frames() {
     FrameReport report = advance();
     if (report.profile.total <= 0) report.profile.total = since(clock);
     manifest_.frames.push_back(report);
-    SharedSnapshot now = take();
     const bool checkpoint = report.frame - newest_checkpoint >= interval || report.frame == shot.last_frame;
     if (checkpoint) newest_checkpoint = report.frame;
-    if (const Status emitted = emit(now, before, checkpoint); !emitted) return emitted;
-    before = std::move(now);
+    if (const Status emitted = emit(take(), checkpoint); !emitted) return emitted;
     pace.add(since(clock));
     progress_.frame({report, plan_.stage * total + report.frame - begin(), plan_.stage_count * total,
                      report.frame < shot.first_frame, since(clock), pace.mean() * (shot.last_frame - report.frame)});

@@ -49,7 +49,8 @@ Result<MotionFiles> export_motion(const ImportRequest& request, const PlacedChar
   const Character& original = other_file ? own : placed.character;
 
   MotionFiles out;
-  const bool gltf = original.format == "glTF", bvh = original.format == "BVH";
+  // A clip that repeats has more keys than its file.
+  const bool gltf = original.format == "glTF" && !placed.repeated, bvh = original.format == "BVH" && !placed.repeated;
   auto glb = gltf ? export_glb(source, original, placed.clip, own_changes)
                   : glb_from_character(moved.character, moved.clip, moved.placement);
   if (!glb) return glb.error();
@@ -57,7 +58,10 @@ Result<MotionFiles> export_motion(const ImportRequest& request, const PlacedChar
                   : bvh_from_character(moved.character, moved.clip, moved.placement, frames);
   if (!text) return text.error();
   out.glb = std::move(*glb), out.bvh = std::move(*text);
-  if (!gltf && !bvh)
+  if (placed.repeated)
+    out.notes.push_back(
+        "its clip repeats, which its file does not: GLB and BVH hold the skeleton and its motion, no mesh");
+  else if (!gltf && !bvh)
     out.notes.push_back(original.format + " cannot be written: GLB and BVH hold the skeleton and its motion, no mesh");
   return out;
 }

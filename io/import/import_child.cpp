@@ -6,6 +6,7 @@
 #include "io/import/files/read_character.h"
 #include "io/import/import.h"
 #include "io/reading/guarded_child.h"
+#include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 
@@ -23,8 +24,10 @@ Result<Character> import_in_child(const std::filesystem::path& file, const Impor
 int import_child_main(int argc, char** argv) {
   if (argc != 4 || std::strcmp(argv[1], "--import-child") != 0) return 64;
   return child_exit_code(argv[3], [&]() -> Status {
+    reading_step("its first bytes");
     auto character = read_character(argv[2]);
     if (!character) return character.error();
+    reading_step("what its reader made of it, to check it");
     if (Status checked = check_character(*character); !checked) return checked;
     return write_file_durably(argv[3], save_character(*character));
   });

@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "baker/core/file.h"
+#include "io/reading/reading_step.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define FT_SANITIZED 1
@@ -128,19 +129,25 @@ std::string seconds_text(double s) {
 
 constexpr const char* k_hint = "the file is damaged, or of a kind that the importer cannot read; export it again";
 
+std::filesystem::path steps_of(const std::filesystem::path& result) {
+  return result.parent_path() / (result.filename().string() + ".step");
+}
+
 /// Of a child that ended: nothing when it left a result.
 Status judge(int status, bool in_time, const std::string& name, const std::filesystem::path& out,
              const ChildLimits& limits) {
-  if (!in_time) return input_error("import took too long and was stopped", name, k_hint);
+  const std::string step = last_reading_step(steps_of(out));
+  const std::string on = step.empty() ? " before it read anything" : " while reading " + step;
+  if (!in_time) return input_error("import took too long and was stopped" + on, name, k_hint);
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGXCPU || signal == SIGKILL)
       return input_error(
-          "import took more than " + seconds_text(limits.seconds) + " of CPU time, or was killed, and was stopped",
+          "import took more than " + seconds_text(limits.seconds) + " of CPU time, or was killed, and was stopped" + on,
           name, k_hint);
     if (signal == SIGXFSZ) return input_error("import result is larger than the memory limit", name, k_hint);
-    return input_error(std::string("the importer crashed on it (") + ::strsignal(signal) + "); nothing of it was used",
-                       name, k_hint);
+    return input_error("the importer crashed" + on + " (" + ::strsignal(signal) + "); nothing of it was used", name,
+                       k_hint);
   }
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == k_exit_refused) {
@@ -148,10 +155,15 @@ Status judge(int status, bool in_time, const std::string& name, const std::files
     return input_error(reason ? printable(*reason) : std::string("cannot be read"), name);
   }
   if (code == k_exit_out_of_memory)
-    return input_error("import needs more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory", name,
+    return input_error("import needs more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory" + on,
+                       name, k_hint);
+  if (code == k_exit_threw) {
+    const auto reason = read_text(out, 1 << 16);
+    return input_error("the importer gave up" + on + (reason ? ": " + printable(*reason) : std::string()), name,
                        k_hint);
+  }
   if (code != 0)
-    return input_error("the importing process ended with code " + std::to_string(code), name,
+    return input_error("the importing process ended with code " + std::to_string(code) + on, name,
                        "it may have had too little memory to start");
   return {};
 }
@@ -188,6 +200,7 @@ Result<Bytes> read_in_child(const ChildTask& task, const ChildLimits& limits) {
 }
 
 int child_exit_code(const std::filesystem::path& result, const std::function<Status()>& work) {
+  keep_reading_steps(steps_of(result));
   try {
     const Status done = work();
     if (done) return 0;
@@ -197,7 +210,8 @@ int child_exit_code(const std::filesystem::path& result, const std::function<Sta
     return told ? k_exit_refused : exit_code(ErrorKind::k_output);
   } catch (const std::bad_alloc&) {
     return k_exit_out_of_memory;
-  } catch (const std::exception&) {
+  } catch (const std::exception& e) {
+    static_cast<void>(write_text_durably(result, e.what()));
     return k_exit_threw;
   }
 }

@@ -25,7 +25,8 @@ struct ChildTask {
   std::vector<std::string> first, last;
 };
 
-/// What the child wrote. Input errors: it refused the file, and why; it crashed, took too long, or too much memory.
+/// What the child wrote. Input errors: it refused the file, and why; it crashed, took too long, or too much memory, and
+/// what it was reading then (reading_step.h).
 Result<Bytes> read_in_child(const ChildTask& task, const ChildLimits& limits);
 
 /// The child's side: `work` writes `result`, or returns the reason why not. Gives the exit code of the process.

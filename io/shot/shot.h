@@ -41,6 +41,7 @@ struct PrimarySpec {
   std::optional<double> clip_bind;   ///< no key: what clip_start is of the whole shot, where only a part of it is baked
   double speed = 1;                  ///< playback speed [1], 0.01..100
   int repeat = 1;                    ///< how often the clip is played in a row, each from where the last has got to
+  bool loop = false;                 ///< the clip repeats as long as the shot lasts, carried on from cycle to cycle
   std::optional<double> unit_scale;  ///< m per file unit, overrides what the file says
   std::string up;                    ///< "y", "z", "" = as the file says
   std::optional<double> source_fps;  ///< geometry caches: frames per second of the samples; default the shot's fps

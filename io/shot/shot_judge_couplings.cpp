@@ -12,7 +12,7 @@ namespace {
 
 constexpr ChoiceKeys k_primary_shapes[] = {
     {"", "file",
-     "animation topology clip clip_start speed repeat unit_scale up source_fps body height meshes surface ignore "
+     "animation topology clip clip_start speed loop repeat unit_scale up source_fps body height meshes surface ignore "
      "teleports "
      "limbs position rotation"},
     {"sphere", "radius", "position rotation velocity spin hollow"},
@@ -48,6 +48,9 @@ void judge_primary(const Value& table, const Shot& shot, const PrimarySpec& prim
   } else if (!shape || !primary.shape.empty()) {
     judge_choice(owner, table, "shape", primary.shape, k_primary_shapes, faults);
   }
+  if (const Member* loop = table.find("loop"); loop && primary.loop && primary.repeat > 1)
+    faults.add(loop->place,
+               owner + ": has both loop and repeat; loop = true repeats the whole clip as often as needed");
   if (const Member* release = table.find("release");
       release && primary.release == Release::k_frame && primary.release_frame < shot.first_frame)
     faults.add(release->place, owner + ": release = " + number_text(primary.release_frame) +

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "baker/core/file.h"
+#include "io/reading/reading_step.h"
 #include "io/volume/openvdb_read.h"
 
 namespace {
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
     return 64;
   }
   return ft::child_exit_code(argv[2], [&]() -> ft::Status {
+    ft::reading_step("its grids, with OpenVDB");
     const auto velocity = ft::read_with_openvdb(argv[1], argv[3], std::atoll(argv[4]));
     if (!velocity) return velocity.error();
     return write_result(argv[2], *velocity);

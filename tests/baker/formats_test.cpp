@@ -52,6 +52,7 @@ Checkpoint example_checkpoint() {
   state.block("x") = {1.0 / 3, 2, 3};
   c.states = {state, state};
   c.reports = {example_report(11), example_report(12)};
+  c.before = {{1.5f, -2, 3}, {}};
   return c;
 }
 
@@ -61,6 +62,7 @@ TEST(Checkpoint, Comes_back_bit_for_bit) {
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(save(*loaded), bytes);
   EXPECT_EQ(loaded->frame, 12);
+  EXPECT_EQ(loaded->before, example_checkpoint().before);
   EXPECT_EQ(loaded->reports[0].smallest_gap, example_report(11).smallest_gap);
   EXPECT_EQ(loaded->reports[1].incidents[1].text, "no room: \"elbow\"");
   EXPECT_EQ(loaded->reports[1].incidents[1].kind, Incident::Kind::k_unsettled);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+
+#include "baker/core/lids.h"
 #include "tests/support/scripted_body.h"
 
 namespace ft {
@@ -49,7 +53,49 @@ TEST(Volume, Of_overlapping_shells_counts_what_they_share_once) {
   EXPECT_LT((volume_centre(boxes.points, boxes.triangles) - Vec3(0.662, 0.5, 0.5)).norm(), 1e-3);
 }
 
-TEST(Volume, Of_what_is_open_or_inside_out_is_not_known) {
+TEST(Volume, Of_an_open_body_is_that_with_lids_over_its_rims) {
+  Shell box;
+  add_box(box, {0, 0, 0}, {1, 2, 0.5});
+  for (int face = 0; face < 6; ++face) {  // each in turn, two triangles: flat lids are exact
+    Shell open = box;
+    open.triangles.erase(open.triangles.begin() + 2 * face, open.triangles.begin() + 2 * face + 2);
+    const Lids lids = close_rims(open.points, open.triangles);
+    const auto volume = enclosed_volume(open.points, open.triangles, 5e-3);
+    if (lids.share() > k_most_open)
+      EXPECT_FALSE(volume) << face;
+    else
+      EXPECT_NEAR(volume.value_or(0), 1, 5e-3) << face;
+    EXPECT_EQ(lids.open_edges, 4);
+  }
+  // A ball with holes at both ends of the columns that measure it.
+  Shell ball;
+  make_sphere(0.5, 64, 128, ball.points, ball.triangles);
+  const double height = 0.45;
+  std::erase_if(ball.triangles, [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(), [&](int v) { return std::abs(ball.points[at(v)].y()) > height; });
+  });
+  double rim = 0;
+  for (const Triangle& t : ball.triangles)
+    for (const int v : t) rim = std::max(rim, ball.points[at(v)].y());
+  const double zone = 2 * std::numbers::pi * (0.25 * rim - rim * rim * rim / 3);
+  EXPECT_NEAR(enclosed_volume(ball.points, ball.triangles, 5e-3).value(), zone, 2e-3);
+  const Lids lids = close_rims(ball.points, ball.triangles);
+  EXPECT_EQ(lids.middles.size(), 2u);
+  EXPECT_NEAR(lids.area, 2 * std::numbers::pi * (0.25 - rim * rim), 1e-3);
+}
+
+TEST(Volume, Of_a_surface_without_shared_vertices_is_that_of_the_joined_one) {
+  Shell box, soup;
+  add_box(box, {0, 0, 0}, {1, 1, 1});
+  for (const Triangle& t : box.triangles) {
+    const int first = static_cast<int>(soup.points.size());
+    for (const int v : t) soup.points.push_back(box.points[at(v)]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_NEAR(enclosed_volume(soup.points, soup.triangles, 5e-3).value(), 1, 1e-2);
+}
+
+TEST(Volume, Of_what_is_wide_open_or_inside_out_is_not_known) {
   Shell box;
   add_box(box, {0, 0, 0}, {1, 1, 1});
   Shell inside_out = box;

@@ -8,6 +8,7 @@
 
 #include "baker/core/file.h"
 #include "io/import/import_cache.h"
+#include "io/reading/reading_step.h"
 #include "tests/support/assets.h"
 
 namespace ft {
@@ -32,6 +33,31 @@ TEST(Import_child, A_crash_is_an_error_that_says_so) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   EXPECT_NE(import_of(scratch, "a.crashes").what.find("crashed"), std::string::npos);
 #endif
+}
+
+TEST(Import_child, A_crash_names_what_was_being_read) {
+  const test::ScratchFolder scratch;
+  const std::string what = import_of(scratch, "a.aborts_on_a_mesh").what;
+  EXPECT_NE(what.find("crashed while reading mesh \"Body\", with the test's reader (Aborted)"), std::string::npos)
+      << what;
+  EXPECT_NE(import_of(scratch, "a.aborts").what.find("crashed before it read anything"), std::string::npos);
+  ImportLimits limits;
+  limits.seconds = 1;
+  const std::string stopped = import_of(scratch, "a.spins_on_a_mesh", limits).what;
+  EXPECT_NE(stopped.find("while reading mesh \"Body\""), std::string::npos) << stopped;
+}
+
+TEST(Import_child, What_a_reader_throws_is_told) {
+  const test::ScratchFolder scratch;
+  const std::string what = import_of(scratch, "a.throws").what;
+  EXPECT_NE(what.find("gave up while reading a test: too odd"), std::string::npos) << what;
+}
+
+TEST(Reading_step, Is_the_last_one_and_printable) {
+  const test::ScratchFolder scratch;
+  EXPECT_EQ(last_reading_step(scratch / "none"), "");
+  ASSERT_TRUE(write_text_durably(scratch / "damaged", "a\nb\xff c   "));
+  EXPECT_EQ(last_reading_step(scratch / "damaged"), "a?b? c");
 }
 
 TEST(Import_child, A_child_that_only_computes_is_stopped_slow) {

@@ -122,6 +122,14 @@ TEST_F(ShotFile, Teleports_are_a_word_or_frames) {
     EXPECT_EQ(faults_of(k_good, {std::string("primary.mannequin.teleports=") + wrong}).size(), 1u) << wrong;
 }
 
+TEST_F(ShotFile, A_clip_loops_or_is_repeated_so_often) {
+  EXPECT_FALSE(parse(k_good)->primaries[0].loop);
+  EXPECT_TRUE(parse(k_good, {"primary.mannequin.loop=true"})->primaries[0].loop);
+  const auto both = faults_of(k_good, {"primary.mannequin.loop=true", "primary.mannequin.repeat=3"});
+  ASSERT_EQ(both.size(), 1u);
+  EXPECT_NE(both[0].find("has both loop and repeat"), std::string::npos) << both[0];
+}
+
 TEST_F(ShotFile, Paths_of_settings_are_relative_to_the_shot_file) {
   const auto shot = parse(k_good);
   ASSERT_TRUE(shot.ok());

@@ -182,17 +182,19 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
   return out;
 }
 
-Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps,
-                        const std::string& file) {
+Status check_clip_range(const Clip& clip, const ImportRequest& request, const std::string& file) {
   if (clip.duration() <= 0) return {};
-  const double frame = speed / fps;
-  const double end = clip_start + duration * speed;
-  if (clip_start >= -frame && end <= clip.duration() + frame * (1 + 1e-6)) return {};
+  const double frame = request.speed / request.shot_fps;
+  const double end = request.clip_start + request.duration * request.speed;
+  const bool starts = request.clip_start >= -frame;
+  if (starts && (request.loop || end <= clip.duration() + frame * (1 + 1e-6))) return {};
   const double frames = clip.duration() / frame;
-  return usage_error("the shot plays " + seconds(clip_start) + " s to " + seconds(end) + " s of clip \"" + clip.name +
-                         "\", which is " + seconds(clip.duration()) + " s long (" +
-                         std::to_string(static_cast<long>(std::floor(frames + 1e-6)) + 1) + " frames of this shot)",
-                     file, "bake fewer frames, or start earlier in the clip");
+  return usage_error(
+      "the shot plays " + seconds(request.clip_start) + " s to " + seconds(end) + " s of clip \"" + clip.name +
+          "\", which is " + seconds(clip.duration()) + " s long (" +
+          std::to_string(static_cast<long>(std::floor(frames + 1e-6)) + 1) + " frames of this shot)",
+      file,
+      starts ? "bake fewer frames, start earlier in the clip, or repeat it: loop = true" : "start within the clip");
 }
 
 }  // namespace ft::inline io

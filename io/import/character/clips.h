@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/import/character/character.h"
+#include "io/import/character/import_request.h"
 
 namespace ft::inline io {
 
@@ -25,9 +26,8 @@ double unit_ratio(const Character& source, const Character& target);
 Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
                                          const std::string& source_file, std::vector<std::string>& notes);
 
-/// Refuses a shot that leaves the clip by more than a frame.
-Status check_clip_range(const Clip& clip, double clip_start, double duration, double speed, double fps,
-                        const std::string& file);
+/// Refuses a shot that leaves the clip by more than a frame; of a clip that repeats only one that starts before it.
+Status check_clip_range(const Clip& clip, const ImportRequest& request, const std::string& file);
 
 /// Of the candidates, the one with the fewest letters changed from the word (Levenshtein), if it is near; else empty.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& candidates);

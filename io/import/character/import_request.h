@@ -10,6 +10,7 @@
 
 #include "baker/core/hash.h"
 #include "baker/core/trajectory.h"
+#include "io/import/character/character.h"
 #include "io/reading/guarded_child.h"
 
 namespace ft::inline io {
@@ -31,6 +32,8 @@ struct CharacterInfo {
   std::vector<ClipInfo> clips;
   std::vector<std::string> mesh_names;
   std::vector<SurfacePart> parts;  ///< of an inspected file; of an imported one its trajectory has them
+  std::vector<CharacterContent> contents;
+  std::vector<int> seam_frames;    ///< first frames after the end of a cycle, of a clip that repeats
   bool still = false;              ///< there is nothing to play, and a note says so
   std::vector<std::string> notes;  ///< what was repaired or is odd: "weights normalised (sums 0.185..1.0)"
 };
@@ -39,6 +42,7 @@ struct ImportRequest {
   std::filesystem::path file, animation, topology;
   std::string clip;
   double clip_start = 0, speed = 1;
+  bool loop = false;                ///< the clip repeats, carried on from cycle to cycle
   std::optional<double> clip_bind;  ///< geometry caches: where garments are modelled; none: at clip_start
   double unit_scale = 0;            ///< 0: as the file says
   std::string up;                   ///< "": as the file says

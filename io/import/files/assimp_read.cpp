@@ -19,6 +19,7 @@
 #include "baker/core/file.h"
 #include "io/import/collada/collada_file.h"
 #include "io/import/collada/collada_read.h"
+#include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 namespace {
@@ -179,7 +180,11 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
                            true);  // drawings of the bones where a file has no mesh
   // No joining of vertices (it ignores weights and morphs), no GlobalScale (float): welding and units are done here, in
   // double.
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+  const std::string with = ", with assimp's reader of " + file.extension().string();
+  reading_step("the file" + with);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  reading_step("its polygons" + with);
+  if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string reason = importer.GetErrorString();
     if (reason.find("bad allocation") != std::string::npos)
@@ -191,9 +196,12 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   out.format = format_name(importer);
   if (out.format == "FBX" && scene->mMetaData != nullptr) read_fbx_frame(*scene->mMetaData, out);
   if (out.format == "BVH") out.file_unit = 0, out.file_up.clear();
+  reading_step("its nodes" + with);
   const AssimpNodes nodes = read_nodes(*scene, out);
   if (nodes.raw.size() > k_max_character_nodes) return input_error("has more than 200,000 nodes");
+  reading_step("its meshes and skins" + with);
   if (out.format != "BVH") read_meshes(*scene, nodes, out);
+  reading_step("its clips" + with);
   read_clips(*scene, nodes, out);
   record_dependencies(file, files->opened(), out);
   if (out.format == "glTF") out.notes.emplace_back("is glTF 1.0: only its shapes were read");

@@ -8,6 +8,7 @@
 #include "io/import/fbx/read_fbx.h"
 #include "io/import/files/assimp_read.h"
 #include "io/import/gltf/gltf_read.h"
+#include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 namespace {
@@ -21,12 +22,15 @@ bool is_named_fbx(const std::filesystem::path& file) {
 }  // namespace
 
 Result<Character> read_character(const std::filesystem::path& file) {
+  reading_step("the file as BVH");
   if (is_bvh(file)) return read_bvh_character(file);
   if (is_gltf(file)) {
+    reading_step("the file as glTF");
     auto out = read_gltf(file);
     if (out || !is_still_gltf_1(file)) return out;
   }
   {
+    reading_step("the file as FBX");
     auto bytes = read_file(file);
     if (!bytes) return bytes.error();
     if (is_fbx(*bytes)) return read_fbx(std::move(*bytes));

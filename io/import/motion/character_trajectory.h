@@ -18,6 +18,7 @@ struct Playback {
   double preroll = 1;  ///< s
   /// Of a geometry cache: time in the file of the pose that garments are modelled on [s]; none: that at `start`.
   std::optional<double> bind;
+  bool loop = false;  ///< of a geometry cache: its samples repeat; a clip that repeats has the keys for it (cycle.h)
 };
 
 class CharacterTrajectory : public Trajectory {

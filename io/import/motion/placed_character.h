@@ -11,6 +11,7 @@ namespace ft::inline io {
 struct PlacedCharacter {
   Character character;                ///< with the clips of the animation file, where there is one
   int clip = -1;                      ///< into its clips; -1: the rest pose
+  bool repeated = false;              ///< the clip is as long as the shot, and the file's once over (cycle.h)
   int pelvis = 0;                     ///< the node above everything that carries vertices
   Mat4 placement = Mat4::Identity();  ///< file units and axes to metres and Y-up
   Playback playback;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "baker/core/level_fit.h"
 #include "baker/core/parallel.h"
 #include "baker/core/rigid.h"
 #include "io/import/motion/run_up.h"
@@ -51,6 +52,7 @@ SampledTrajectory::SampledTrajectory(GeometryCache cache, const Mat3& axes, doub
                                      bool sheet)
     : cache_(std::move(cache)), linear_(unit_scale * axes), playback_(playback) {
   find_jumps();
+  find_cycle();
   std::vector<Vec3> positions(static_cast<std::size_t>(cache_.vertex_count));
   at(playback_.start, positions);
   std::vector<Vec3> later(positions.size());
@@ -118,6 +120,17 @@ void SampledTrajectory::find_jumps() {
   });
 }
 
+void SampledTrajectory::find_cycle() {
+  const double period = cache_.times.back() - cache_.times.front();
+  if (!playback_.loop || !(period > 0)) return;
+  std::vector<Vec3> first(ft::at(cache_.vertex_count)), last(first.size());
+  at_own(cache_.times.front(), first);
+  at_own(cache_.times.back(), last);
+  cycle_ = make_cycle(period, level_fit(first, last), size_);
+  for (std::size_t v = 0; v < first.size(); ++v)
+    cycle_.seam = std::max(cycle_.seam, (cycle_.step * first[v] - last[v]).norm());
+}
+
 /// At a sample [file units/s].
 Vec3 SampledTrajectory::tangent(std::size_t i, std::size_t vertex) const {
   std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < cache_.times.size() ? i + 1 : i;
@@ -147,6 +160,16 @@ void SampledTrajectory::sample(double time, std::span<Vec3> positions) const {
 }
 
 void SampledTrajectory::at(double time, std::span<Vec3> positions) const {
+  constexpr double k_rounding = 1e-9;  // s
+  const long before =
+      cycle_.period > 0 ? static_cast<long>(std::floor((time - cache_.times.front() + k_rounding) / cycle_.period)) : 0;
+  if (before <= 0) return at_own(time, positions);
+  at_own(time - static_cast<double>(before) * cycle_.period, positions);
+  const Eigen::Isometry3d carried = cycle_.steps(before);
+  for (Vec3& p : positions) p = carried * p;
+}
+
+void SampledTrajectory::at_own(double time, std::span<Vec3> positions) const {
   const auto& times = cache_.times;
   const auto next = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
   if (next == 0 || next == times.size()) {

@@ -4,12 +4,14 @@
 // their shapes they are limbs with a joint between them, else eyes and nails on a skin. It has no bind pose of its own:
 // garments are modelled on the first pose of the shot. Before the shot it is that pose, set back by the run-up
 // (run_up.h); where a later part of the shot is baked, the pre-roll goes vertex by vertex from the one pose, placed by
-// the rigid motion that brings it nearest, to the other.
+// the rigid motion that brings it nearest, to the other. Samples that repeat go on from where the last cycle has got
+// to, by the level motion that fits best (cycle.h).
 #pragma once
 
 #include "baker/core/trajectory.h"
 #include "io/import/character/geometry_cache.h"
 #include "io/import/motion/character_trajectory.h"
+#include "io/import/motion/cycle.h"
 
 namespace ft::inline io {
 
@@ -25,11 +27,16 @@ class SampledTrajectory : public Trajectory {
   Eigen::Isometry3d bind_to_start() const override;
   double preroll() const override { return playback_.preroll; }
 
+  /// Of samples that repeat; the period is 0 of those that do not.
+  const Cycle& cycle() const { return cycle_; }
+
  private:
+  void find_cycle();
   void find_jumps();
   bool jumps(std::size_t interval, std::size_t vertex) const;
   Vec3 tangent(std::size_t sample, std::size_t vertex) const;
   void at(double time, std::span<Vec3> positions) const;
+  void at_own(double time, std::span<Vec3> positions) const;  ///< within the samples
 
   GeometryCache cache_;
   double size_ = 0;                ///< of the first sample [m]
@@ -38,6 +45,7 @@ class SampledTrajectory : public Trajectory {
   Surface surface_;
   Mat3 linear_;
   Playback playback_;
+  Cycle cycle_;
   Eigen::Isometry3d bind_to_start_ = Eigen::Isometry3d::Identity();  ///< without the run-up
   Vec3 start_velocity_ = Vec3::Zero();  ///< mean over the vertices at the first frame [m/s]
 };

@@ -3,32 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "baker/core/disjoint_sets.h"
+#include "baker/core/lids.h"
 
 namespace ft::inline io {
 namespace {
 
 /// Openings below this share of the area are not worth a word [1].
 constexpr double k_told_share = 2e-3;
-
-/// Per vertex: the first of those in the same place.
-std::vector<int> first_in_place(std::span<const Vec3> x) {
-  const auto before = [&](int a, int b) {
-    const Vec3 &p = x[at(a)], &q = x[at(b)];
-    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-  };
-  std::vector<int> order(x.size()), out(x.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), before);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && x[at(order[k])] == x[at(order[k - 1])];
-    out[at(order[k])] = same ? out[at(order[k - 1])] : order[k];
-  }
-  return out;
-}
 
 /// Edges of one triangle only.
 std::vector<Edge> rim_edges(std::span<const Triangle> triangles, std::span<const int> first) {
