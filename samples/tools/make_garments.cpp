@@ -152,6 +152,7 @@ int main_checked(int argc, char** argv) {
   app.add_option("--unit-scale", arguments.request.unit_scale, "metres per file unit");
   app.add_option("--height", arguments.request.height, "metres");
   app.add_option("--body", arguments.request.body, "of motion capture: blended or capsules");
+  app.add_option("--bind", arguments.request.bind, "pose to model on: t_pose; default the file's");
   app.add_option("--fps", arguments.request.shot_fps, "frames per second of the shot");
   app.add_option("--source-fps", arguments.request.source_fps, "frames per second of a geometry cache");
   app.add_option("--waist", arguments.waist, "waist height in shares of the body's height, 0.4..0.8")
