@@ -49,7 +49,7 @@ TEST(RotationOrder, Angles_give_the_rotation_back_and_so_they_do_at_the_poles) {
 
 /// One layer over a base: both constant.
 Vec3 layered(AnimationLayer layer, TransformKind kind, const Vec3& base, const Vec3& over) {
-  CurveSet set;
+  ClipCurves set;
   set.layers = {AnimationLayer{}, layer};
   AnimatedNumbers numbers;
   numbers.rest = Vec3(9, 9, 9);
@@ -88,7 +88,7 @@ TEST(Layers, Rotations_may_be_put_together_and_scales_multiplied) {
 }
 
 TEST(Layers, A_weight_may_move) {
-  CurveSet set;
+  ClipCurves set;
   set.curves.resize(1);
   set.curves[0].times = {0, 1}, set.curves[0].values = {0, 100};
   AnimationLayer layer;

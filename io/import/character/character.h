@@ -44,7 +44,7 @@ struct Clip {
   std::vector<Channel> channels = {};
   std::vector<TransformStack> stacks = {};  ///< at most one per node
   std::vector<ShapeChannel> shapes = {};
-  CurveSet curves = {};        ///< of the stacks and shapes
+  ClipCurves curves = {};      ///< of the stacks and shapes
   bool has_own_range = false;  ///< the file says how long it lasts; a pose that is held is part of it
   double duration() const { return end - start; }
   /// Nodes and shapes that it moves.

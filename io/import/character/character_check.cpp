@@ -61,7 +61,7 @@ Status check_curve(const Curve& curve, const std::string& where) {
   return {};
 }
 
-Status check_numbers(const AnimatedNumbers& numbers, const CurveSet& set, const std::string& where) {
+Status check_numbers(const AnimatedNumbers& numbers, const ClipCurves& set, const std::string& where) {
   if (!usable(numbers.rest)) return fault(where, "an animated number's rest is not finite");
   for (const LayeredNumbers& said : numbers.layers) {
     if (said.layer < 0 || static_cast<std::size_t>(said.layer) >= set.layers.size())

@@ -55,7 +55,7 @@ class ClipPose {
   std::vector<int> parents_;
   std::vector<TransformStack> stacks_;  // parents first
   std::vector<ShapeChannel> shapes_;
-  CurveSet curves_;
+  ClipCurves curves_;
   std::vector<Mat4> rest_;
   std::vector<double> rest_morphs_;
   std::vector<int> morph_start_;

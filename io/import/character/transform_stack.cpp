@@ -31,7 +31,7 @@ double power(double base, double exponent) {
   return std::copysign(std::pow(std::abs(base), exponent), base);
 }
 
-double weight_at(const AnimationLayer& layer, const CurveSet& set, double time) {
+double weight_at(const AnimationLayer& layer, const ClipCurves& set, double time) {
   if (layer.weight_curve < 0) return layer.weight;
   const double weight = set.curves[static_cast<std::size_t>(layer.weight_curve)].at(time) / 100;
   return weight > 0.99999 ? 1 : std::max(weight, 0.0);
@@ -90,7 +90,7 @@ Vec3 angles_of(const Quat& rotation, RotationOrder order) {
   return out / k_degree;
 }
 
-Vec3 numbers_at(const AnimatedNumbers& numbers, TransformKind kind, RotationOrder order, const CurveSet& set,
+Vec3 numbers_at(const AnimatedNumbers& numbers, TransformKind kind, RotationOrder order, const ClipCurves& set,
                 double time) {
   Vec3 out = numbers.rest;
   for (const LayeredNumbers& said : numbers.layers) {
@@ -104,7 +104,7 @@ Vec3 numbers_at(const AnimatedNumbers& numbers, TransformKind kind, RotationOrde
   return out;
 }
 
-StackPose stack_pose(const TransformStack& stack, const CurveSet& set, double time) {
+StackPose stack_pose(const TransformStack& stack, const ClipCurves& set, double time) {
   StackPose out;
   Mat3 linear = Mat3::Identity();
   Vec3 place = Vec3::Zero();

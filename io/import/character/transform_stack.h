@@ -81,7 +81,7 @@ struct ShapeChannel {
 };
 
 /// What the stacks and shapes of one clip refer to.
-struct CurveSet {
+struct ClipCurves {
   std::vector<Curve> curves;
   std::vector<AnimationLayer> layers;
 };
@@ -102,9 +102,9 @@ Quat rotation_of(const Vec3& degrees, RotationOrder order);
 Vec3 angles_of(const Quat& rotation, RotationOrder order);
 
 /// Three numbers at a time [s]; kind says how layers put rotations and scales together.
-Vec3 numbers_at(const AnimatedNumbers& numbers, TransformKind kind, RotationOrder order, const CurveSet& set,
+Vec3 numbers_at(const AnimatedNumbers& numbers, TransformKind kind, RotationOrder order, const ClipCurves& set,
                 double time);
-StackPose stack_pose(const TransformStack& stack, const CurveSet& set, double time);
+StackPose stack_pose(const TransformStack& stack, const ClipCurves& set, double time);
 
 /// Weights of the shapes at a percentage: straight between neighbours, 0 % counts as a shape of no change, beyond the
 /// outermost one it grows on.

@@ -43,7 +43,7 @@ FbxTransform fbx_transform(const FbxObject& model, int node, bool whole) {
 
 void fbx_rest_locals(std::span<const FbxObject* const> models, std::span<const int> parents, std::span<Mat4> locals) {
   ScalePassing passing(models.size());
-  const CurveSet none;
+  const ClipCurves none;
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (models[i] == nullptr) continue;
     const FbxTransform transform = fbx_transform(*models[i], static_cast<int>(i), false);

@@ -63,7 +63,7 @@ Curve repeated_curve(const Curve& curve, const RepeatedSpan& span) {
 }
 
 void place_cycles(const RepeatedSpan& span, std::span<const Vec3> translations, std::span<const Quat> rotations,
-                  TransformStack& stack, CurveSet& curves) {
+                  TransformStack& stack, ClipCurves& curves) {
   ElementaryTransform move, turn;
   move.kind = TransformKind::k_translate, turn.kind = TransformKind::k_rotate;
   const auto layer = static_cast<std::int32_t>(curves.layers.size());

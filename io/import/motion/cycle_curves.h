@@ -20,6 +20,6 @@ Curve repeated_curve(const Curve& curve, const RepeatedSpan& span);
 
 /// Puts a placement before the stack's own transforms, another one in each cycle: lengths as the stack has them.
 void place_cycles(const RepeatedSpan& span, std::span<const Vec3> translations, std::span<const Quat> rotations,
-                  TransformStack& stack, CurveSet& curves);
+                  TransformStack& stack, ClipCurves& curves);
 
 }  // namespace ft::inline io
