@@ -59,8 +59,8 @@ class WaterSolver final : public Solver, public MovesPrimaries, public HasScalar
   }
   void system_scalars(const State& state, int system, std::vector<std::vector<float>>& values) const override;
   /// Of the water at the vertices: along, and up as it comes along the slope that it is on. With how fast the surface
-  /// rises at the vertices this is the water's whole velocity, and moves the surface to where it is a moment later. Zero
-  /// where it is dry.
+  /// rises at the vertices this is the water's whole velocity, and moves the surface to where it is a moment later.
+  /// Zero where it is dry.
   void surface_flow(const State& state, int system, std::span<Vec3> velocities) const override;
   void system_frame(const State& state, int system, FrameData& frame) const override;
   std::span<const Triangle> collider_triangles() const override { return {}; }
