@@ -110,7 +110,7 @@ TEST(Curve, Goes_on_before_and_after_its_keys) {
 
 TEST(Curve, Ends_after_the_repetitions_that_it_is_given) {
   const Curve twice = saw(CurveInfinity::k_repeat, 2);
-  EXPECT_DOUBLE_EQ(twice.at(6.5), 2);
+  EXPECT_DOUBLE_EQ(twice.at(6.5), 2.5);
   EXPECT_DOUBLE_EQ(twice.at(7.5), 1);
   EXPECT_DOUBLE_EQ(twice.at(-4), 0);
   const Curve mirrored = saw(CurveInfinity::k_mirror, 1);

@@ -9,7 +9,7 @@ namespace ft::inline io {
 namespace {
 
 constexpr double k_degree = std::numbers::pi / 180;
-/// A scale of 0 leaves the node that compensates for it its own; smaller ones count as this.
+/// A scale of 0 leaves the node that compensates for it its own: smaller scales count as this.
 constexpr double k_least_scale = 1e-8;
 
 /// The axes in the order in which they turn.
@@ -29,6 +29,10 @@ double power(double base, double exponent) {
   if (exponent <= 0) return 1;
   if (exponent >= 1) return base;
   return std::copysign(std::pow(std::abs(base), exponent), base);
+}
+
+double at_least(double scale) {
+  return std::abs(scale) < k_least_scale ? std::copysign(k_least_scale, scale) : scale;
 }
 
 double weight_at(const AnimationLayer& layer, const ClipCurves& set, double time) {
@@ -162,24 +166,22 @@ void shape_weights(std::span<const ShapeChannel::Shape> shapes, double percent, 
 ScalePassing::ScalePassing(std::size_t node_count) : scale_(node_count, Vec3::Ones()), source_(node_count, -1) {}
 
 void ScalePassing::set_scale(int node, const Vec3& scale) {
-  scale_[static_cast<std::size_t>(node)] = scale;
+  scale_[static_cast<std::size_t>(node)] = scale.unaryExpr([](double s) { return at_least(s); });
 }
 
 Mat4 ScalePassing::local(int node, int parent, ScaleInheritance inheritance, const StackPose& pose) {
   const auto own = static_cast<std::size_t>(node);
-  scale_[own] = pose.scale;
-  if (inheritance == ScaleInheritance::k_product || parent < 0) return pose.matrix;
+  scale_[own] = pose.scale.unaryExpr([](double s) { return at_least(s); });
+  Mat4 out = pose.matrix;
+  if (scale_[own] != pose.scale && (pose.turn * pose.scale.asDiagonal()).isApprox(out.topLeftCorner<3, 3>(), 1e-12))
+    out.topLeftCorner<3, 3>() = pose.turn * scale_[own].asDiagonal();
+  if (inheritance == ScaleInheritance::k_product || parent < 0) return out;
   const auto above = static_cast<std::size_t>(parent);
   source_[own] = inheritance == ScaleInheritance::k_componentwise ? parent : source_[above];
   if (source_[own] >= 0) scale_[own] = scale_[own].cwiseProduct(scale_[static_cast<std::size_t>(source_[own])]);
   // The node stands in the parent's frame without its scale, at a place that is scaled; the product with the parent
   // takes that scale back.
-  Vec3 back;
-  for (int k = 0; k < 3; ++k) {
-    const double s = scale_[above][k];
-    back[k] = 1 / (std::abs(s) < k_least_scale ? std::copysign(k_least_scale, s) : s);
-  }
-  Mat4 out = pose.matrix;
+  const Vec3 back = scale_[above].cwiseInverse();
   out.topLeftCorner<3, 3>() = back.asDiagonal() * pose.turn * scale_[own].asDiagonal();
   return out;
 }
