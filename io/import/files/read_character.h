@@ -8,7 +8,7 @@
 namespace ft::inline io {
 
 /// Version of everything that turns file bytes into a Character; part of the import cache's key.
-inline constexpr const char* k_importer_version = "import 2";
+inline constexpr const char* k_importer_version = "import 3";
 
 /// Picks the reader by what the file is. The result is not checked yet (check_character).
 Result<Character> read_character(const std::filesystem::path& file);
