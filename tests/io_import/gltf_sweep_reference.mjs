@@ -67,6 +67,12 @@ function prepare(file) {
   } else json = JSON.parse(bytes.toString('utf8').replace(/^\ufeff/, ''));
   for (const mesh of json.meshes ?? []) for (const primitive of mesh.primitives ?? []) delete primitive.material;
   for (const key of ['materials', 'textures', 'images', 'samplers']) delete json[key];
+  if (!json.scenes?.length && json.nodes?.length) {
+    const below = new Set(json.nodes.flatMap((node) => node.children ?? []));
+    json.scenes = [{ nodes: json.nodes.map((_, n) => n).filter((n) => !below.has(n)) }];
+    json.scene = 0;
+  }
+  json.scene ??= 0;
   for (const buffer of json.buffers ?? []) {
     if (!buffer.uri || buffer.uri.startsWith('data:')) continue;
     const data = fs.readFileSync(path.join(path.dirname(file), decodeURIComponent(buffer.uri)));

@@ -11,7 +11,7 @@
 
 #include "baker/core/file.h"
 #include "io/import/character/pose.h"
-#include "io/import/files/read_character.h"
+#include "io/import/gltf/gltf_read.h"
 
 namespace ft {
 namespace {
@@ -126,7 +126,7 @@ TEST(GltfSweep, Public_files_are_as_three_js_has_them_or_say_why_not_slow) {
   for (const auto& reference : files) {
     const std::filesystem::path file = reference.parent_path() / reference.stem();
     const std::vector<Sample> samples = read_reference(reference);
-    auto character = read_character(file);
+    auto character = read_gltf(file);
     Status checked = character ? check_character(*character) : Status(character.error());
     int Row::*kind = &Row::right;
     if (!checked) {

@@ -8,9 +8,10 @@
 namespace ft::inline io::gltf {
 namespace {
 
-/// What was odd, over all clips; becomes notes.
+/// How much was read of all clips, and what was odd; the latter becomes notes.
 struct ClipOddities {
-  int dropped_keys = 0, empty_channels = 0, doubled = 0, pointers = 0, wrong_weights = 0;
+  std::size_t numbers_read = 0;
+  int dropped_keys = 0, empty_channels = 0, doubled = 0, pointers = 0, wrong_weights = 0, uneven = 0;
   std::string first_pointer;
 };
 
@@ -53,6 +54,17 @@ void drop_late_keys(Track& track, int& dropped) {
   track.times.resize(kept), track.values.resize(kept * stride);
 }
 
+/// Rotations that the file says in floats and whose length is not 1 (those in few bits never have it exactly).
+int uneven_rotations(const Track& track) {
+  const std::size_t first = track.interpolation == KeyInterpolation::k_cubic ? 4 : 0;
+  int count = 0;
+  for (std::size_t k = first; k + 4 <= track.values.size(); k += track.stride()) {
+    const double* q = track.values.data() + k;
+    count += std::abs(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) - 1) > 1e-4;
+  }
+  return count;
+}
+
 /// width 0: as many as the values give (morph weights).
 Result<Track> read_sampler(GltfFile& file, const Json& sampler, int width, ClipOddities& odd) {
   Track track;
@@ -78,6 +90,9 @@ Result<Track> read_sampler(GltfFile& file, const Json& sampler, int width, ClipO
     return input_error("has " + std::to_string(track.times.size()) + " key times and " +
                        std::to_string(track.values.size()) + " numbers in its key values, which do not match");
   drop_late_keys(track, odd.dropped_keys);
+  const Json& output = element(member(file.json(), "accessors"), integer(member(sampler, "output"), -1));
+  if (width == 4 && !morphs && integer(member(output, "componentType"), 0) == 5126)
+    odd.uneven += uneven_rotations(track);
   return track;
 }
 
@@ -147,6 +162,8 @@ Status read_clip(GltfFile& file, const Json& animation, const std::vector<int>& 
       ++odd.empty_channels;
       continue;
     }
+    odd.numbers_read += read->values.size() + read->times.size();
+    if (odd.numbers_read > k_max_character_keys) return input_error("has more than 200 million numbers in its keys");
     if (weights && static_cast<std::size_t>(read->width) != morphs) ++odd.wrong_weights;
     if (!track->empty()) ++odd.doubled;
     *track = std::move(*read);
@@ -169,6 +186,7 @@ void add_notes(const ClipOddities& odd, std::vector<std::string>& notes) {
     if (n > 0) notes.push_back(std::to_string(n) + " " + what);
   };
   count(odd.dropped_keys, "keys were not later than the one before; dropped");
+  count(odd.uneven, "rotation keys are not of length 1; made so");
   count(odd.empty_channels, "animation channels have no keys; left out");
   count(odd.doubled, "animation channels move what another channel of their clip moves; the last one counts");
   count(odd.wrong_weights, "animation channels have more or fewer weights than their mesh has morph targets");
@@ -181,16 +199,12 @@ void add_notes(const ClipOddities& odd, std::vector<std::string>& notes) {
 Status read_clips(GltfFile& file, const std::vector<int>& node_of, Character& out) {
   ClipOddities odd;
   const Json& animations = member(file.json(), "animations");
-  std::size_t numbers_read = 0;
   for (std::size_t a = 0; a < size_of_array(animations); ++a) {
     Clip clip;
     clip.name = text(member(animations[a], "name"));
     if (clip.name.empty()) clip.name = "animation_" + std::to_string(a);
     if (Status s = read_clip(file, animations[a], node_of, out, clip, odd); !s)
       return input_error(named(file.json(), "animations", static_cast<std::int64_t>(a)) + ", " + s.error().what);
-    for (const Channel& c : clip.channels)
-      for (const Track* t : {&c.translation, &c.rotation, &c.scale, &c.weights}) numbers_read += t->values.size();
-    if (numbers_read > k_max_character_keys) return input_error("has more than 200 million numbers in its keys");
     out.clips.push_back(std::move(clip));
   }
   add_notes(odd, out.notes);

@@ -21,7 +21,7 @@ ExtensionUse extension_use(const std::string& name) {
                                        "GOOGLE_texture_",
                                        "KHR_lights_",
                                        "EXT_lights_",
-                                       "KHR_techniques_",
+                                       "KHR_technique",
                                        "KHR_xmp",
                                        "KHR_audio",
                                        "MSFT_audio",

@@ -43,8 +43,30 @@ Result<Chunks> find_chunks(std::span<const std::byte> data, Bytes& further) {
   return out;
 }
 
+constexpr int k_deepest_json = 200;
+
+/// Levels of brackets, outside of strings: who copies or writes JSON goes down by recursion.
+int nesting(std::string_view source) {
+  int depth = 0, most = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const char c = source[i];
+    if (quoted && c == '\\')
+      ++i;
+    else if (c == '"')
+      quoted = !quoted;
+    else if (!quoted && (c == '{' || c == '['))
+      most = std::max(most, ++depth);
+    else if (!quoted && (c == '}' || c == ']'))
+      --depth;
+  }
+  return most;
+}
+
 Result<Json> parse(std::span<const std::byte> source) {
   const char* begin = reinterpret_cast<const char*>(source.data());
+  if (nesting({begin, source.size()}) > k_deepest_json)
+    return input_error("glTF's JSON is nested deeper than " + std::to_string(k_deepest_json) + " levels");
   try {
     Json json = Json::parse(begin, begin + source.size());
     if (!json.is_object()) return input_error("glTF's JSON cannot be read: it is no object");

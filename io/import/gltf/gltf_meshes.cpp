@@ -103,7 +103,9 @@ class MeshReader {
     for (Primitive& primitive : shared.primitives) {
       if (primitive.mesh.triangles.empty()) continue;
       if (shared.uses > 1)
-        if (Status s = room_.take(primitive.mesh.positions.size(), primitive.mesh.morphs.size()); !s) return s;
+        for (const Status& s : {room_.take(primitive.mesh.positions.size(), primitive.mesh.morphs.size()),
+                                room_.take_triangles(primitive.mesh.triangles.size())})
+          if (!s) return s;
       morph_count = std::max(morph_count, primitive.mesh.morphs.size());
       CharacterMesh& added = out_.meshes.emplace_back(last ? std::move(primitive.mesh) : primitive.mesh);
       added.node = node_of_[static_cast<std::size_t>(n)];

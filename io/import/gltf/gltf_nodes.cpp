@@ -31,7 +31,7 @@ Result<Mat4> local_matrix(const Json& node, const std::string& name, int& uneven
   if (!r->empty()) {
     const Quat q((*r)[3], (*r)[0], (*r)[1], (*r)[2]);
     const double length = q.norm();
-    if (std::abs(length - 1) > 1e-3) ++uneven;
+    if (std::abs(length - 1) > 1e-4) ++uneven;
     if (length > 1e-12) out.topLeftCorner<3, 3>() = Quat(q.coeffs() / length).toRotationMatrix();
   }
   if (!s->empty()) out.topLeftCorner<3, 3>() *= Vec3((*s)[0], (*s)[1], (*s)[2]).asDiagonal();

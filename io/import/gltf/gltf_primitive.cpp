@@ -21,6 +21,8 @@ std::array<std::size_t, 3> corners(Mode mode, std::size_t i) {
   return {3 * i, 3 * i + 1, 3 * i + 2};
 }
 
+constexpr std::size_t k_most_triangles = 3 * k_max_character_vertices;  ///< over all meshes: 720 MB
+
 /// corner(k): vertex of the k-th corner of the list.
 template <class Corner>
 void make_triangles(Mode mode, std::size_t corner_count, std::vector<Triangle>& out, MeshOddities& odd,
@@ -148,6 +150,12 @@ Status MeshRoom::take(std::size_t n, std::size_t targets) {
   return {};
 }
 
+Status MeshRoom::take_triangles(std::size_t n) {
+  if (n > k_most_triangles - triangles) return input_error("has more than 60 million triangles");
+  triangles += n;
+  return {};
+}
+
 Result<Primitive> read_primitive(GltfFile& file, const Json& mesh, const Json& primitive, bool skinned, MeshRoom& room,
                                  MeshOddities& odd) {
   Primitive out;
@@ -170,6 +178,11 @@ Result<Primitive> read_primitive(GltfFile& file, const Json& mesh, const Json& p
     unpacked = std::move(decoded->attributes);
   }
   if (Status s = room.take(vertex_count, target_count); !s) return s.error();
+  const std::int64_t corner_count = file.count(integer(member(primitive, "indices"), -1));
+  if (Status s = room.take_triangles(std::max(
+          out.mesh.triangles.size(), static_cast<std::size_t>(corner_count) / (mode == Mode::k_triangles ? 3 : 1)));
+      !s)
+    return s.error();
   const auto attribute = [&](const char* semantic, Integers integers) -> Result<AccessorValues> {
     if (const auto found = unpacked.find(semantic); found != unpacked.end()) return std::move(found->second);
     return file.read(integer(member(attributes, semantic), -1), integers);

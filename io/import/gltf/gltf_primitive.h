@@ -20,8 +20,10 @@ struct MeshOddities {
 struct MeshRoom {
   std::size_t vertices = 0;
   std::size_t morph_vertices = 0;
+  std::size_t triangles = 0;
   /// Refuses n more vertices with so many morph targets if that is beyond the caps.
   Status take(std::size_t n, std::size_t targets);
+  Status take_triangles(std::size_t n);
 };
 
 /// Influences of each vertex, by place in the skin's list of joints; rows ascend by joint and sum to 1, or are empty.

@@ -6,6 +6,7 @@ namespace ft::inline io::gltf {
 namespace {
 
 constexpr double k_most_joint = 65535;
+constexpr std::size_t k_most_set_vertices = 40'000'000;  ///< of one primitive, over its sets
 
 struct Set {
   AccessorValues joints, weights;
@@ -21,6 +22,8 @@ Result<std::vector<Set>> read_sets(const Json& attributes, const ReadAttribute& 
     const bool has_joints = attributes.contains(joint_name), has_weights = attributes.contains(weight_name);
     if (has_joints != has_weights) lonely = true;
     if (!has_joints || !has_weights) continue;
+    if ((sets.size() + 1) * vertex_count > k_most_set_vertices)
+      return input_error(joint_name + ": more than 40 million sets of weights");
     auto joints = read(joint_name.c_str(), Integers::k_themselves);
     if (!joints) return input_error(joint_name + ": " + joints.error().what);
     auto weights = read(weight_name.c_str(), Integers::k_fractions);
