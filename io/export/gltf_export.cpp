@@ -37,9 +37,9 @@ Status join_buffers(gltf::GltfFile& file, Json& json, Bytes& bin) {
     const std::string where = "buffer " + std::to_string(b);
     const Json& about = json["buffers"][b];
     const std::int64_t length = integer(member(about, "byteLength"), -1);
+    if (b > 0 && text(member(about, "uri")).empty()) return input_error("has no uri and is not the first", where);
     auto bytes = file.buffer(static_cast<std::int64_t>(b));
     if (!bytes) return bytes.error();
-    if (b > 0 && text(member(about, "uri")).empty()) return input_error("has no uri and is not the first", where);
     if (length < 0 || (*bytes)->size() < static_cast<std::uint64_t>(length))
       return input_error(
           "has " + std::to_string((*bytes)->size()) + " bytes of the " + std::to_string(length) + " that the file says",
