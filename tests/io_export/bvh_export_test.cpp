@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "baker/core/file.h"
-#include "io/import/bvh/bvh_file.h"
 #include "io/export/glb_from_character.h"
+#include "io/import/bvh/bvh_file.h"
 #include "io/import/import_cache.h"
 #include "tests/io_export/moved.h"
 #include "tests/support/damage.h"

@@ -274,7 +274,8 @@ TEST(BvhBody, A_motion_of_another_size_than_its_skeleton_is_refused_with_numbers
     head += "0 95 0 0 0 0";
     for (std::size_t j = 1; j < t_pose.size(); ++j) {
       const Vec3 o = 100 * grown * (t_pose[j] - t_pose[at(parents[j])]);
-      head += " " + std::to_string(o.x()) + " " + std::to_string(o.y()) + " " + std::to_string(o.z()) + " 0 0 0";
+      for (int k = 0; k < 3; ++k) head.append(" ").append(std::to_string(o[k]));
+      head += " 0 0 0";
     }
     head += "\n";
   }

@@ -229,9 +229,9 @@ TEST(FbxClips, Last_as_long_as_the_file_says) {
 
 TEST(FbxClips, Name_what_is_not_evaluated) {
   const std::string keys = curve(k_two_keys, "0,1", "4", "0,0,0,0", "2");
-  const Read r = read(fbx("", 1, {{"", "Lcl Translation", keys}, {"", "Visibility", keys}}));
+  const Read r = read(fbx("", 1, {{"", "Lcl Translation", keys}, {"", "RotationOrder", keys}}));
   ASSERT_EQ(r.character.notes.size(), 1u);
-  EXPECT_NE(r.character.notes[0].find("keys of Visibility are not evaluated"), std::string::npos);
+  EXPECT_NE(r.character.notes[0].find("keys of RotationOrder are not evaluated"), std::string::npos);
   EXPECT_NE(r.character.notes[0].find("\"joint\""), std::string::npos);
 }
 
@@ -241,7 +241,7 @@ TEST(FbxClips, Percentages_move_shapes_and_those_in_between) {
       fbx("", 1, {{"", "DeformPercent", keys}}, "Deformer: 2, \"SubDeformer::smile\", \"BlendShapeChannel\" {\n}\n");
   const auto at = text.find("C: \"OP\",30,1,");
   text.replace(at, 13, "C: \"OP\",30,2,");
-  const Read r = read(text, {{2, 0, 0, {{1, 50}, {0, 100}}}});
+  const Read r = read(text, {{2, "DeformPercent", 0, 0, {{1, 50}, {0, 100}}}});
   const ClipPose pose(r.character, &r.character.clips[0]);
   std::vector<Mat4> locals(1);
   std::vector<double> morphs(2);

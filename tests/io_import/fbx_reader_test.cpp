@@ -45,13 +45,13 @@ struct TextFile {
 
 std::string array(const std::string& name, const std::vector<double>& values) {
   std::string out = name + ": *" + std::to_string(values.size()) + " {\na: ";
-  for (std::size_t k = 0; k < values.size(); ++k) out += (k > 0 ? "," : "") + std::to_string(values[k]);
+  for (std::size_t k = 0; k < values.size(); ++k) out.append(k > 0 ? "," : "").append(std::to_string(values[k]));
   return out + "\n}\n";
 }
 
 std::string whole(const std::string& name, const std::vector<int>& values) {
   std::string out = name + ": *" + std::to_string(values.size()) + " {\na: ";
-  for (std::size_t k = 0; k < values.size(); ++k) out += (k > 0 ? "," : "") + std::to_string(values[k]);
+  for (std::size_t k = 0; k < values.size(); ++k) out.append(k > 0 ? "," : "").append(std::to_string(values[k]));
   return out + "\n}\n";
 }
 
