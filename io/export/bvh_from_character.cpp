@@ -124,6 +124,7 @@ Result<std::string> bvh_from_character(const Character& character, int clip, con
     return usage_error("the frames of a BVH have to follow each other");
   if (character.nodes.empty()) return input_error("has no skeleton");
   std::vector<Joint> joints = find_joints(character, clip);
+  if (joints.empty()) return input_error("has several roots, which one BVH skeleton cannot hold");
   if (joints.size() > k_most_joints) return input_error("has more joints than a BVH is made of: 4096");
   sample(character, clip, placement, frames, joints);
   std::string out = "HIERARCHY\n";

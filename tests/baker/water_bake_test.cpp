@@ -262,7 +262,7 @@ TEST_F(WaterBakeTest, Its_frames_are_written_as_volumes_with_the_same_bytes_whos
     for (const Vec3f& v : velocity->velocities) out = std::max(out, v.norm());
     return out;
   };
-  EXPECT_EQ(fastest("pond.0001.vdb"), 0);
+  EXPECT_LT(fastest("pond.0001.vdb"), fastest("pond.0012.vdb")) << "it knows the frame after it only";
   EXPECT_GT(fastest("pond.0012.vdb"), 0.05f) << "the ball has come down";
   EXPECT_NE(write_volumes({.folder = folder_ / "a", .output = {}}).error().text().find("manifest"), std::string::npos);
 }

@@ -10,7 +10,7 @@ namespace ft::inline io {
 namespace {
 
 constexpr double k_straight = 2e-7;
-constexpr double k_least_step = 1.0 / 480;  // s
+constexpr double k_least_step = 1.0 / 15360;  // s
 
 class Plainer {
  public:
@@ -62,6 +62,28 @@ void append(const NodeTransform& t, double time, Channel& to) {
 
 }  // namespace
 
+std::vector<double> straight_times(const Character& character, const Clip& clip, int node) {
+  std::vector<double> keys{clip.start, clip.end};
+  // What a node inherits may move it, too.
+  for (int n = node; n >= 0; n = character.nodes[at(n)].parent) {
+    const std::vector<double> own = key_times(clip, n);
+    keys.insert(keys.end(), own.begin(), own.end());
+    const TransformStack* above = find_stack(clip, n);
+    if (above == nullptr || above->inheritance == ScaleInheritance::k_product) break;
+  }
+  for (double& time : keys) time = round_to_float(time);
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  Plainer plainer(character, clip);
+  std::vector<double> times{keys.front()};
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    plainer.split(node, keys[k - 1], plainer.at_time(node, keys[k - 1]), keys[k], plainer.at_time(node, keys[k]),
+                  times);
+    times.push_back(keys[k]);
+  }
+  return times;
+}
+
 Clip plain_clip(const Character& character, const Clip& clip) {
   Clip out = clip;
   if (clip.stacks.empty()) return out;
@@ -69,23 +91,7 @@ Clip plain_clip(const Character& character, const Clip& clip) {
   Plainer plainer(character, clip);
   for (const TransformStack& stack : clip.stacks) {
     const int node = stack.node;
-    std::vector<double> keys{clip.start, clip.end};
-    // What a node inherits may move it, too.
-    for (int n = node; n >= 0; n = character.nodes[at(n)].parent) {
-      const std::vector<double> own = key_times(clip, n);
-      keys.insert(keys.end(), own.begin(), own.end());
-      const TransformStack* above = find_stack(clip, n);
-      if (above == nullptr || above->inheritance == ScaleInheritance::k_product) break;
-    }
-    for (double& time : keys) time = round_to_float(time);
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    std::vector<double> times{keys.front()};
-    for (std::size_t k = 1; k < keys.size(); ++k) {
-      plainer.split(node, keys[k - 1], plainer.at_time(node, keys[k - 1]), keys[k], plainer.at_time(node, keys[k]),
-                    times);
-      times.push_back(keys[k]);
-    }
+    const std::vector<double> times = straight_times(character, clip, node);
     Channel channel;
     channel.node = node;
     channel.translation.width = channel.scale.width = 3;

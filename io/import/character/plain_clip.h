@@ -5,10 +5,13 @@
 
 namespace ft::inline io {
 
-/// The clip with a channel in place of each stack of transforms: keys where the stack's curves have some, and between
-/// them where a straight line would be off by more than 2e-7 (radians, or of the length of a translation), but none
-/// nearer than 1/480 s to another. Shear, which comes of scales that are inherited, is left out. Channels and shapes
-/// stay as they are.
+/// Times [s] at which a node that a stack moves needs keys so that straight lines follow it: where its curves have
+/// keys, the clip's ends, and between them where a straight line would be off by more than 2e-7 (radians, or of the
+/// length of a translation), but none nearer than 1/15360 s to another. Ascending.
+std::vector<double> straight_times(const Character& character, const Clip& clip, int node);
+
+/// The clip with a channel in place of each stack of transforms, with keys at straight_times(). Shear, which comes of
+/// scales that are inherited, is left out. Channels and shapes stay as they are.
 Clip plain_clip(const Character& character, const Clip& clip);
 
 }  // namespace ft::inline io

@@ -19,6 +19,26 @@ std::vector<Mat4> rest_globals(const std::vector<CharacterNode>& nodes) {
   return out;
 }
 
+namespace {
+
+/// A handle of a control rig, which moves joints in its own program only.
+bool is_effector(const FbxObject& model) {
+  return model.subkind == "FKEffector" || model.subkind == "IKEffector";
+}
+
+/// Models that are no handle of a control rig, and all above them.
+std::vector<char> models_to_keep(const std::vector<const FbxObject*>& models, const std::vector<std::size_t>& parent,
+                                 std::size_t none) {
+  std::vector<char> kept(models.size(), 0);
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    if (is_effector(*models[m])) continue;
+    for (std::size_t up = m; up != none && !kept[up]; up = parent[up]) kept[up] = 1;
+  }
+  return kept;
+}
+
+}  // namespace
+
 Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
   FbxScene scene;
   std::vector<const FbxObject*> models;
@@ -55,6 +75,12 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
     }
   if (!several.empty()) out.notes.push_back("nodes stand below several others, and were put below one: " + several);
 
+  const std::vector<char> kept = models_to_keep(models, parent, k_none);
+  const auto left_out = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 0));
+  if (left_out > 0)
+    out.contents.push_back({"handles of a control rig", static_cast<std::int64_t>(left_out),
+                            "not used: only keys on joints move the body"});
+
   struct Visit {
     std::size_t model;
     int parent;
@@ -64,6 +90,7 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
+    if (!kept[visit.model]) continue;
     const int node = static_cast<int>(out.nodes.size());
     out.nodes.push_back({models[visit.model]->name, visit.parent, Mat4::Identity(), {}});
     scene.models.push_back(models[visit.model]);
@@ -71,10 +98,10 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out) {
     const auto& below = children[visit.model];
     for (auto c = below.rbegin(); c != below.rend(); ++c) stack.push_back({*c, node});
   }
-  if (out.nodes.size() < models.size()) {
-    for (const FbxObject* model : models)
-      if (scene.node_of(model) < 0)
-        return input_error("is damaged: node \"" + model->name + "\" stands below itself", "",
+  if (out.nodes.size() + left_out < models.size()) {
+    for (std::size_t m = 0; m < models.size(); ++m)
+      if (kept[m] && scene.node_of(models[m]) < 0)
+        return input_error("is damaged: node \"" + models[m]->name + "\" stands below itself", "",
                            "open the file in its program and export it again");
   }
   std::vector<int> parents(out.nodes.size());

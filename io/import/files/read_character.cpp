@@ -4,6 +4,7 @@
 
 #include "baker/core/file.h"
 #include "io/import/bvh/bvh_character.h"
+#include "io/import/character/one_root.h"
 #include "io/import/fbx/fbx_tree.h"
 #include "io/import/fbx/read_fbx.h"
 #include "io/import/files/assimp_read.h"
@@ -33,7 +34,11 @@ Result<Character> read_character(const std::filesystem::path& file) {
     reading_step("the file as FBX");
     auto bytes = read_file(file);
     if (!bytes) return bytes.error();
-    if (is_fbx(*bytes)) return read_fbx(std::move(*bytes));
+    if (is_fbx(*bytes)) {
+      auto out = read_fbx(std::move(*bytes));
+      if (out) put_one_root(*out);
+      return out;
+    }
   }
   if (is_named_fbx(file))
     return input_error("is no FBX file: it begins with neither \"Kaydara FBX Binary\" nor an FBX header in text", "",

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/import/body/bind.h"
+#include "io/import/character/plain_clip.h"
 #include "io/import/motion/adjust_pose.h"
 
 namespace ft::inline io {
@@ -59,6 +60,11 @@ KeyTimes all_key_times(const Character& character, const Clip& clip, const std::
     for (; node >= 0 && !seen[at(node)]; node = character.nodes[at(node)].parent) {
       seen[at(node)] = 1;
       const std::vector<double> own = key_times(clip, node);
+      keys.insert(keys.end(), own.begin(), own.end());
+    }
+  for (const int node : nodes)  // what is moved becomes straight lines
+    if (find_stack(clip, node) != nullptr) {
+      const std::vector<double> own = straight_times(character, clip, node);
       keys.insert(keys.end(), own.begin(), own.end());
     }
   std::sort(keys.begin(), keys.end());
