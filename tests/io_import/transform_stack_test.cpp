@@ -244,7 +244,7 @@ TEST(Stacks, Become_keys_where_a_format_knows_nothing_else) {
   double worst = 0;
   for (double t = 0; t <= 1; t += 0.003)
     worst = std::max(worst, (globals_at(plain, t)[2] - globals_at(c, t)[2]).cwiseAbs().maxCoeff());
-  EXPECT_LT(worst, 2e-3);  // of 30: what two keys at 1/480 s leave
+  EXPECT_LT(worst, 1e-5);  // of 30
   EXPECT_LT(plain.clips[0].channels[1].rotation.times.size(), 481u);
   EXPECT_EQ(plain.clips[0].channels[2].rotation.times.size(), 2u);
 }

@@ -9,60 +9,101 @@
 namespace ft::inline io {
 namespace {
 
-constexpr double k_straight = 2e-7;
-constexpr double k_least_step = 1.0 / 15360;  // s
+constexpr double k_off = 2e-7;                 // of what lies between two keys [rad, of a length]
+constexpr double k_least_step = 1.0 / 15360;   // s, between keys that straight lines join
+constexpr double k_least_spline = 1.0 / 1920;  // s, between keys that cubic splines join
+constexpr double k_difference = 0.01;          // of the time between two keys: over which a slope is measured
+constexpr double k_instant = 2e-6;             // s: nearer keys are a step
+
+/// Translation, rotation x y z w and scale of a node.
+using Numbers = Eigen::Matrix<double, 10, 1>;
 
 class Plainer {
  public:
-  Plainer(const Character& character, const Clip& clip)
-      : pose_(character, &clip), locals_(character.nodes.size()), morphs_(pose_.rest_morphs().size()) {}
+  Plainer(const Character& character, const Clip& clip, int node)
+      : node_(node), pose_(character, &clip), locals_(character.nodes.size()), morphs_(pose_.rest_morphs().size()) {}
 
-  NodeTransform at_time(int node, double time) {
+  NodeTransform at_time(double time) {
     pose_.sample(time, locals_, morphs_);
-    return decompose(locals_[at(node)]);
+    return decompose(locals_[at(node_)]);
+  }
+  /// The quaternion of two that is nearer to the one given.
+  Numbers numbers(double time, const Numbers* near) {
+    const NodeTransform t = at_time(time);
+    Numbers out;
+    out << t.translation, t.rotation.coeffs(), t.stretch.diagonal();
+    if (near != nullptr && near->segment<4>(3).dot(out.segment<4>(3)) < 0) out.segment<4>(3) *= -1;
+    return out;
   }
 
-  /// Adds the times between two keys that need one.
-  void split(int node, double from, const NodeTransform& a, double to, const NodeTransform& b,
-             std::vector<double>& times) {
+  /// Adds the times between two keys that need one where straight lines join them.
+  void split(double from, const NodeTransform& a, double to, const NodeTransform& b, std::vector<double>& times) {
     if (to - from < 2 * k_least_step) return;
     bool straight = true;
     for (const double w : {0.25, 0.5, 0.75}) {
-      const NodeTransform now = at_time(node, from + w * (to - from)), line = blend(a, b, w);
+      const NodeTransform now = at_time(from + w * (to - from)), line = blend(a, b, w);
       const double size = std::max({now.translation.norm(), a.translation.norm(), b.translation.norm()});
-      straight = straight && (now.translation - line.translation).norm() <= k_straight * size &&
-                 now.rotation.angularDistance(line.rotation) <= k_straight &&
-                 (now.stretch - line.stretch).cwiseAbs().maxCoeff() <= k_straight * now.stretch.cwiseAbs().maxCoeff();
+      straight = straight && (now.translation - line.translation).norm() <= k_off * size &&
+                 now.rotation.angularDistance(line.rotation) <= k_off &&
+                 (now.stretch - line.stretch).cwiseAbs().maxCoeff() <= k_off * now.stretch.cwiseAbs().maxCoeff();
     }
     if (straight) return;
     const double middle = round_to_float(0.5 * (from + to));
-    const NodeTransform m = at_time(node, middle);
-    split(node, from, a, middle, m, times);
+    const NodeTransform m = at_time(middle);
+    split(from, a, middle, m, times);
     times.push_back(middle);
-    split(node, middle, m, to, b, times);
+    split(middle, m, to, b, times);
+  }
+
+  /// A cubic between two times with its values and slopes [1/s] at both.
+  struct Segment {
+    double from, to;
+    Numbers a, b, out_of_a, into_b;
+    Numbers at_share(double u) const {
+      const double u2 = u * u, u3 = u2 * u, span = to - from;
+      return (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * span * out_of_a + (3 * u2 - 2 * u3) * b +
+             (u3 - u2) * span * into_b;
+    }
+  };
+  Segment segment(double from, double to, const Numbers& a) {
+    Segment out{from, to, a, numbers(to, &a), {}, {}};
+    const double span = to - from, d = k_difference * span;
+    if (span < k_instant) {
+      out.out_of_a = out.into_b = (out.b - a) / span;
+      return out;
+    }
+    // One-sided differences of the second order: there may be a kink at a key.
+    out.out_of_a = (-3 * a + 4 * numbers(from + d, &a) - numbers(from + 2 * d, &a)) / (2 * d);
+    out.into_b = (3 * out.b - 4 * numbers(to - d, &out.b) + numbers(to - 2 * d, &out.b)) / (2 * d);
+    return out;
+  }
+  /// Segments that follow the node from one time to another.
+  void follow(double from, double to, const Numbers& a, std::vector<Segment>& segments) {
+    const Segment whole = segment(from, to, a);
+    bool follows = true;
+    for (const double w : {0.25, 0.5, 0.75}) {
+      const Numbers now = numbers(from + w * (to - from), &a), there = whole.at_share(w);
+      const double size = std::max(now.head<3>().norm(), a.head<3>().norm());
+      follows = follows && (now - there).head<3>().norm() <= k_off * size &&
+                2 * (now.segment<4>(3) - there.segment<4>(3).normalized()).norm() <= k_off &&
+                (now - there).tail<3>().cwiseAbs().maxCoeff() <= k_off * now.tail<3>().cwiseAbs().maxCoeff();
+    }
+    if (follows || to - from < 2 * k_least_spline) return segments.push_back(whole);
+    const double middle = round_to_float(0.5 * (from + to));
+    follow(from, middle, a, segments);
+    const Numbers m = segments.back().b;
+    follow(middle, to, m, segments);
   }
 
  private:
+  int node_;
   ClipPose pose_;
   std::vector<Mat4> locals_;
   std::vector<double> morphs_;
 };
 
-void append(const NodeTransform& t, double time, Channel& to) {
-  for (Track* track : {&to.translation, &to.rotation, &to.scale}) track->times.push_back(time);
-  auto& turns = to.rotation.values;
-  Eigen::Vector4d q = t.rotation.coeffs();
-  if (turns.size() >= 4 && Eigen::Map<const Eigen::Vector4d>(turns.data() + turns.size() - 4).dot(q) < 0) q = -q;
-  turns.insert(turns.end(), q.data(), q.data() + 4);
-  for (int k = 0; k < 3; ++k) {
-    to.translation.values.push_back(t.translation[k]);
-    to.scale.values.push_back(t.stretch(k, k));
-  }
-}
-
-}  // namespace
-
-std::vector<double> straight_times(const Character& character, const Clip& clip, int node) {
+/// Times [s] at which the curves that move a node have keys, and the clip's ends; ascending.
+std::vector<double> stack_keys(const Character& character, const Clip& clip, int node) {
   std::vector<double> keys{clip.start, clip.end};
   // What a node inherits may move it, too.
   for (int n = node; n >= 0; n = character.nodes[at(n)].parent) {
@@ -74,11 +115,27 @@ std::vector<double> straight_times(const Character& character, const Clip& clip,
   for (double& time : keys) time = round_to_float(time);
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  Plainer plainer(character, clip);
+  return keys;
+}
+
+/// (in-slope, value, out-slope) of a key, for each part of the node.
+void append(double time, const Numbers& in, const Numbers& value, const Numbers& out, Channel& to) {
+  const auto part = [&](Track& track, Eigen::Index first, Eigen::Index width) {
+    track.times.push_back(time);
+    for (const Numbers* v : {&in, &value, &out})
+      track.values.insert(track.values.end(), v->data() + first, v->data() + first + width);
+  };
+  part(to.translation, 0, 3), part(to.rotation, 3, 4), part(to.scale, 7, 3);
+}
+
+}  // namespace
+
+std::vector<double> straight_times(const Character& character, const Clip& clip, int node) {
+  const std::vector<double> keys = stack_keys(character, clip, node);
+  Plainer plainer(character, clip, node);
   std::vector<double> times{keys.front()};
   for (std::size_t k = 1; k < keys.size(); ++k) {
-    plainer.split(node, keys[k - 1], plainer.at_time(node, keys[k - 1]), keys[k], plainer.at_time(node, keys[k]),
-                  times);
+    plainer.split(keys[k - 1], plainer.at_time(keys[k - 1]), keys[k], plainer.at_time(keys[k]), times);
     times.push_back(keys[k]);
   }
   return times;
@@ -88,15 +145,26 @@ Clip plain_clip(const Character& character, const Clip& clip) {
   Clip out = clip;
   if (clip.stacks.empty()) return out;
   out.stacks.clear();
-  Plainer plainer(character, clip);
   for (const TransformStack& stack : clip.stacks) {
     const int node = stack.node;
-    const std::vector<double> times = straight_times(character, clip, node);
+    const std::vector<double> keys = stack_keys(character, clip, node);
+    Plainer plainer(character, clip, node);
+    Numbers a = plainer.numbers(keys.front(), nullptr);
+    std::vector<Plainer::Segment> segments;
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+      plainer.follow(keys[k - 1], keys[k], a, segments);
+      a = segments.back().b;
+    }
     Channel channel;
     channel.node = node;
     channel.translation.width = channel.scale.width = 3;
     channel.rotation.width = 4;
-    for (const double time : times) append(plainer.at_time(node, time), time, channel);
+    for (Track* track : {&channel.translation, &channel.rotation, &channel.scale})
+      track->interpolation = KeyInterpolation::k_cubic;
+    const Numbers none = Numbers::Zero();
+    for (std::size_t k = 0; k <= segments.size(); ++k)
+      append(k < segments.size() ? segments[k].from : keys.back(), k > 0 ? segments[k - 1].into_b : none,
+             k < segments.size() ? segments[k].a : a, k < segments.size() ? segments[k].out_of_a : none, channel);
     const auto same = [&](const Channel& c) { return c.node == node; };
     std::erase_if(out.channels, same);  // what it had over the stack is in the pose
     out.channels.push_back(std::move(channel));
