@@ -61,7 +61,7 @@ double fault_error(const std::string& name, const ImportedPrimary& imported) {
   for (const auto& [frame, box] : boxes) {
     imported.trajectory->sample((frame - request.first_frame) / request.shot_fps, positions);
     const Box found = bounds(positions);
-    worst = std::max({worst, (found.lo - box.lo).norm(), (found.hi - box.hi).norm()});
+    worst = std::max({worst, (found.lo - box.lo).cwiseAbs().maxCoeff(), (found.hi - box.hi).cwiseAbs().maxCoeff()});
   }
   return worst;
 }

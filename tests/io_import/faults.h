@@ -18,8 +18,8 @@ ImportRequest fault_request(const std::string& name, const std::string& file = {
 /// "frame N: lowest x y z .. highest x y z" of expected.txt, by frame [m, Y-up]; written with four decimals.
 std::map<int, Box> expected_boxes(const std::string& name);
 
-/// Largest distance [m] of a corner of the box of all vertices from the expected one, over all frames of expected.txt.
-/// Below 7e-5 is right: half a unit of the last decimal in each coordinate, and 1e-5.
+/// Largest difference [m] of a coordinate of the box of all vertices from the expected one, over all frames of
+/// expected.txt. Below 6.7e-5 is right: half a unit of the last decimal, and 1e-5 of a figure of 1.7 m.
 double fault_error(const std::string& name, const ImportedPrimary& imported);
 
 }  // namespace ft::test
