@@ -1,5 +1,6 @@
 // See pond_solver.h: what is read from a state.
 #include <algorithm>
+#include <cmath>
 
 #include "baker/core/parallel.h"
 #include "solvers/water/pond/pond_frame.h"
@@ -57,8 +58,9 @@ void PondSolver::surface_velocity(const State& state, std::span<Vec3> out) const
 void PondSolver::foam(const State& state, std::span<double> out) const {
   CHECK(out.size() == at(nx()) * at(nz()));
   const auto& foam = block_of(state, "foam", modes_.size());
+  // Patches lie as chance has it, one over another.
   for (std::size_t j = 0; j < at(nz()); ++j)
-    for (std::size_t i = 0; i < at(nx()); ++i) out[j * at(nx()) + i] = std::min(1.0, foam[j * at(modes_.stride) + i]);
+    for (std::size_t i = 0; i < at(nx()); ++i) out[j * at(nx()) + i] = -std::expm1(-foam[j * at(modes_.stride) + i]);
 }
 
 std::vector<Droplet> PondSolver::droplets(const State& state) const {

@@ -71,7 +71,8 @@ class PondSolver {
   void surface_velocity(const State& state, std::span<Vec3> out) const;
   /// The same along x and z alone, for half the work; y is 0.
   void surface_flow(const State& state, std::span<Vec3> out) const;
-  /// 0 none to 1 covered.
+  /// Share of the surface that patches of foam cover, 0 to 1: 1 - exp(-a) where they have an area of a times the
+  /// surface's (Poisson).
   void foam(const State& state, std::span<double> out) const;
   std::vector<Droplet> droplets(const State& state) const;
   std::vector<RigidMotion> float_motions(const State& state) const;
