@@ -187,7 +187,7 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string reason = importer.GetErrorString();
-    if (reason.find("bad allocation") != std::string::npos)
+    if (reason.find("bad allocation") != std::string::npos || reason.find("bad_alloc") != std::string::npos)
       return input_error("needs more memory than the import may use");
     return input_error("cannot be read: " + (reason.empty() ? std::string("no scene in it") : reason));
   }
