@@ -131,7 +131,7 @@ CharacterMesh read_mesh(const aiMesh& mesh, int node, int& odd_faces) {
 
 }  // namespace
 
-void read_meshes(const aiScene& scene, const AssimpNodes& nodes, Character& out) {
+void read_meshes(const aiScene& scene, const std::vector<const aiNode*>& nodes, Character& out) {
   NodesByName by_name;
   std::vector<Mat4> globals(out.nodes.size());
   for (std::size_t i = 0; i < out.nodes.size(); ++i) {
@@ -142,14 +142,14 @@ void read_meshes(const aiScene& scene, const AssimpNodes& nodes, Character& out)
   WeightNotes notes;
   int odd_faces = 0;
   std::size_t vertices = 0;
-  for (std::size_t r = 0; r < nodes.raw.size(); ++r) {
-    const aiNode& raw = *nodes.raw[r];
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const aiNode& raw = *nodes[i];
     for (unsigned k = 0; k < raw.mNumMeshes; ++k) {
       if (raw.mMeshes[k] >= scene.mNumMeshes || scene.mMeshes[raw.mMeshes[k]] == nullptr) continue;
       const aiMesh& mesh = *scene.mMeshes[raw.mMeshes[k]];
       vertices += mesh.mNumVertices;
       if (!mesh.HasPositions() || vertices > k_max_character_vertices) continue;
-      const int node = nodes.node_of_raw[r];
+      const int node = static_cast<int>(i);
       CharacterMesh& added = out.meshes.emplace_back(read_mesh(mesh, node, odd_faces));
       read_skin(mesh, by_name, globals, added, notes);
       auto& weights = out.nodes[static_cast<std::size_t>(node)].morph_weights;
