@@ -12,7 +12,9 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<CompareOptions>();
   command->add_option("a", o->a, "Cache or bake folder")->required()->type_name("A");
   command->add_option("b", o->b, "Cache or bake folder")->required()->type_name("B");
-  command->add_option("--tolerance", o->tolerance, "Distance that still counts as equal, in metres")
+  command
+      ->add_option("--tolerance", o->tolerance,
+                   "Distance that still counts as equal, in metres; of scalars of vertices the number")
       ->check(CLI::NonNegativeNumber)
       ->type_name("METRES");
   command->add_option("--degrees", o->degrees, "Rotation of an instance that still counts as equal, in degrees")

@@ -149,7 +149,8 @@ std::string summary(const CompareReport& r) {
     const bool speeds_equal = std::all_of(r.frames.begin(), r.frames.end(), [](const auto& f) {
       return f.max_speed == 0 && f.turn == 0 && f.spin == 0 && f.scale == 0 && f.scalar == 0;
     });
-    if (r.worst < 0 && speeds_equal) return "no difference at all";
+    const bool scalars_missing = !r.scalars.only_a.empty() || !r.scalars.only_b.empty();
+    if (r.worst < 0 && speeds_equal) return scalars_missing ? "what both have does not differ" : "no difference at all";
     if (r.worst < 0)
       return std::string("positions do not differ, ") + (r.instances ? "rotations and " : "") +
              (r.scalars.both.empty() ? "" : "scalars of vertices and ") + "velocities within the tolerance";
@@ -214,6 +215,8 @@ std::string compare_json(const std::vector<CompareReport>& reports, const std::v
       if (r.points) j["points"] = to_json(*r.points);
       j["velocities_compared"] = r.velocities;
       for (const ScalarDifference& d : r.scalars.both) j["scalars"][d.name] = d.max;
+      if (!r.scalars.only_a.empty()) j["scalars_only_in_a"] = r.scalars.only_a;
+      if (!r.scalars.only_b.empty()) j["scalars_only_in_b"] = r.scalars.only_b;
       j["rms"] = r.rms;
       j["diverging_frames"] = r.diverging_count();
       if (r.first_diverging >= 0) j["first_diverging"] = to_json(r, at(r, r.first_diverging));

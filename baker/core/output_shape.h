@@ -1,10 +1,11 @@
 // The shapes that an output may have, and what each needs once (at rest) and in every frame.
 //
 //   shape      once                                      every frame
-//   mesh       Mesh: faces, uvs, rest positions          positions, velocities, scalars by name; the faces, where they
-//   change curves     CurveSet: vertices of each curve, widths  positions, velocities points     nothing ids,
-//   positions, velocities, widths; any number of points instances  InstanceSet: ids, prototypes              positions,
-//   orientations, scales, both kinds of velocity grid       no format takes it yet
+//   mesh       Mesh: faces, uvs, rest positions          positions, velocities, scalars by name; faces that change
+//   curves     CurveSet: vertices of each curve, widths  positions, velocities
+//   points     nothing                                   ids, positions, velocities, widths; any number of points
+//   instances  InstanceSet: ids, prototypes              positions, orientations, scales, both kinds of velocity
+//   grid       no format takes it yet
 //
 // Solvers say which of them a system has (solvers/base/solver.h); which format takes what is a property of the format
 // (io/cache/cache.h). A frame itself is output_frame.h.

@@ -142,12 +142,13 @@ Result<std::shared_ptr<const Wind>> plan_wind(const Shot& shot, std::span<const 
     if (!field) return located(field.error(), shot, owner);
     if (keys.roughness_length) {
       const LogProfile profile{*keys.roughness_length, keys.reference_height, keys.ground};
+      const auto speed = [&](double above) {
+        return keys.gain * keys.velocity.norm() * profile.share(keys.ground + above);
+      };
       notes.push_back(fmt::format(
-          "{}: slower near the ground, by the logarithmic law: {:.2g} m/s at 2 m, {:.2g} m/s at 0.5 m, {:.2g} m/s at "
-          "0.05 m; from {:g} m on it is as fast as there",
-          owner, profile.share(keys.ground + 2) * keys.velocity.norm(),
-          profile.share(keys.ground + 0.5) * keys.velocity.norm(),
-          profile.share(keys.ground + 0.05) * keys.velocity.norm(), profile.top()));
+          "{}: slower near the ground, by the logarithmic law: {:.2g} m/s at 2 m above it, {:.2g} at 0.5 m, {:.2g} at "
+          "0.05 m; {:.2g} m/s from {:g} m on",
+          owner, speed(2), speed(0.5), speed(0.05), speed(profile.top()), profile.top()));
       *field = std::make_unique<ProfiledWind>(std::move(*field), profile);
     }
     out->add(std::move(*field));

@@ -1,6 +1,6 @@
 // The surface of a liquid: what it mirrors of a plain sky, by Fresnel's law for water (Schlick's approximation), the glint
 // of the sun, and its own colour, through which is seen what lies in it. Where the scalar `foam` is above zero, bubbles lie
-// on it, as many as it says; they stay where they are, for the surface does not say where the water under them goes.
+// on it, as many as it says; they stay where they are, for the page has no velocities.
 /// colour: of the water where it is looked through. sky: of the page behind it.
 function makeWaterMaterial(colour, sky) {
   'use strict';

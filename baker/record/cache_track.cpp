@@ -58,7 +58,7 @@ Result<OpenedCache> open_cache_of(const std::filesystem::path& folder, const Man
       return input_error(
           fmt::format("has the scalars [{}], the manifest says [{}]",
                       fmt::join((*reader)->info().content.scalars, ", "), fmt::join(system.scalars, ", ")),
-          path.string());
+          path.string(), "put back the cache that this bake wrote, or bake anew");
     }
     if (!first.reader || (fits && !first_fits)) first = {path, std::move(*reader)}, first_fits = fits;
   }

@@ -9,8 +9,9 @@ namespace ft::inline baker {
 std::vector<Vec3> CacheSet::velocities_of(const Source& source, int frame, std::span<const Vec3> x,
                                           std::span<const Vec3f> before, std::span<const Vec3f> after) const {
   std::vector<Vec3> from(x.begin(), x.end()), to = from;
-  // Motion blur must not see the way from one place to the other.
-  const auto& teleports = plan_.primaries[source.primary].scan.teleports;
+  // Motion blur must not see the way from one place to the other; water stays where it is.
+  const std::span<const Teleport> teleports =
+      source.flows ? std::span<const Teleport>() : std::span(plan_.primaries[source.primary].scan.teleports);
   if (!before.empty()) {
     from = converted<Vec3, Vec3f>(before);
     if (const Teleport* teleport = teleport_into(teleports, frame)) carry(*teleport, std::span(from));

@@ -86,7 +86,7 @@ void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SG
       const Vec3& v = place.velocity;
       const double beside = std::max(std::max(heights.low().x() - x, x - heights.high().x()),
                                      std::max(heights.low().y() - z, z - heights.high().y()));
-      const double blurred = far + k_shutter / water.fps * std::abs(v.y());
+      const double blurred = far + k_shutter / water.fps * v.norm();  // what flows along a slope comes across it, too
       for (int iy = index(water.floor) - k_band; iy <= index(height + blurred * steep) + 1; ++iy) {
         const double y = iy * h, above = (y - height) / steep;
         const double distance = std::max({above, beside, water.floor - y});

@@ -1,7 +1,8 @@
 // A frame of a liquid whose surface is a height field, and of its droplets, as an OpenVDB file: grids `surface` (a
 // level set [m]), `vel` (m/s), `spray` (a fog: share of a voxel that is water) and, of a liquid that has it, `foam` (a
-// fog about the surface: share of it that is covered, less with the distance from it). `vel` goes on beside what moves,
-// as far as it comes in half a frame, since that is where renderers look it up. The same input gives the same bytes:
+// fog about the surface: share of it that is covered, less with the distance from it). `vel` goes on above and
+// below the surface and around droplets as far as they come in half a frame, since that is where renderers look it up;
+// not beyond the sides of the water. The same input gives the same bytes:
 // the file's random identifier becomes a hash of it.
 #pragma once
 

@@ -127,7 +127,8 @@ class Solver {
   /// Positions in the vertex order of system_mesh().
   virtual void system_positions(const State& state, int system, std::span<Vec3> positions) const;
 
-  /// Of the surface of a liquid: how that flows at the vertices, for what floats on it [m/s]. Zero unless it says so.
+  /// Of the surface of a liquid: how it flows at the vertices, for what floats on it and for the caches [m/s]; y: what
+  /// it climbs along the slope, without how the surface rises. Zero unless it says so.
   virtual void surface_flow(const State& /*state*/, int /*system*/, std::span<Vec3> velocities) const {
     std::fill(velocities.begin(), velocities.end(), Vec3::Zero());
   }

@@ -242,7 +242,6 @@ TEST(Wind, Gusts_have_the_strength_that_they_are_given) {
   EXPECT_NEAR(std::sqrt(squares), 0.2, 0.02);
 }
 
-/// rho U times the flow is the momentum that a plane behind the body sees; C_d A U^2 / 2 times rho is its drag.
 TEST(Wind, Over_level_ground_it_grows_with_the_logarithm_of_height) {
   const LogProfile profile{.roughness_length = 0.03, .reference_height = 10, .ground = -2};
   EXPECT_EQ(profile.share(-2), 0);
@@ -271,6 +270,7 @@ TEST(Wind, Over_level_ground_it_grows_with_the_logarithm_of_height) {
   EXPECT_FALSE(ProfiledWind(make(spec), profile).is_divergence_free()) << "what goes up becomes faster as it goes";
 }
 
+/// rho U times the flow is the momentum that a plane behind the body sees; C_d A U^2 / 2 times rho is its drag.
 TEST(Wind, Through_every_plane_behind_a_body_goes_the_momentum_of_its_drag) {
   WindFieldSpec spec = usual("wake");
   for (const double turbulence : {0.0, 0.4}) {

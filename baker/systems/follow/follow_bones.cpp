@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "io/import/character/plain_clip.h"
 #include "io/import/character/pose.h"
 #include "io/shot/patterns.h"
 #include "solvers/follow/damped_oscillator.h"
@@ -132,13 +133,17 @@ class BoneFollower {
   std::vector<Follower> followers_;
 };
 
-/// Of a joint against its parent, as the clip has it [s of the clip].
-Quat rotation_at(const PlacedCharacter& placed, int joint, double time) {
+/// Rotations of a joint against its parent, as the clip has them at times [s of the clip].
+std::vector<Quat> rotations_at(const PlacedCharacter& placed, int joint, std::span<const double> times) {
   const ClipPose pose(placed.character, &placed.character.clips[at(placed.clip)]);
   std::vector<Mat4> locals(placed.character.nodes.size());
   std::vector<double> morphs(pose.rest_morphs().size());
-  pose.sample(time, locals, morphs);
-  return decompose(locals[at(joint)]).rotation;
+  std::vector<Quat> out;
+  for (const double time : times) {
+    pose.sample(time, locals, morphs);
+    out.push_back(decompose(locals[at(joint)]).rotation);
+  }
+  return out;
 }
 
 /// The joint's keys outside of the shot stay, and within it there is one for each frame.
@@ -160,17 +165,13 @@ ChangedChannel channel_of(const PlacedCharacter& placed, const Follower& f, cons
   const Clip& clip = placed.character.clips[at(placed.clip)];
   const Channel* channel = find_channel(clip, f.joint);
   std::vector<double> stack_keys;
-  if (find_stack(clip, f.joint) != nullptr) {
-    stack_keys = key_times(clip, f.joint);
-    std::sort(stack_keys.begin(), stack_keys.end());
-    const auto one_float = [](double a, double b) { return round_to_float(a) == round_to_float(b); };
-    stack_keys.erase(std::unique(stack_keys.begin(), stack_keys.end(), one_float), stack_keys.end());
-  }
+  if (find_stack(clip, f.joint) != nullptr) stack_keys = straight_times(placed.character, clip, f.joint);
+  const std::vector<Quat> stack_rotations = rotations_at(placed, f.joint, stack_keys);
   const NodeTransform rest = decompose(placed.character.nodes[at(f.joint)].local);
   const double begin = time_of(0), end = time_of(f.rotations.size() - 1);
   const auto keep = [&](auto&& wanted) {
-    for (const double time : stack_keys)
-      if (wanted(round_to_float(time))) append(round_to_float(time), rotation_at(placed, f.joint, time));
+    for (std::size_t k = 0; k < stack_keys.size(); ++k)
+      if (wanted(stack_keys[k])) append(stack_keys[k], stack_rotations[k]);
     if (!channel || !stack_keys.empty()) return;
     for (const double time : channel->rotation.times)
       if (wanted(round_to_float(time))) append(round_to_float(time), sample_channel(*channel, rest, time).rotation);

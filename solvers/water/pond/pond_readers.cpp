@@ -46,15 +46,6 @@ void PondSolver::surface_flow(const State& state, std::span<Vec3> out) const {
   });
 }
 
-void PondSolver::surface_velocity(const State& state, std::span<Vec3> out) const {
-  surface_flow(state, out);
-  std::vector<double> climb = block_of(state, "potential", modes_.size());
-  for (std::size_t n = 0; n < climb.size(); ++n) climb[n] *= modes_.rise[n];
-  modes_.transform.to_values(climb);
-  for (std::size_t j = 0; j < at(nz()); ++j)
-    for (std::size_t i = 0; i < at(nx()); ++i) out[j * at(nx()) + i].y() = climb[j * at(modes_.stride) + i];
-}
-
 void PondSolver::foam(const State& state, std::span<double> out) const {
   CHECK(out.size() == at(nx()) * at(nz()));
   const auto& foam = block_of(state, "foam", modes_.size());

@@ -67,9 +67,7 @@ class PondSolver {
   int float_count() const { return static_cast<int>(floats_.size()); }
   /// Above the world's origin, cell by cell, x fastest; nx * nz [m].
   void surface_heights(const State& state, std::span<double> out) const;
-  /// Of water at the surface [m/s].
-  void surface_velocity(const State& state, std::span<Vec3> out) const;
-  /// The same along x and z alone, for half the work; y is 0.
+  /// Of water at the surface along x and z [m/s]; y is 0.
   void surface_flow(const State& state, std::span<Vec3> out) const;
   /// Share of the surface that patches of foam cover, 0 to 1: 1 - exp(-a) where they have an area of a times the
   /// surface's (Poisson).
