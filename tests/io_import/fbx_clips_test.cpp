@@ -253,7 +253,7 @@ TEST(FbxClips, Percentages_move_shapes_and_those_in_between) {
 class FbxFaults : public testing::TestWithParam<const char*> {};
 
 TEST_P(FbxFaults, Comes_in_right) {
-  if (!std::filesystem::exists(test::fault_folder(GetParam()))) GTEST_SKIP();
+  FT_REQUIRE_FILE(test::fault_folder(GetParam()));
   const auto imported = import_primary(test::fault_request(GetParam()));
   ASSERT_TRUE(imported) << imported.error().text();
   EXPECT_LT(test::fault_error(GetParam(), *imported), 6.7e-5);

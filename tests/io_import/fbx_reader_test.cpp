@@ -277,6 +277,7 @@ TEST(FbxReader, What_the_file_hides_is_not_visible) {
   for (const int model : {1, 2, 3, 4}) file.connect(5, model);
   const auto c = file.read();
   ASSERT_TRUE(c) << c.error().text();
+  ASSERT_EQ(c->meshes.size(), 4u);
   for (const CharacterMesh& mesh : c->meshes)
     EXPECT_EQ(mesh.visible, c->nodes[static_cast<std::size_t>(mesh.node)].name == "kept");
 }

@@ -158,6 +158,22 @@ TEST(FbxTree, Nodes_that_are_too_deep_are_refused) {
   EXPECT_FALSE(read_fbx_tree(bytes_of(binary_file({deep}, 7400))));
 }
 
+TEST(FbxTree, A_node_that_ends_behind_its_parent_is_refused) {
+  // Read twice at each level, these are two million nodes.
+  constexpr int k_pairs = 20;
+  constexpr std::size_t k_head = 13 + 1;  // of a node without properties and a name of one letter
+  std::string file = header(7400);
+  const std::size_t size = file.size() + 2 * k_pairs * k_head;
+  for (int pair = 0; pair < k_pairs; ++pair)
+    for (const bool outer : {true, false}) {
+      const std::size_t end = outer ? file.size() + 2 * k_head : size;
+      put(file, static_cast<std::uint32_t>(end)), put(file, std::uint32_t{0}), put(file, std::uint32_t{0});
+      file += '\1', file += outer ? 'a' : 'b';
+    }
+  ASSERT_EQ(file.size(), size);
+  EXPECT_FALSE(read_fbx_tree(bytes_of(file)));
+}
+
 TEST(FbxTree, Any_byte_may_be_any_other) {
   // Ends in a tree or a named error; sanitizers see the rest.
   for (const std::string& good : {k_text_scene, binary_file(small_scene(), 7400), binary_file(small_scene(), 7700)})

@@ -35,8 +35,13 @@ double odd_number(std::string_view word) {
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
+  std::string out;
+  std::size_t done = 0;
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, done)) {
+    out.append(text, done, at - done).append(to);
+    done = at + from.size();
+  }
+  if (done > 0) text = out.append(text, done);
 }
 
 class TextParser {
@@ -82,8 +87,9 @@ class TextParser {
 
   Error damaged(const std::string& what) const {
     const auto before = text_.substr(0, at_);
-    return input_error("is damaged: " + what + " in line " +
-                       std::to_string(1 + std::count(before.begin(), before.end(), '\n')));
+    return input_error(
+        "is damaged: " + what + " in line " + std::to_string(1 + std::count(before.begin(), before.end(), '\n')), "",
+        "copy or export it again");
   }
   static Error cut(const FbxNode& node) {
     return input_error("is cut: the end of node \"" + node.name + "\" is missing", "", "copy or export it again");
@@ -290,6 +296,7 @@ Result<FbxTree> read_fbx_text(std::string_view text) {
     if (const FbxNode* version = header->child("FBXVersion"); version != nullptr)
       tree.version = static_cast<int>(std::min<std::int64_t>(fbx_integer(*version, 0), 99'999));
   if (tree.version > 0 && tree.version < 7000) return old_fbx_error(tree.version);
+  if (tree.version == 0) tree.version = 7400;  // it says nothing: what most programs write
   return tree;
 }
 

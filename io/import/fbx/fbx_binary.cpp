@@ -28,23 +28,26 @@ class BinaryParser {
       const auto name = in_.read_span(name_length);
       FbxNode node;
       node.name.assign(reinterpret_cast<const char*>(name.data()), name.size());
-      if (!in_.ok() || property_bytes > in_.remaining() || node_end > data_.size()) return cut(node);
+      if (!in_.ok() || property_bytes > in_.remaining() || node_end > end) return cut(node);
       if (node_end != 0 && node_end < in_.position() + property_bytes)
         return input_error("is damaged: node \"" + node.name + "\" at byte " + std::to_string(start) +
-                           " ends before its properties do");
+                               " ends before its properties do",
+                           "", "copy or export it again");
       if (depth >= k_max_fbx_depth)
-        return input_error("is damaged: its nodes are more than " + std::to_string(k_max_fbx_depth) + " deep");
+        return input_error("is damaged: its nodes are more than " + std::to_string(k_max_fbx_depth) + " deep", "",
+                           "copy or export it again");
       if (node_end != 0 && is_fbx_decoration(node.name)) {
         in_.seek(node_end);
         continue;
       }
       const std::uint64_t properties_end = in_.position() + property_bytes;
       if (property_count > property_bytes)  // each takes two bytes at least
-        return input_error("is damaged: node \"" + node.name + "\" has more properties than bytes");
+        return input_error("is damaged: node \"" + node.name + "\" has more properties than bytes", "",
+                           "copy or export it again");
       for (std::uint64_t k = 0; k < property_count; ++k)
         if (Status s = read_property(node, properties_end); !s) return s;
       in_.seek(properties_end);
-      if (Status s = read_children(node, node_end == 0 ? data_.size() : node_end, depth + 1); !s) return s;
+      if (Status s = read_children(node, node_end == 0 ? end : node_end, depth + 1); !s) return s;
       if (node_end != 0) in_.seek(node_end);
       parent.children.push_back(std::move(node));
     }
@@ -82,7 +85,8 @@ class BinaryParser {
       case 'd': return read_array<double>(node, end);
       default:
         return input_error("is damaged: node \"" + node.name + "\" has a property of an unknown kind (" +
-                           std::to_string(static_cast<int>(type)) + ")");
+                               std::to_string(static_cast<int>(type)) + ")",
+                           "", "copy or export it again");
     }
     return in_.ok() && in_.position() <= end ? Status{} : Status{cut(node)};
   }
@@ -96,7 +100,8 @@ class BinaryParser {
     const std::uint64_t size = std::uint64_t{count} * sizeof(T);
     const bool lie = encoding == 0 ? size != packed : size > k_best_packing * (std::uint64_t{packed} + 1);
     if (encoding > 1 || lie)
-      return input_error("is damaged: the array of node \"" + node.name + "\" does not have the size that it claims");
+      return input_error("is damaged: the array of node \"" + node.name + "\" does not have the size that it claims",
+                         "", "copy or export it again");
     array_bytes_ += size;
     if (array_bytes_ > k_max_fbx_array_bytes) return input_error("has more than 2 GB of arrays");
     std::vector<T> values(count);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "io/import/character/name_list.h"
 #include "io/import/fbx/fbx_curves.h"
 #include "io/import/fbx/fbx_transform.h"
 
@@ -25,16 +26,6 @@ std::string seconds(double s) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f s", s);
   return text;
-}
-
-std::string names_of(const std::set<std::string>& names) {
-  std::string out;
-  std::size_t listed = 0;
-  for (const std::string& name : names) {
-    if (listed++ == 8) return out + ", and " + std::to_string(names.size() - 8) + " more";
-    out += (out.empty() ? "\"" : ", \"") + name + "\"";
-  }
-  return out;
 }
 
 class ClipReader {
@@ -234,13 +225,13 @@ class ClipReader {
     content("animation curves", curve_count_, "used where they move nodes or shapes");
     for (const auto& [property, names] : not_evaluated_)
       out_.notes.push_back("keys of " + property + " are not evaluated: it stays as it is at rest on " +
-                           names_of(names));
+                           name_list(names));
     if (faults_.damaged > 0)
       out_.notes.push_back(std::to_string(faults_.damaged) +
                            " animation curves are damaged (keys, values and flags do "
                            "not match) and were left out; export the file again");
     if (faults_.unordered > 0)
-      out_.notes.push_back(std::to_string(faults_.unordered) + " keys were not later than the one before; dropped");
+      out_.notes.push_back(std::to_string(faults_.unordered) + " keys were earlier than the one before; dropped");
     if (faults_.velocity > 0)
       out_.notes.push_back(std::to_string(faults_.velocity) +
                            " animation curves have tangents with velocities, which "
@@ -249,7 +240,7 @@ class ClipReader {
     for (const FbxObject* model : models_)
       if (model != nullptr && fbx_transform(*model, 0, false).spherical) spherical.insert(model->name);
     if (!spherical.empty())
-      out_.notes.push_back("rotation order \"spheric XYZ\" is evaluated as XYZ on " + names_of(spherical));
+      out_.notes.push_back("rotation order \"spheric XYZ\" is evaluated as XYZ on " + name_list(spherical));
   }
 
   const FbxDocument& document_;

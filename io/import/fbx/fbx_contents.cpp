@@ -7,7 +7,7 @@ namespace {
 
 struct Kind {
   const char* what;     ///< plural
-  const char* kind;     ///< of the objects; of one that begins with it, too
+  const char* kind;     ///< of the objects
   const char* subkind;  ///< "": any
   const char* use;      ///< "used", or the reason
   bool noted;           ///< a body or its motion may be wrong without it

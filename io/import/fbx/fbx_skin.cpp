@@ -152,7 +152,7 @@ void write_notes(const FbxSkinNotes& notes, Character& out) {
   count(notes.bad, "skin weights were negative, not finite or for no vertex; dropped");
   count(notes.lost_clusters, "clusters of skins have no bone; their weights were dropped");
   count(notes.odd_modes, "clusters add their weights or leave a rest to the mesh; they were normalised instead");
-  count(notes.added_binds, "clusters have no bind matrix; it was made from the bind pose");
+  count(notes.added_binds, "clusters have no bind matrix; it was made from the bone's bind pose or rest pose");
   count(notes.rigid_blends, "vertices of rigid skins have several bones; they were blended");
   for (const std::string& mesh : notes.several)
     out.notes.push_back("mesh \"" + mesh + "\" has several skins; only the first was used");

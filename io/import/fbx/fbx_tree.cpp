@@ -68,7 +68,7 @@ Error old_fbx_error(int version) {
 bool is_fbx(std::span<const std::byte> data) {
   const std::string_view text = as_text(data);
   if (text.starts_with(k_binary_magic)) return true;
-  const std::string_view head = text.substr(0, 4096);
+  const std::string_view head = text.substr(0, k_fbx_head);
   if (head.find('\0') != std::string_view::npos) return false;
   std::string_view rest = head.starts_with("\xef\xbb\xbf") ? head.substr(3) : head;
   // Comments and blank lines may stand before the first node.

@@ -42,6 +42,9 @@ inline constexpr int k_max_fbx_depth = 64;
 /// All arrays of one file together [bytes].
 inline constexpr std::uint64_t k_max_fbx_array_bytes = std::uint64_t{2} << 30;
 
+/// Bytes at the start of a file that is_fbx() looks at.
+inline constexpr std::size_t k_fbx_head = 4096;
+
 /// Whether the bytes are an FBX file of any version, by their content.
 bool is_fbx(std::span<const std::byte> data);
 

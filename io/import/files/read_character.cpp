@@ -1,6 +1,7 @@
 #include "io/import/files/read_character.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include "baker/core/file.h"
 #include "io/import/bvh/bvh_character.h"
@@ -20,6 +21,15 @@ bool is_named_fbx(const std::filesystem::path& file) {
   return end == ".fbx";
 }
 
+/// What tells an FBX file from others.
+Bytes head_of(const std::filesystem::path& file) {
+  Bytes out(k_fbx_head);
+  std::ifstream in(file, std::ios::binary);
+  in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
+  out.resize(static_cast<std::size_t>(in.gcount()));
+  return out;
+}
+
 }  // namespace
 
 Result<Character> read_character(const std::filesystem::path& file) {
@@ -30,15 +40,13 @@ Result<Character> read_character(const std::filesystem::path& file) {
     auto out = read_gltf(file);
     if (out || !is_still_gltf_1(file)) return out;
   }
-  {
-    reading_step("the file as FBX");
+  reading_step("the file as FBX");
+  if (is_fbx(head_of(file))) {
     auto bytes = read_file(file);
     if (!bytes) return bytes.error();
-    if (is_fbx(*bytes)) {
-      auto out = read_fbx(std::move(*bytes));
-      if (out) put_one_root(*out);
-      return out;
-    }
+    auto out = read_fbx(std::move(*bytes));
+    if (out) put_one_root(*out);
+    return out;
   }
   if (is_named_fbx(file))
     return input_error("is no FBX file: it begins with neither \"Kaydara FBX Binary\" nor an FBX header in text", "",
