@@ -27,7 +27,7 @@ struct Joint {
   std::vector<Quat> rotations, turns;    ///< in the world and against the parent, per frame
 };
 
-/// Nodes that bear a skin or move and all between them, parents first.
+/// Nodes that bear a skin or move and all between them, parents first; none where no node is above them all.
 std::vector<Joint> find_joints(const Character& character, int clip) {
   const std::size_t count = character.nodes.size();
   std::vector<char> wanted(count, 0);
@@ -47,9 +47,10 @@ std::vector<Joint> find_joints(const Character& character, int clip) {
   std::vector<Joint> joints;
   std::vector<int> joint_of(count, -1);
   std::set<std::string> names;
-  int root = 0;
+  int root = -1;
   for (std::size_t i = 0; i < count; ++i)
     if (below[i] == all) root = static_cast<int>(i);
+  if (root < 0) return joints;
   for (std::size_t i = at(root); i < count; ++i) {
     const int parent = character.nodes[i].parent;
     const bool first = static_cast<int>(i) == root;
@@ -124,7 +125,9 @@ Result<std::string> bvh_from_character(const Character& character, int clip, con
     return usage_error("the frames of a BVH have to follow each other");
   if (character.nodes.empty()) return input_error("has no skeleton");
   std::vector<Joint> joints = find_joints(character, clip);
-  if (joints.empty()) return input_error("has several roots, which one BVH skeleton cannot hold");
+  if (joints.empty())
+    return input_error("has several skeletons, and a BVH made of them could hold one only", "",
+                       "keep one skeleton in the file, or put a node above them");
   if (joints.size() > k_most_joints) return input_error("has more joints than a BVH is made of: 4096");
   sample(character, clip, placement, frames, joints);
   std::string out = "HIERARCHY\n";

@@ -58,7 +58,8 @@ void add_track(Json& json, Json& animation, Bytes& bin, std::size_t node, const 
 
 }  // namespace
 
-Result<Bytes> glb_from_character(const Character& character, int clip, const Mat4& placement) {
+Result<Bytes> glb_from_character(const Character& character, int clip, const Mat4& placement,
+                                 std::vector<std::string>& notes) {
   if (clip < 0 || at(clip) >= character.clips.size())
     return usage_error("clip " + std::to_string(clip) + " does not exist");
   if (Status s = check_character(character); !s) return s.error();
@@ -69,7 +70,7 @@ Result<Bytes> glb_from_character(const Character& character, int clip, const Mat
     return usage_error("units and axes are no scale and rotation");
   const bool turned = (axes - Mat3::Identity()).cwiseAbs().maxCoeff() > 1e-9;
 
-  const Clip moved_by = plain_clip(character, character.clips[at(clip)]);
+  const Clip moved_by = plain_clip(character, character.clips[at(clip)], notes);
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "followthrough"}}}, {"scene", 0}};
   Json& nodes = json["nodes"] = Json::array();
   Json roots = Json::array();

@@ -52,7 +52,7 @@ Result<MotionFiles> export_motion(const ImportRequest& request, const PlacedChar
   // A clip that repeats has more keys than its file.
   const bool gltf = original.format == "glTF" && !placed.repeated, bvh = original.format == "BVH" && !placed.repeated;
   auto glb = gltf ? export_glb(source, original, placed.clip, own_changes)
-                  : glb_from_character(moved.character, moved.clip, moved.placement);
+                  : glb_from_character(moved.character, moved.clip, moved.placement, out.notes);
   if (!glb) return glb.error();
   auto text = bvh ? export_bvh(source, original, placed.clip, own_changes)
                   : bvh_from_character(moved.character, moved.clip, moved.placement, frames);

@@ -36,15 +36,10 @@ bool is_sheet(const GeometryCache& cache, const Mat3& linear, const std::string&
   return out;
 }
 
-/// Whether a geometry cache says when its samples are.
-bool knows_its_rate(const std::filesystem::path& file) {
-  return file.extension() == ".mdd" || file.extension() == ".abc";
-}
-
 }  // namespace
 
 Result<ImportedPrimary> import_geometry_cache(const ImportRequest& request) {
-  const double fps = request.source_fps > 0 ? request.source_fps : knows_its_rate(request.file) ? 0 : request.shot_fps;
+  const double fps = request.source_fps > 0 ? request.source_fps : knows_its_times(request.file) ? 0 : request.shot_fps;
   auto cache = read_geometry_cache(request.file, request.topology, fps);
   if (!cache) return cache.error();
   const std::string name = request.file.string();

@@ -32,7 +32,7 @@
 namespace ft::inline io {
 namespace {
 
-constexpr int k_exit_refused = 3;  // the result file holds the reason, in words
+constexpr int k_exit_refused = 3;  // the result file holds the reason and, in its last line, what to do
 constexpr int k_exit_out_of_memory = 9;
 constexpr int k_exit_threw = 10;  // not 1: with that a sanitizer ends the process
 
@@ -152,7 +152,10 @@ Status judge(int status, bool in_time, const std::string& name, const std::files
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == k_exit_refused) {
     const auto reason = read_text(out, 1 << 16);
-    return input_error(reason ? printable(*reason) : std::string("cannot be read"), name);
+    const std::string words = reason ? *reason : "cannot be read\n";
+    const std::size_t line = std::min(words.rfind('\n'), words.size());
+    return input_error(printable(words.substr(0, line)), name,
+                       line < words.size() ? printable(words.substr(line + 1)) : std::string());
   }
   if (code == k_exit_out_of_memory)
     return input_error("import needs more than " + std::to_string(limits.memory_bytes >> 20) + " MiB of memory" + on,
@@ -206,7 +209,7 @@ int child_exit_code(const std::filesystem::path& result, const std::function<Sta
     if (done) return 0;
     if (done.error().kind == ErrorKind::k_output) return exit_code(ErrorKind::k_output);
     const Error& e = done.error();
-    const Status told = write_text_durably(result, (e.where.empty() ? "" : e.where + ": ") + e.what);
+    const Status told = write_text_durably(result, (e.where.empty() ? "" : e.where + ": ") + e.what + '\n' + e.hint);
     return told ? k_exit_refused : exit_code(ErrorKind::k_output);
   } catch (const std::bad_alloc&) {
     return k_exit_out_of_memory;

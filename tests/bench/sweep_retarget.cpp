@@ -228,7 +228,7 @@ Status write_retargeted(const Character& source, const Clip& clip, const Retarge
   // glTF is in metres, and who reads it changes lengths to the target's unit.
   Mat4 unit = Mat4::Identity();
   if (target.file_unit > 0) unit.topLeftCorner<3, 3>() *= target.file_unit;
-  const auto bytes = glb_from_character(out, 0, unit);
+  const auto bytes = glb_from_character(out, 0, unit, out.notes);
   if (!bytes) return bytes.error();
   return write_file_durably(file, *bytes);
 }

@@ -111,7 +111,8 @@ TEST(BvhExport, A_bvh_and_a_glb_made_of_any_skeleton_have_its_joints) {
     const BvhFrames frames{placed.playback.start, 1.0 / 24, 14};
     auto text = bvh_from_character(placed.character, placed.clip, placed.placement, frames);
     ASSERT_TRUE(text) << text.error().text();
-    auto bytes = glb_from_character(placed.character, placed.clip, placed.placement);
+    std::vector<std::string> notes;
+    auto bytes = glb_from_character(placed.character, placed.clip, placed.placement, notes);
     ASSERT_TRUE(bytes) << bytes.error().text();
     ScratchFolder scratch;
     ASSERT_TRUE(write_text_durably(scratch / "made.bvh", *text));

@@ -29,7 +29,8 @@ TEST(Choose_meshes, What_the_file_hides_is_left_out_and_named_once) {
   ASSERT_TRUE(chosen);
   EXPECT_EQ(*chosen, std::vector<int>{0});
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_EQ(notes[0], "the file hides \"Proxy\": left out of the collider; meshes = [...] brings in what it names");
+  EXPECT_EQ(notes[0],
+            "the file hides \"Proxy\": left out of the collider; to take it in, name it: meshes = [\"Proxy\", ...]");
 }
 
 TEST(Choose_meshes, A_name_brings_in_what_is_hidden) {

@@ -137,7 +137,7 @@ TEST(Cycle, Every_cycle_is_the_first_one_carried_on) {
       }
     ASSERT_EQ(walker.notes.size(), 1u);
     EXPECT_NE(walker.notes[0].find("up to 0 mm apart"), std::string::npos) << walker.notes[0];
-    EXPECT_NE(walker.notes[0].find(turns ? "turned by 40 degrees" : "turned by 0 degrees"), std::string::npos)
+    EXPECT_NE(walker.notes[0].find(turns ? "turns by 40 degrees" : "turns by 0 degrees"), std::string::npos)
         << walker.notes[0];
     EXPECT_EQ(walker.notes[0].find("jumps"), std::string::npos) << walker.notes[0];
   }

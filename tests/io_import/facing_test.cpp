@@ -50,6 +50,18 @@ TEST(Facing, One_that_is_inside_out_is_turned_and_has_the_volume_of_the_other) {
   EXPECT_TRUE(enclosed_volume(ball.positions, ball.triangles, 0.02));
 }
 
+TEST(Facing, Split_vertices_are_no_rims) {
+  const TriangleSurface ball = pieces({{sphere_surface(0.5, 3), true}});
+  TriangleSurface soup;
+  for (const Triangle& t : ball.triangles) {
+    const int first = static_cast<int>(soup.positions.size());
+    for (const int v : t) soup.positions.push_back(ball.positions[at(v)]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_EQ(turn_outwards(soup.positions, soup.triangles).turned_count, 1);
+  EXPECT_TRUE(enclosed_volume(soup.positions, soup.triangles, 0.02));
+}
+
 TEST(Facing, Pieces_are_turned_one_by_one) {
   const std::vector<std::pair<TriangleSurface, bool>> good = {
       {sphere_surface(0.5, 2), false}, {box_surface(Vec3(1, 0.2, 0.1)), false}, {capsule_surface(0.01, 1, 2), false}};

@@ -53,7 +53,16 @@ TEST(Import_child, What_a_reader_throws_is_told) {
   EXPECT_NE(what.find("gave up while reading a test: too odd"), std::string::npos) << what;
 }
 
-TEST(Reading_step, Is_the_last_one_and_printable) {
+TEST(Import_child, What_to_do_comes_through) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text_durably(scratch / "old.fbx", "; FBX 6.1.0 project file\nFBXHeaderExtension:  {\n}\n"));
+  const auto refused = import_in_child(scratch / "old.fbx", {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("FBX 6.1"), std::string::npos) << refused.error().what;
+  EXPECT_NE(refused.error().hint.find("FBX 7.4"), std::string::npos) << refused.error().hint;
+}
+
+TEST(Reading_step, What_is_kept_is_printable_whatever_the_file_holds) {
   const test::ScratchFolder scratch;
   EXPECT_EQ(last_reading_step(scratch / "none"), "");
   ASSERT_TRUE(write_text_durably(scratch / "damaged", "a\nb\xff c   "));

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "baker/core/file.h"
 #include "io/import/gltf/gltf_file.h"
@@ -89,6 +92,75 @@ inline Json square_primitive(TinyGltf& file) {
   const int positions = file.floats(k_square, "VEC3");
   const int indices = file.accessor(file.view(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}), 5123, "SCALAR", 6);
   return {{"attributes", {{"POSITION", positions}}}, {"indices", indices}};
+}
+
+inline bool says(const std::vector<std::string>& notes, const std::string& words) {
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& n) { return n.find(words) != std::string::npos; });
+}
+
+inline Character good(const TinyGltf& file) {
+  auto out = file.read();
+  EXPECT_TRUE(out) << out.error().text();
+  return out ? std::move(*out) : Character{};
+}
+
+inline void expect_refused(const TinyGltf& file, const std::string& words) {
+  auto out = file.read();
+  ASSERT_FALSE(out) << words;
+  EXPECT_NE(out.error().text().find(words), std::string::npos) << out.error().text();
+}
+
+/// The square at a node, with what the test has put into its primitive.
+inline TinyGltf square_with(const std::function<void(TinyGltf&, Json& primitive)>& change) {
+  TinyGltf file;
+  Json primitive = square_primitive(file);
+  change(file, primitive);
+  file.push("meshes", {{"primitives", Json::array({primitive})}});
+  file.node({{"mesh", 0}});
+  return file;
+}
+
+/// The square on two joints, nodes 1 and 2; joint 2 is 10 up.
+inline TinyGltf skinned_square(const std::function<void(TinyGltf&, Json& attributes)>& weights, bool binds = true) {
+  TinyGltf file;
+  Json primitive = square_primitive(file);
+  weights(file, primitive["attributes"]);
+  file.push("meshes", {{"primitives", Json::array({primitive})}});
+  file.node({{"mesh", 0}, {"skin", 0}});
+  file.node({{"name", "low"}});
+  file.node({{"name", "high"}, {"translation", {0, 10, 0}}});
+  Json skin = {{"joints", {1, 2}}};
+  if (binds) {
+    std::vector<float> matrices(32, 0);
+    for (std::size_t k = 0; k < 32; k += 16)
+      for (std::size_t i = 0; i < 4; ++i) matrices[k + 5 * i] = 1;
+    matrices[16 + 13] = -10;
+    skin["inverseBindMatrices"] = file.floats(matrices, "MAT4");
+  }
+  file.push("skins", skin);
+  return file;
+}
+
+template <class T>
+void put_weights(TinyGltf& file, Json& attributes, int component, double one, bool normalized) {
+  std::vector<T> weights;
+  const auto round = [&](double share) { return std::is_integral_v<T> ? std::round(share * one) : share * one; };
+  for (const double share : {1.0, 0.8, 0.4, 0.2}) {
+    weights.push_back(static_cast<T>(round(share))), weights.push_back(static_cast<T>(round(1 - share)));
+    weights.push_back(0), weights.push_back(0);
+  }
+  attributes["WEIGHTS_0"] = file.accessor(file.view(weights), component, "VEC4", 4, normalized);
+  attributes["JOINTS_0"] = file.accessor(
+      file.view(std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}), 5121, "VEC4", 4);
+}
+
+inline void expect_weights(const Character& c, double tolerance) {
+  ASSERT_EQ(c.meshes.size(), 1u);
+  const CharacterMesh& mesh = c.meshes[0];
+  ASSERT_EQ(mesh.influence_start, (std::vector<int>{0, 1, 3, 5, 7}));
+  const double expected[] = {1, 0.8, 0.2, 0.4, 0.6, 0.2, 0.8};
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(mesh.influence_weight[k], expected[k], tolerance);
 }
 
 }  // namespace ft::test

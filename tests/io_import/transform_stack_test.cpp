@@ -238,7 +238,8 @@ TEST(Stacks, Become_keys_where_a_format_knows_nothing_else) {
   curve.handles = {{0, 0, 1.0 / 3, 0}, {1.0 / 3, 0, 0, 0}};
   clip.curves.curves.push_back(curve);
   Character plain = c;
-  plain.clips[0] = plain_clip(c, clip);
+  plain.clips[0] = plain_clip(c, clip, plain.notes);
+  EXPECT_TRUE(plain.notes.empty());
   EXPECT_TRUE(plain.clips[0].stacks.empty());
   ASSERT_TRUE(check_character(plain));
   double worst = 0;
@@ -247,6 +248,34 @@ TEST(Stacks, Become_keys_where_a_format_knows_nothing_else) {
   EXPECT_LT(worst, 1e-5);  // of 30
   EXPECT_LT(plain.clips[0].channels[1].rotation.times.size(), 481u);
   EXPECT_EQ(plain.clips[0].channels[2].rotation.times.size(), 2u);
+}
+
+TEST(Stacks, Become_keys_at_a_time_of_day_where_floats_are_far_apart) {
+  Character c = figure(ScaleInheritance::k_product);
+  Clip& clip = c.clips[0];
+  constexpr double k_ten_o_clock = 36000;  // s; the next float is 1/256 s on
+  clip.stacks[1].elements[1].numbers.layers = {
+      {0, Vec3(0, 0, 30), {static_cast<int>(clip.curves.curves.size()), -1, -1}}};
+  Curve curve;
+  curve.times = {k_ten_o_clock, k_ten_o_clock + 1}, curve.values = {0, 200};
+  curve.interpolation.assign(2, CurveInterpolation::k_cubic);
+  curve.handles = {{0, 0, 1.0 / 3, 0}, {1.0 / 3, 0, 0, 0}};
+  clip.curves.curves.push_back(curve);
+  clip.start = k_ten_o_clock, clip.end = k_ten_o_clock + 1;
+  const std::vector<double> times = straight_times(c, clip, clip.stacks[1].node);
+  EXPECT_LE(times.size(), 257u + 4u);
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+  std::vector<std::string> notes;
+  EXPECT_FALSE(plain_clip(c, clip, notes).channels.empty());
+}
+
+TEST(Stacks, Shapes_of_one_full_weight_do_not_vanish_there) {
+  const std::vector<ShapeChannel::Shape> shapes = {{0, 100}, {1, 100}};
+  std::vector<double> out(2);
+  for (const double percent : {50.0, 100.0, 120.0}) {
+    shape_weights(shapes, percent, out);
+    EXPECT_NEAR(out[0] + out[1], percent / 100, 1e-12) << percent;
+  }
 }
 
 }  // namespace

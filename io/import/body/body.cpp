@@ -237,7 +237,7 @@ Status add_blended(const Character& character, const BodyFrame& frame, Character
     mesh.positions = std::move(positions);
     return {};
   }
-  return input_error("no closed body in one piece can be built from the skeleton", "", "body = \"capsules\"");
+  return input_error("no closed body in one piece can be built from the skeleton", "", "try body = \"capsules\"");
 }
 
 void add_capsule(const BodyBone& bone, int column, CharacterMesh& mesh) {
@@ -292,9 +292,8 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
   const std::vector<Mat4> rest = rest_globals(character);
   if (globals.empty()) globals = rest;
   std::vector<CharacterMesh> meshes;
-  std::vector<std::string> bare;
+  std::vector<std::pair<std::string, Error>> bare;  // roots without a body, and why
   bool arms_raised = false, legs_parted = false;
-  Error fault;
   for (int root = 0; root < static_cast<int>(rest.size()); ++root) {
     if (character.nodes[at(root)].parent >= 0) continue;
     auto frame = body_frame(character, root, axes, globals);
@@ -303,8 +302,7 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
                    : style == "capsules" ? add_capsules(character, *frame, mesh)
                                          : add_blended(character, *frame, mesh);
     if (!built) {
-      fault = built.error();
-      bare.push_back(character.nodes[at(root)].name);
+      bare.emplace_back(character.nodes[at(root)].name, built.error());
       continue;
     }
     const Mat3 back = axes.transpose() / frame->scale;
@@ -312,8 +310,8 @@ Status add_body(Character& character, const std::string& style, const Mat3& axes
     arms_raised = arms_raised || frame->arms_raised, legs_parted = legs_parted || frame->legs_parted;
     meshes.push_back(std::move(mesh));
   }
-  if (meshes.empty()) return fault;
-  for (const std::string& name : bare)
+  if (meshes.empty()) return bare.empty() ? input_error("has no skeleton") : bare.front().second;
+  for (const auto& [name, fault] : bare)
     character.notes.push_back("no body was built around \"" + name + "\": " + fault.what);
   if (arms_raised)
     character.notes.emplace_back(

@@ -38,7 +38,7 @@ constexpr Section k_torso[] = {{0.0, 0.060, 0.096},  {0.22, 0.058, 0.086}, {0.42
                                {0.70, 0.064, 0.087}, {0.87, 0.057, 0.085}, {1.0, 0.040, 0.066}};
 
 bool is_end(const Character& character, std::size_t joint) {
-  return character.nodes[joint].name.starts_with("EndSite");
+  return is_end_site(character.nodes[joint]);
 }
 
 class FleshBuilder {

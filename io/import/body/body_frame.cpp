@@ -11,7 +11,7 @@ namespace {
 constexpr double k_legs_touch = 0.095, k_legs_apart = 0.125;
 
 bool is_end(const Character& character, std::size_t joint) {
-  return character.nodes[joint].name.starts_with("EndSite");
+  return is_end_site(character.nodes[joint]);
 }
 
 /// Turns a joint and all below it about the joint; turn is in the frame's axes.
@@ -106,10 +106,11 @@ Landmarks find_landmarks(const Character& character, const BodyFrame& frame, con
 Result<BodyFrame> body_frame(const Character& character, int root, const Mat3& axes, std::span<const Mat4> globals) {
   BodyFrame frame;
   frame.axes = axes;
-  frame.figure = find_figure(character, root);
+  const std::vector<Limb> limb = limbs_by_name(character);
+  frame.figure = find_figure(character, limb, root);
   frame.globals.assign(globals.begin(), globals.end());
   frame.children.resize(character.nodes.size());
-  frame.members = figure_nodes(character);
+  frame.members = figure_nodes(character, limb);
   std::vector<char> below_root(character.nodes.size(), 0);
   Box box;
   for (std::size_t i = 0; i < character.nodes.size(); ++i) {
@@ -127,7 +128,7 @@ Result<BodyFrame> body_frame(const Character& character, int root, const Mat3& a
                        "check up = ..., or use a file with a mesh");
   frame.scale = 1 / height;
   for (Vec3& p : frame.joints) p *= frame.scale;
-  const Landmarks marks = find_landmarks(character, frame, limbs_by_name(character));
+  const Landmarks marks = find_landmarks(character, frame, limb);
   if (marks.complete) raise_arms(frame, marks), part_legs(frame, marks);
   return frame;
 }

@@ -10,8 +10,8 @@ constexpr std::size_t k_most_limbs = 64;  ///< of a kind: more are no figure
 
 class FigureFinder {
  public:
-  FigureFinder(const Character& character, int root)
-      : character_(character), limb_(limbs_by_name(character)), in_tree_(limb_.size(), root < 0) {
+  FigureFinder(const Character& character, std::span<const Limb> limb, int root)
+      : character_(character), limb_(limb), in_tree_(limb.size(), root < 0) {
     for (int i = std::max(root, 0); root >= 0 && i < count(); ++i) {
       const int parent = character.nodes[at(i)].parent;
       in_tree_[at(i)] = i == root || (parent >= root && in_tree_[at(parent)]);
@@ -36,7 +36,7 @@ class FigureFinder {
   int count() const { return static_cast<int>(limb_.size()); }
   Limb kind(int node) const { return limb_[at(node)]; }
   bool in_tree(int node) const { return in_tree_[at(node)] != 0; }
-  bool is_end(int node) const { return character_.nodes[at(node)].name.starts_with("EndSite"); }
+  bool is_end(int node) const { return is_end_site(character_.nodes[at(node)]); }
 
   int common(int a, int b) const {
     while (a != b) {
@@ -94,7 +94,7 @@ class FigureFinder {
   }
 
   const Character& character_;
-  std::vector<Limb> limb_;
+  std::span<const Limb> limb_;
   std::vector<char> in_tree_;
 };
 
@@ -119,11 +119,6 @@ void list_missing(const std::vector<FigureLimb>& limbs, const char* name, const 
 
 }  // namespace
 
-bool is_within(const Character& character, int node, int ancestor) {
-  while (node > ancestor) node = character.nodes[at(node)].parent;
-  return node == ancestor;
-}
-
 std::vector<std::string> Figure::missing() const {
   std::vector<std::string> out;
   list_missing(legs, "leg", {"thigh", "the knee", "the foot"}, out);
@@ -132,13 +127,13 @@ std::vector<std::string> Figure::missing() const {
   return out;
 }
 
-std::vector<char> figure_nodes(const Character& character) {
+std::vector<char> figure_nodes(const Character& character, std::span<const Limb> limb) {
   std::vector<char> out(character.nodes.size(), 0);
   std::vector<int> base(out.size(), -1);  // of the tree that a node is in
   for (std::size_t i = 0; i < out.size(); ++i) {
     const int node = static_cast<int>(i), parent = character.nodes[i].parent;
     base[i] = parent >= 0 ? base[at(parent)] : [&] {
-      const Figure figure = find_figure(character, node);
+      const Figure figure = find_figure(character, limb, node);
       return figure.legs.size() == 2 && figure.arms.size() == 2 && figure.base >= 0 ? figure.base : node;
     }();
     out[i] = node == base[i] || (parent >= 0 && out[at(parent)]);
@@ -147,7 +142,11 @@ std::vector<char> figure_nodes(const Character& character) {
 }
 
 Figure find_figure(const Character& character, int root) {
-  return FigureFinder(character, root).find();
+  return find_figure(character, limbs_by_name(character), root);
+}
+
+Figure find_figure(const Character& character, std::span<const Limb> limb, int root) {
+  return FigureFinder(character, limb, root).find();
 }
 
 }  // namespace ft::inline io

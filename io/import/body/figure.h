@@ -2,6 +2,7 @@
 // their places in the hierarchy, never by where they are, so that it is there before any pose is.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,12 @@ struct Figure {
   std::vector<std::string> missing() const;
 };
 
-/// Of the tree below `root`; -1: of all nodes.
+/// Of the tree below `root`; -1: of all nodes. limb: limbs_by_name(), where it is known already.
 Figure find_figure(const Character& character, int root = -1);
+Figure find_figure(const Character& character, std::span<const Limb> limb, int root);
 
 /// 1 for the nodes that are the skeleton's own: of every tree with a figure in it those from the figure's base down, of
 /// others all. A root on the floor, references and cameras are none of it.
-std::vector<char> figure_nodes(const Character& character);
-
-/// Whether a node is `ancestor` or below it.
-bool is_within(const Character& character, int node, int ancestor);
+std::vector<char> figure_nodes(const Character& character, std::span<const Limb> limb);
 
 }  // namespace ft::inline io

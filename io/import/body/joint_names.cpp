@@ -80,7 +80,7 @@ bool is_vertebra(std::string_view name) {
   if (name.size() < 2 || name.size() > 3) return false;
   for (const char digit : name.substr(1))
     if (digit < '0' || digit > '9') return false;
-  return name[0] == 'L' || name[0] == 'T';
+  return name[0] == 'L' || name[0] == 'T' || name[0] == 'C';
 }
 
 }  // namespace

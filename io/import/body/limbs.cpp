@@ -7,11 +7,6 @@
 namespace ft::inline io {
 namespace {
 
-bool is_above(const Character& character, int ancestor, int node) {
-  while (node > ancestor) node = character.nodes[at(node)].parent;
-  return node == ancestor;
-}
-
 /// The topmost of the neighbours above `node` that are of a kind; -1 when the first that is none of the kinds comes
 /// before it.
 int topmost(const Character& character, const std::vector<Limb>& limb, int node, Limb kind, Limb below) {
@@ -23,10 +18,19 @@ int topmost(const Character& character, const std::vector<Limb>& limb, int node,
 
 }  // namespace
 
+bool is_end_site(const CharacterNode& node) {
+  return node.name.starts_with("EndSite");
+}
+
+bool is_within(const Character& character, int node, int ancestor) {
+  while (node > ancestor) node = character.nodes[at(node)].parent;
+  return node == ancestor;
+}
+
 std::vector<Limb> limbs_by_name(const Character& character) {
   std::vector<Limb> out;
   for (const CharacterNode& node : character.nodes) {
-    const bool end = node.name.starts_with("EndSite");
+    const bool end = is_end_site(node);
     out.push_back(end && node.parent >= 0 ? out[at(node.parent)] : limb_by_name(node.name));
   }
   // Two habits: "LeftHip - LeftKnee" means the thigh, "LeftShoulder - LeftElbow" the upper arm.
@@ -75,8 +79,8 @@ Result<LimbChain> find_limb(const Character& character, const std::string& upper
                          guess.empty() ? "" : "did you mean \"" + guess + "\"?");
     }
   }
-  if (out.upper == out.lower || out.lower == out.end || !is_above(character, out.upper, out.lower) ||
-      !is_above(character, out.lower, out.end))
+  if (out.upper == out.lower || out.lower == out.end || !is_within(character, out.lower, out.upper) ||
+      !is_within(character, out.end, out.lower))
     return usage_error("\"" + upper + "\", \"" + lower_name + "\" and \"" + end + "\" are not one above the other");
   return out;
 }

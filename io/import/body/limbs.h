@@ -10,6 +10,12 @@
 
 namespace ft::inline io {
 
+/// Of a BVH, under the name that the reader gave it.
+bool is_end_site(const CharacterNode& node);
+
+/// Whether a node is `ancestor` or below it.
+bool is_within(const Character& character, int node, int ancestor);
+
 /// One per node. End sites of a BVH are what they end.
 std::vector<Limb> limbs_by_name(const Character& character);
 

@@ -202,9 +202,8 @@ Result<Character> read_bvh_character(const std::filesystem::path& file) {
   auto text = read_text(file);
   if (!text) return text.error();
   auto read = read_bvh(*text, BvhSpelling::k_forget);
-  if (read) return bvh_character(std::move(*read));
-  const Error& e = read.error();
-  return input_error(e.what + (e.hint.empty() ? "" : ": " + e.hint), e.where);
+  if (!read) return read.error();
+  return bvh_character(std::move(*read));
 }
 
 }  // namespace ft::inline io

@@ -1,6 +1,7 @@
 #include "io/import/character/choose_meshes.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "io/import/character/clips.h"
 
@@ -20,10 +21,6 @@ bool named(const CharacterMesh& mesh, const Character& character, const std::vec
   return found;
 }
 
-void add_once(std::vector<std::string>& names, const std::string& name) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-}
-
 std::string quoted(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "\"" : ", \"") + name + "\"";
@@ -34,25 +31,29 @@ std::string quoted(const std::vector<std::string>& names) {
 
 std::vector<std::string> mesh_names(const Character& character) {
   std::vector<std::string> out;
-  for (const CharacterMesh& mesh : character.meshes) add_once(out, name_of(mesh, character));
+  std::unordered_set<std::string> seen;
+  for (const CharacterMesh& mesh : character.meshes)
+    if (const std::string& name = name_of(mesh, character); seen.insert(name).second) out.push_back(name);
   return out;
 }
 
 std::vector<int> visible_meshes(const Character& character, std::vector<std::string>& hidden) {
   std::vector<int> out;
+  std::unordered_set<std::string> seen;
   for (std::size_t m = 0; m < character.meshes.size(); ++m) {
     const CharacterMesh& mesh = character.meshes[m];
     if (mesh.visible)
       out.push_back(static_cast<int>(m));
-    else if (!mesh.triangles.empty())
-      add_once(hidden, name_of(mesh, character));
+    else if (!mesh.triangles.empty() && seen.insert(name_of(mesh, character)).second)
+      hidden.push_back(name_of(mesh, character));
   }
   return out;
 }
 
 std::string hidden_note(const std::vector<std::string>& hidden) {
   if (hidden.empty()) return {};
-  return "the file hides " + quoted(hidden) + ": left out of the collider; meshes = [...] brings in what it names";
+  return "the file hides " + quoted(hidden) + ": left out of the collider; to take it in, name it: meshes = [\"" +
+         hidden.front() + "\", ...]";
 }
 
 Result<std::vector<int>> choose_meshes(const Character& character, const std::vector<std::string>& names,
@@ -67,9 +68,9 @@ Result<std::vector<int>> choose_meshes(const Character& character, const std::ve
       if (named(character.meshes[m], character, names, seen)) out.push_back(static_cast<int>(m));
   }
   std::erase_if(out, [&](int m) { return character.meshes[at(m)].triangles.empty(); });
-  const auto existing = mesh_names(character);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (seen[i]) continue;
+    const auto existing = mesh_names(character);
     std::string hint;
     for (const std::string& name : existing) hint += (hint.empty() ? "there are: " : ", ") + name;
     if (const std::string guess = nearest_name(names[i], existing); !guess.empty())

@@ -7,6 +7,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "io/import/character/name_list.h"
+
 namespace ft::inline io {
 namespace {
 
@@ -123,6 +125,7 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
   const double scale = unit_ratio(source, target);
   std::vector<Clip> out;
   std::vector<char> is_missing(source.nodes.size(), 0);
+  std::set<std::string> other_shapes;
   std::size_t matched = 0;
   for (const Clip& clip : source.clips) {
     Clip moved = clip;
@@ -139,7 +142,7 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
       for (double& v : channel.translation.values) v *= scale;
       if (!channel.weights.empty() && static_cast<std::size_t>(channel.weights.width) !=
                                           target.nodes[static_cast<std::size_t>(channel.node)].morph_weights.size())
-        channel.weights = {};
+        channel.weights = {}, other_shapes.insert(source.nodes[node].name);
       moved.channels.push_back(std::move(channel));
     }
     for (TransformStack stack : clip.stacks) {
@@ -159,14 +162,20 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
     }
     for (ShapeChannel channel : clip.shapes) {
       const auto node = static_cast<std::size_t>(channel.node);
-      if (to[node] < 0 || source.nodes[node].morph_weights.size() !=
-                              target.nodes[static_cast<std::size_t>(to[node])].morph_weights.size())
+      if (to[node] < 0) {
+        is_missing[node] = 1;
         continue;
+      }
+      ++matched;
+      if (source.nodes[node].morph_weights.size() !=
+          target.nodes[static_cast<std::size_t>(to[node])].morph_weights.size()) {
+        other_shapes.insert(source.nodes[node].name);
+        continue;
+      }
       channel.node = to[node];
       moved.shapes.push_back(std::move(channel));
     }
-    if (!moved.channels.empty() || !moved.stacks.empty())
-      moved.find_range();  // cameras and lights of the other file may be longer
+    if (moved.moved_count() > 0) moved.find_range();  // cameras and lights of the other file may be longer
     out.push_back(std::move(moved));
   }
   if (source.clips.empty()) return input_error("has no animation", source_file);
@@ -179,6 +188,9 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
   if (!missing.empty())
     notes.push_back(std::to_string(missing.size()) +
                     " animated nodes are not in the character: " + some_of(missing, 8));
+  if (!other_shapes.empty())
+    notes.push_back("blend shapes of these nodes are not those of the character, and their keys were left out: " +
+                    name_list(other_shapes));
   return out;
 }
 

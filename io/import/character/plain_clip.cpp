@@ -1,5 +1,7 @@
 #include "io/import/character/plain_clip.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,14 +16,44 @@ constexpr double k_least_step = 1.0 / 15360;   // s, between keys that straight 
 constexpr double k_least_spline = 1.0 / 1920;  // s, between keys that cubic splines join
 constexpr double k_difference = 0.01;          // of the time between two keys: over which a slope is measured
 constexpr double k_instant = 2e-6;             // s: nearer keys are a step
+constexpr double k_most_shear = 1e-4;          // of the scale, that nobody sees
 
 /// Translation, rotation x y z w and scale of a node.
 using Numbers = Eigen::Matrix<double, 10, 1>;
 
+/// The time of 32 bits in the middle of two; the first of them where none lies between.
+double middle_of(double from, double to) {
+  const double middle = round_to_float(0.5 * (from + to));
+  return middle > from && middle < to ? middle : from;
+}
+
+/// What a node's matrix relative to its parent depends on: its channel, its stack, the stacks whose scale it takes.
+Clip part_for(const Character& character, const Clip& clip, int node) {
+  Clip out;
+  if (const Channel* channel = find_channel(clip, node)) out.channels.push_back(*channel);
+  std::vector<std::int32_t> used;
+  for (int n = node; n >= 0; n = character.nodes[at(n)].parent) {
+    const TransformStack* stack = find_stack(clip, n);
+    if (stack == nullptr) break;
+    out.stacks.push_back(*stack), add_curves(*stack, used);
+    if (stack->inheritance == ScaleInheritance::k_product) break;
+  }
+  out.curves.layers = clip.curves.layers;
+  for (const AnimationLayer& layer : clip.curves.layers)
+    if (layer.weight_curve >= 0) used.push_back(layer.weight_curve);
+  out.curves.curves.resize(clip.curves.curves.size());
+  for (const std::int32_t c : used) out.curves.curves[at(c)] = clip.curves.curves[at(c)];
+  return out;
+}
+
 class Plainer {
  public:
   Plainer(const Character& character, const Clip& clip, int node)
-      : node_(node), pose_(character, &clip), locals_(character.nodes.size()), morphs_(pose_.rest_morphs().size()) {}
+      : node_(node),
+        part_(part_for(character, clip, node)),
+        pose_(character, &part_),
+        locals_(character.nodes.size()),
+        morphs_(pose_.rest_morphs().size()) {}
 
   NodeTransform at_time(double time) {
     pose_.sample(time, locals_, morphs_);
@@ -32,9 +64,14 @@ class Plainer {
     const NodeTransform t = at_time(time);
     Numbers out;
     out << t.translation, t.rotation.coeffs(), t.stretch.diagonal();
+    const Mat3 beside = t.stretch - Mat3(t.stretch.diagonal().asDiagonal());
+    shear_ = std::max(shear_, beside.cwiseAbs().maxCoeff() / std::max(1e-12, t.stretch.cwiseAbs().maxCoeff()));
     if (near != nullptr && near->segment<4>(3).dot(out.segment<4>(3)) < 0) out.segment<4>(3) *= -1;
     return out;
   }
+
+  /// Largest so far, of the largest scale.
+  double shear() const { return shear_; }
 
   /// Adds the times between two keys that need one where straight lines join them.
   void split(double from, const NodeTransform& a, double to, const NodeTransform& b, std::vector<double>& times) {
@@ -48,7 +85,8 @@ class Plainer {
                  (now.stretch - line.stretch).cwiseAbs().maxCoeff() <= k_off * now.stretch.cwiseAbs().maxCoeff();
     }
     if (straight) return;
-    const double middle = round_to_float(0.5 * (from + to));
+    const double middle = middle_of(from, to);
+    if (middle == from) return;
     const NodeTransform m = at_time(middle);
     split(from, a, middle, m, times);
     times.push_back(middle);
@@ -68,7 +106,7 @@ class Plainer {
   Segment segment(double from, double to, const Numbers& a) {
     Segment out{from, to, a, numbers(to, &a), {}, {}};
     const double span = to - from, d = k_difference * span;
-    if (span < k_instant) {
+    if (span < k_instant || middle_of(from, to) == from) {
       out.out_of_a = out.into_b = (out.b - a) / span;
       return out;
     }
@@ -88,8 +126,8 @@ class Plainer {
                 2 * (now.segment<4>(3) - there.segment<4>(3).normalized()).norm() <= k_off &&
                 (now - there).tail<3>().cwiseAbs().maxCoeff() <= k_off * now.tail<3>().cwiseAbs().maxCoeff();
     }
-    if (follows || to - from < 2 * k_least_spline) return segments.push_back(whole);
-    const double middle = round_to_float(0.5 * (from + to));
+    const double middle = middle_of(from, to);
+    if (follows || to - from < 2 * k_least_spline || middle == from) return segments.push_back(whole);
     follow(from, middle, a, segments);
     const Numbers m = segments.back().b;
     follow(middle, to, m, segments);
@@ -97,6 +135,8 @@ class Plainer {
 
  private:
   int node_;
+  Clip part_;
+  double shear_ = 0;
   ClipPose pose_;
   std::vector<Mat4> locals_;
   std::vector<double> morphs_;
@@ -141,10 +181,11 @@ std::vector<double> straight_times(const Character& character, const Clip& clip,
   return times;
 }
 
-Clip plain_clip(const Character& character, const Clip& clip) {
+Clip plain_clip(const Character& character, const Clip& clip, std::vector<std::string>& notes) {
   Clip out = clip;
   if (clip.stacks.empty()) return out;
   out.stacks.clear();
+  std::vector<Channel> added;
   for (const TransformStack& stack : clip.stacks) {
     const int node = stack.node;
     const std::vector<double> keys = stack_keys(character, clip, node);
@@ -165,10 +206,14 @@ Clip plain_clip(const Character& character, const Clip& clip) {
     for (std::size_t k = 0; k <= segments.size(); ++k)
       append(k < segments.size() ? segments[k].from : keys.back(), k > 0 ? segments[k - 1].into_b : none,
              k < segments.size() ? segments[k].a : a, k < segments.size() ? segments[k].out_of_a : none, channel);
-    const auto same = [&](const Channel& c) { return c.node == node; };
-    std::erase_if(out.channels, same);  // what it had over the stack is in the pose
-    out.channels.push_back(std::move(channel));
+    if (plainer.shear() > k_most_shear)
+      notes.push_back(fmt::format("glTF cannot hold the shear of \"{}\" (up to {:.2g} of its scale): it was left out",
+                                  character.nodes[at(node)].name, plainer.shear()));
+    added.push_back(std::move(channel));
   }
+  // What a channel had over a stack is in the pose.
+  std::erase_if(out.channels, [&](const Channel& c) { return find_stack(clip, c.node) != nullptr; });
+  out.channels.insert(out.channels.end(), added.begin(), added.end());
   return out;
 }
 

@@ -12,7 +12,8 @@ std::vector<double> straight_times(const Character& character, const Clip& clip,
 
 /// The clip with a channel in place of each stack of transforms: cubic splines with keys where the stack's curves have
 /// some, and between them where a spline would be off by more than 2e-7 (as above), but none nearer than 1/1920 s to
-/// another. Shear, which comes of scales that are inherited, is left out. Channels and shapes stay as they are.
-Clip plain_clip(const Character& character, const Clip& clip);
+/// another. Shear, which comes of scales that are inherited, is left out with a note. Channels and shapes stay as they
+/// are.
+Clip plain_clip(const Character& character, const Clip& clip, std::vector<std::string>& notes);
 
 }  // namespace ft::inline io

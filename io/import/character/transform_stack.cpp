@@ -148,10 +148,10 @@ void shape_weights(std::span<const ShapeChannel::Shape> shapes, double percent, 
   const auto step = [&](int k) { from = to, to = k; };
   if (percent > 0) {
     for (int k = 0; k < count && (to < 0 || full(to) <= percent); ++k)
-      if (full(k) > 0) step(k);
+      if (full(k) > 0 && (to < 0 || full(k) > full(to))) step(k);
   } else {
     for (int k = count - 1; k >= 0 && (to < 0 || full(to) >= percent); --k)
-      if (full(k) < 0) step(k);
+      if (full(k) < 0 && (to < 0 || full(k) < full(to))) step(k);
   }
   if (to < 0)  // only shapes of the other side: the nearest one is taken backwards
     for (int k = 0; k < count; ++k)

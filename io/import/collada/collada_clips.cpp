@@ -6,21 +6,12 @@
 #include <map>
 #include <set>
 
+#include "io/import/character/name_list.h"
 #include "io/import/character/pose.h"
 #include "io/import/collada/collada_stack.h"
 
 namespace ft::inline io {
 namespace {
-
-std::string list_of(const std::set<std::string>& names) {
-  std::string out;
-  std::size_t listed = 0;
-  for (const std::string& name : names) {
-    if (listed++ == 8) return out + ", and " + std::to_string(names.size() - 8) + " more";
-    out += (out.empty() ? "\"" : ", \"") + name + "\"";
-  }
-  return out;
-}
 
 /// "node/sid.MEMBER", "node/sid(1)(2)" or "node/sid": the way to an element, and which number of it.
 struct Target {
@@ -87,13 +78,15 @@ class ClipReader {
   }
 
   void describe(std::vector<std::string>& notes) const {
-    if (!missed_.empty()) notes.push_back("animation of what is not evaluated was left out: " + list_of(missed_));
+    if (!missed_.empty()) notes.push_back("animation of what is not evaluated was left out: " + name_list(missed_));
     if (unknown_)
       notes.emplace_back(
-          "keys of an interpolation that is none of STEP, LINEAR, BEZIER and HERMITE are joined by "
-          "straight lines");
-    if (!skewed_.empty()) notes.push_back("a skew is left out on " + list_of(skewed_));
+          "keys of an interpolation that is none of STEP, LINEAR, BEZIER and HERMITE, or without the tangents that it "
+          "needs, are joined by straight lines");
+    if (!skewed_.empty()) notes.push_back("a skew is left out on " + name_list(skewed_));
   }
+
+  void add_skewed(const pugi::xml_node& element) { skewed_.insert(name_of(element)); }
 
  private:
   struct Moved {
@@ -112,7 +105,6 @@ class ClipReader {
         if (Status s = read_channel(channel, clip, moved); !s) return s;
     }
     for (auto& [element, m] : moved) {
-      if (m.transform.skewed) skewed_.insert(name_of(element));
       std::vector<std::int32_t> used;
       add_curves(m.transform.stack, used);
       if (used.empty() && m.matrix.empty()) continue;
@@ -254,7 +246,9 @@ Status read_collada_clips(const ColladaFile& file, Character& character) {
   ClipReader reader(file, character, nodes);
   if (Status s = reader.read(clips); !s) return s;
   for (const auto& [element, node] : nodes) {
-    const Mat4 rest = collada_rest(element);
+    const ColladaTransform transform = collada_transform(element, 0);
+    if (transform.skewed) reader.add_skewed(element);
+    const Mat4 rest = stack_pose(transform.stack, {}, 0).matrix;
     if (rest.allFinite()) character.nodes[static_cast<std::size_t>(node)].local = rest;
   }
   reader.describe(character.notes);
@@ -295,16 +289,16 @@ void note_collada_contents(const ColladaFile& file, Character& character) {
   if (!driven.empty()) {
     character.notes.push_back(
         "constraints, inverse kinematics or expressions are not evaluated (bake the animation to keys): " +
-        list_of(driven));
+        name_list(driven));
     character.contents.push_back({"constraints", driven_count, "not used: only keys move nodes"});
   }
   if (!physics.empty()) {
-    character.notes.push_back("physics in the file is not simulated: " + list_of(physics));
+    character.notes.push_back("physics in the file is not simulated: " + name_list(physics));
     character.contents.push_back({"physics bodies", static_cast<std::int64_t>(physics.size()), "not used"});
   }
   if (!morphs.empty()) {
     character.notes.push_back(
-        "shapes of morph controllers stay at their rest weights; keys of them are not evaluated: " + list_of(morphs));
+        "shapes of morph controllers stay at their rest weights; keys of them are not evaluated: " + name_list(morphs));
     character.contents.push_back(
         {"morph controllers", static_cast<std::int64_t>(morphs.size()), "used at their rest weights"});
   }

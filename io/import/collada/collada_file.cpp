@@ -96,6 +96,11 @@ Result<ColladaRows> ColladaFile::source(const std::string& reference) const {
   const std::size_t stride = accessor.attribute("stride").as_ullong(1),
                     offset = accessor.attribute("offset").as_ullong();
   const std::size_t count = accessor.attribute("count").as_ullong();
+  const auto too_few = [&] {
+    return input_error("source \"" + reference + "\" has fewer values than its accessor says", "",
+                       "copy or export the file again");
+  };
+  if (stride == 0 || stride > total || count > total || offset > total) return too_few();
   std::vector<std::size_t> columns;
   std::size_t column = 0;
   bool named = false;
@@ -114,9 +119,8 @@ Result<ColladaRows> ColladaFile::source(const std::string& reference) const {
   }
   if (columns.empty())
     for (std::size_t k = 0; k < stride; ++k) columns.push_back(k);
-  if (stride == 0 || count > total || offset > total || columns.back() >= stride ||
-      (count > 0 && (count - 1) * stride + columns.back() + offset >= total))
-    return input_error("source \"" + reference + "\" has fewer values than its accessor says");
+  if (columns.back() >= stride || (count > 0 && (count - 1) * stride + columns.back() + offset >= total))
+    return too_few();
   ColladaRows rows;
   rows.width = columns.size();
   for (std::size_t row = 0; row < count; ++row)

@@ -22,11 +22,6 @@ Mat4 look_at(const std::vector<double>& v) {
   return out;
 }
 
-struct Tangents {
-  ColladaRows rows;
-  std::size_t per_key = 0;
-};
-
 /// Time and value of a key's tangent for output number k of `width`; false: it has no time of its own.
 bool tangent_of(const ColladaRows& rows, std::size_t key, std::size_t k, std::size_t width, double& time,
                 double& value) {

@@ -131,6 +131,11 @@ Status read_alembic(const std::filesystem::path& file, double fps, GeometryCache
 
 }  // namespace
 
+bool knows_its_times(const std::filesystem::path& file) {
+  const std::string e = extension(file);
+  return e == ".mdd" || e == ".abc";
+}
+
 bool is_geometry_cache(const std::filesystem::path& file) {
   const std::string e = extension(file);
   return e == ".pc2" || e == ".mdd" || e == ".obj" || e == ".abc";

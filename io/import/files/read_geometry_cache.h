@@ -13,6 +13,9 @@ namespace ft::inline io {
 /// By the file's extension.
 bool is_geometry_cache(const std::filesystem::path& file);
 
+/// Whether files of its kind say when their samples are; by the extension.
+bool knows_its_times(const std::filesystem::path& file);
+
 /// fps: samples per second (for MDD 0 means the file's own times). topology may be empty for OBJ; without it a PC2 or
 /// MDD has no faces, which is an error unless faces_needed is false (info). With faces, vertices that stray for a few
 /// samples are put back among their neighbours; points alone have to be finite.

@@ -242,6 +242,10 @@ Result<Bytes> GltfFile::decompress(const Json& extension, const std::string& nam
   const std::string mode = text(member(extension, "mode")), filter = text(member(extension, "filter"));
   const bool vertices = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES";
   if (!vertices && !triangles && mode != "INDICES") return input_error(name + " has the unknown mode \"" + mode + "\"");
+  const auto* packed = reinterpret_cast<const unsigned char*>((*opened)->data()) + offset;
+  if (vertices && size > 0 && (packed[0] & 15) > 0)
+    return input_error(name + " is of version " + std::to_string(packed[0] & 15) + " of its codec, which is not read",
+                       "", "export it with EXT_meshopt_compression, or uncompressed");
   // The codec spends at least two bits on sixteen bytes of vertices, and a byte on a triangle or on a single index.
   const bool fits = vertices
                         ? stride > 0 && stride <= 256 && stride % 4 == 0 && count >= 0 && n <= (64 * size + 4096) / step
@@ -250,7 +254,6 @@ Result<Bytes> GltfFile::decompress(const Json& extension, const std::string& nam
   if (!fits)
     return input_error(name + " says " + std::to_string(count) + " elements of " + std::to_string(stride) +
                        " bytes, which cannot come out of " + std::to_string(length));
-  const auto* packed = reinterpret_cast<const unsigned char*>((*opened)->data()) + offset;
   Bytes out(n * step);
   const int failed = vertices    ? meshopt_decodeVertexBuffer(out.data(), n, step, packed, size)
                      : triangles ? meshopt_decodeIndexBuffer(out.data(), n, step, packed, size)

@@ -189,7 +189,10 @@ void add_notes(const ClipOddities& odd, std::vector<std::string>& notes) {
   count(odd.uneven, "rotation keys are not of length 1; made so");
   count(odd.empty_channels, "animation channels have no keys; left out");
   count(odd.doubled, "animation channels move what another channel of their clip moves; the last one counts");
-  count(odd.wrong_weights, "animation channels have more or fewer weights than their mesh has morph targets");
+  count(
+      odd.wrong_weights,
+      "animation channels have more or fewer weights than their mesh has morph targets; those beyond are left out, and "
+      "targets without one keep their rest weight");
   count(odd.pointers, "animation channels move what is not animated here (KHR_animation_pointer, the first is \"" +
                           odd.first_pointer + "\"); left out");
 }

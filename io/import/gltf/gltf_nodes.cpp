@@ -26,7 +26,13 @@ Result<Mat4> local_matrix(const Json& node, const std::string& name, int& uneven
        s = transform_part(node, "scale", 3, name);
   for (const auto* part : {&matrix, &t, &r, &s})
     if (!*part) return part->error();
-  if (!matrix->empty()) return Mat4(Eigen::Map<const Mat4>(matrix->data()));
+  if (!matrix->empty()) {
+    const Mat4 out = Eigen::Map<const Mat4>(matrix->data());
+    if (out.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+      return input_error(name + ": the last row of its matrix is not 0 0 0 1", "",
+                         "export it with translation, rotation and scale");
+    return out;
+  }
   Mat4 out = Mat4::Identity();
   if (!r->empty()) {
     const Quat q((*r)[3], (*r)[0], (*r)[1], (*r)[2]);
@@ -174,37 +180,12 @@ Result<std::vector<int>> read_nodes(const Json& json, Character& out) {
 }
 
 std::vector<int> match_nodes(const Json& json, const Character& character) {
-  const Json& nodes = member(json, "nodes");
-  const Json& scenes = member(json, "scenes");
-  const std::int64_t scene = integer(member(json, "scene"), 0);
-  const Json& roots = member(element(scenes, scene), "nodes");
-  if (!nodes.is_array() || !roots.is_array()) return {};
-  std::vector<std::vector<int>> children(character.nodes.size());
-  for (std::size_t i = 1; i < character.nodes.size(); ++i)
-    if (character.nodes[i].parent >= 0)
-      children[static_cast<std::size_t>(character.nodes[i].parent)].push_back(static_cast<int>(i));
-
-  std::vector<int> out(nodes.size(), -1);
-  std::vector<std::pair<std::int64_t, int>> stack;
-  const auto pair_up = [&](const Json& theirs, const std::vector<int>& ours) {
-    const std::size_t count = theirs.is_array() ? theirs.size() : 0;
-    if (count != ours.size()) return false;
-    for (std::size_t k = 0; k < count; ++k) stack.push_back({integer(theirs[k], -1), ours[k]});
-    return true;
-  };
-  if (roots.size() == 1)
-    stack.push_back({integer(roots[0], -1), 0});
-  else if (!pair_up(roots, children[0]))
-    return {};
-  while (!stack.empty()) {
-    const auto [theirs, ours] = stack.back();
-    stack.pop_back();
-    if (theirs < 0 || static_cast<std::size_t>(theirs) >= out.size() || out[static_cast<std::size_t>(theirs)] >= 0)
-      return {};
-    out[static_cast<std::size_t>(theirs)] = ours;
-    if (!pair_up(member(element(nodes, theirs), "children"), children[static_cast<std::size_t>(ours)])) return {};
-  }
-  return out;
+  Character again;
+  auto node_of = read_nodes(json, again);
+  const auto same = [](const CharacterNode& a, const CharacterNode& b) { return a.parent == b.parent; };
+  const auto &ours = again.nodes, &theirs = character.nodes;
+  if (!node_of || !std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(), same)) return {};
+  return std::move(*node_of);
 }
 
 }  // namespace ft::inline io::gltf

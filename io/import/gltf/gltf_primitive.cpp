@@ -100,19 +100,19 @@ void drop_unused(Primitive& primitive) {
     for (const int v : t) to[static_cast<std::size_t>(v)] = 0;
   for (std::size_t v = 0; v < to.size(); ++v)
     if (to[v] == 0) to[v] = static_cast<int>(kept.size()), kept.push_back(static_cast<int>(v));
-  if (2 * kept.size() >= to.size()) return;
+  if (kept.size() == to.size()) return;
   for (Triangle& t : mesh.triangles)
     for (int& v : t) v = to[static_cast<std::size_t>(v)];
   keep(mesh.positions, kept);
   for (MorphTarget& morph : mesh.morphs) keep(morph.deltas, kept);
   if (primitive.weights.empty()) return;
   JointWeights rows;
-  rows.most_joint = primitive.weights.most_joint;
   rows.start.push_back(0);
   for (const int v : kept) {
     const auto row = static_cast<std::size_t>(v);
     for (int k = primitive.weights.start[row]; k < primitive.weights.start[row + 1]; ++k) {
       rows.joint.push_back(primitive.weights.joint[static_cast<std::size_t>(k)]);
+      rows.most_joint = std::max(rows.most_joint, rows.joint.back());
       rows.weight.push_back(primitive.weights.weight[static_cast<std::size_t>(k)]);
     }
     rows.start.push_back(static_cast<int>(rows.joint.size()));

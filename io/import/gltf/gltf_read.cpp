@@ -7,6 +7,7 @@
 #include "io/import/gltf/gltf_contents.h"
 #include "io/import/gltf/gltf_meshes.h"
 #include "io/import/gltf/gltf_nodes.h"
+#include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 namespace {
@@ -24,7 +25,9 @@ Result<Character> read(gltf::GltfFile& file) {
   out.format = "glTF";
   auto node_of = gltf::read_nodes(file.json(), out);
   if (!node_of) return node_of.error();
+  reading_step("its meshes, as glTF");
   if (Status s = gltf::read_meshes(file, *node_of, out); !s) return s.error();
+  reading_step("its clips, as glTF");
   if (Status s = gltf::read_clips(file, *node_of, out); !s) return s.error();
   gltf::describe_contents(file.json(), *node_of, out);
   out.dependencies = file.opened();
@@ -54,10 +57,8 @@ Result<Character> read_gltf(const std::filesystem::path& path) {
     if (file->is_version_1())
       return input_error("is glTF 1.0; its skins and animations are not read; export it as glTF 2.0");
     auto out = read(*file);
-    if (!out) return input_error("cannot be read: " + out.error().what);
+    if (!out) return input_error("cannot be read: " + out.error().what, out.error().where, out.error().hint);
     return out;
-  } catch (const std::bad_alloc&) {
-    return input_error("needs more memory than the import may use");
   } catch (const gltf::Json::exception& e) {
     return input_error(std::string("cannot be read: glTF's JSON contradicts itself: ") + e.what());
   }

@@ -250,7 +250,7 @@ std::string cycle_note(const Cycle& cycle, const CycleSpan& span, double size) {
   if (cycle.step.isApprox(Eigen::Isometry3d::Identity(), 0))
     out += "it stays in place";
   else
-    out += fmt::format("each cycle goes on {:.4g} m along the ground and turned by {:.3g} degrees",
+    out += fmt::format("each cycle goes on {:.4g} m along the ground and turns by {:.3g} degrees",
                        cycle.step.translation().norm(), turn);
   out += fmt::format("; at the seam the end of a cycle and the start of the next are up to {:.3g} mm apart",
                      rounded(1e3 * cycle.seam));

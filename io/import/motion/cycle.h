@@ -34,7 +34,7 @@ inline constexpr std::size_t k_most_seams = 10'000;
 /// From `clip_start` [s of the clip] on, duration in s of the shot.
 CycleSpan cycles_of_shot(const Cycle& cycle, const ImportRequest& request);
 
-/// "its clip (1.000 s) is played 3.5 times: ...", and of a seam above k_large_seam of `size` [m] the frames as well.
+/// "its clip of 1 s repeats: ...", and of a seam above k_large_seam of `size` [m] the frames as well.
 std::string cycle_note(const Cycle& cycle, const CycleSpan& span, double size);
 
 /// Of the size of a body; what a hand covers in half a frame of a walk.

@@ -110,7 +110,7 @@ Result<Placement> find_placement(const Character& character, double unit_scale, 
   out.unit_given = unit_scale > 0;
   out.unit_scale = out.unit_given ? unit_scale : character.file_unit;
   if (out.unit_scale == 0) {
-    const std::vector<char> own = figure_nodes(character);
+    const std::vector<char> own = figure_nodes(character, limbs_by_name(character));
     std::vector<Mat4> figure;
     for (std::size_t i = 0; i < own.size(); ++i)
       if (own[i]) figure.push_back(bind_globals[i]);

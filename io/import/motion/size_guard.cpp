@@ -48,9 +48,9 @@ Status check_growth(const Trajectory& trajectory, const ImportRequest& request, 
     if (const double now = bounds(positions).size().norm(); now > largest) largest = now, frame = f;
   }
   if (!(largest > k_grown * bind)) return {};
-  const std::string what = format("frame %.0f of it is %.3g m from corner to corner, and the bind pose %.3g m",
+  const std::string what = format("at frame %.0f it is %.3g m from corner to corner, and %.3g m in the bind pose",
                                   request.first_frame + frame, largest, bind);
-  if (body.built && largest > k_absurd * bind)
+  if (body.built && body.figure && largest > k_absurd * bind)  // two who walk apart are no figure
     return input_error(what + ": the positions in the motion are not those of this skeleton",
                        (request.animation.empty() ? request.file : request.animation).string(),
                        "export skeleton and motion in the same units");

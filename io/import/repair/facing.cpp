@@ -12,12 +12,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/core/lids.h"
 #include "baker/core/mesh.h"
 
 namespace ft::inline io {
 namespace {
 
-constexpr double k_most_open = 0.05;  ///< of the edges of a shell that counts as closed
+constexpr double k_most_open_edges = 0.05;  ///< of the edges of a shell that counts as closed
 /// Volume over area to the power 3/2: 0.094 of a ball, about 0.03 of a person, 0.014 of a stick 100 times as long as
 /// thick. Below it a shell is a sheet, and has no inside.
 constexpr double k_flat = 1e-3;
@@ -150,7 +151,12 @@ std::vector<std::string> FacingReport::notes() const {
 
 FacingReport turn_outwards(std::span<const Vec3> positions, std::vector<Triangle>& triangles) {
   const std::size_t count = triangles.size();
-  const std::vector<HalfEdge> half = half_edges(triangles);
+  // A seam of texture or normals, where vertices are split, is no rim.
+  const std::vector<int> first = first_in_place(positions);
+  std::vector<Triangle> joined = triangles;
+  for (Triangle& t : joined)
+    for (int& v : t) v = first[at(v)];
+  const std::vector<HalfEdge> half = half_edges(joined);
   Patches patches(count);
   for_each_edge(half, [&](std::span<const HalfEdge> edge) {
     if (edge.size() == 2 && edge[0].triangle != edge[1].triangle)
@@ -176,15 +182,15 @@ FacingReport turn_outwards(std::span<const Vec3> positions, std::vector<Triangle
 
   // Shells: a patch that is closed, else what is left of its piece.
   int piece_count = 0;
-  const std::vector<int> piece_of = connected_pieces(static_cast<int>(positions.size()), triangles, piece_count);
+  const std::vector<int> piece_of = connected_pieces(static_cast<int>(positions.size()), joined, piece_count);
   const Measure of_patch = count_edges(half, patch_of, turn, count);
   std::vector<int> shell_of(count), shell_of_patch(count, -1), shell_of_piece(at(piece_count), -1);
   std::vector<Shell> shells;
   for (std::size_t i = 0; i < count; ++i) {
     const auto root = at(patch_of[i]);
-    const bool closed = of_patch.open[root] <= k_most_open * of_patch.edges[root];
+    const bool closed = of_patch.open[root] <= k_most_open_edges * of_patch.edges[root];
     const bool apart = closed || patches.contradicts(patch_of[i]);
-    int& shell = apart ? shell_of_patch[root] : shell_of_piece[at(piece_of[at(triangles[i][0])])];
+    int& shell = apart ? shell_of_patch[root] : shell_of_piece[at(piece_of[at(joined[i][0])])];
     if (shell < 0) shell = static_cast<int>(shells.size()), shells.emplace_back();
     shell_of[i] = shell;
   }
@@ -213,11 +219,11 @@ FacingReport turn_outwards(std::span<const Vec3> positions, std::vector<Triangle
   std::vector<char> inside_out(shells.size(), 0);
   for (std::size_t s = 0; s < shells.size(); ++s) {
     Shell& shell = shells[s];
-    if (shell.one_sided) ++out.one_sided_count, out.one_sided_faces += shell.triangles;
-    const bool has_inside = shell.open <= k_most_open * shell.edges && shell.edges > 0 &&
+    const bool has_inside = shell.open <= k_most_open_edges * shell.edges && shell.edges > 0 &&
                             std::abs(shell.volume) > k_flat * std::pow(shell.area, 1.5);
     inside_out[s] = has_inside && !(shell.volume > 0);
     if (has_inside) ++out.piece_count;
+    if (shell.one_sided && inside_out[s] == 0) ++out.one_sided_count, out.one_sided_faces += shell.triangles;
     if (shell.disagrees && !shell.one_sided) {
       ++out.disagreeing_count, out.disagreeing_faces += shell.triangles;
       out.disagreeing_turned += inside_out[s] != 0 ? shell.triangles - shell.against : shell.against;
