@@ -12,6 +12,7 @@
 
 #include "baker/core/file.h"
 #include "baker/core/hash.h"
+#include "io/volume/openvdb_cavity.h"
 
 namespace ft::inline io {
 namespace {
@@ -71,6 +72,11 @@ class Heights {
   float cell_;
 };
 
+/// Of a voxel's water so far from the surface.
+double foam_beside(double foam, double distance, double voxel) {
+  return foam * (1 - std::abs(distance) / (k_foam_band * voxel));
+}
+
 void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SGrid& velocity, vdb::FloatGrid& foam) {
   const Heights heights(water);
   const double h = water.voxel, far = k_band * h;
@@ -78,9 +84,11 @@ void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SG
   auto to_surface = surface.getAccessor();
   auto to_velocity = velocity.getAccessor();
   auto to_foam = foam.getAccessor();
+  const std::optional<DrawnInPatch> patch = drawn_in_patch(water);
   for (int iz = index(heights.low().y()) - k_band; iz <= index(heights.high().y()) + k_band + 1; ++iz)
     for (int ix = index(heights.low().x()) - k_band; ix <= index(heights.high().x()) + k_band + 1; ++ix) {
       const double x = ix * h, z = iz * h;
+      if (patch && patch->holds(x, z)) continue;
       const Heights::Place place = heights.at_place(x, z);
       const double height = place.height, steep = std::sqrt(1 + place.slope * place.slope);
       const Vec3& v = place.velocity;
@@ -91,12 +99,25 @@ void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SG
         const double y = iy * h, above = (y - height) / steep;
         const double distance = std::max({above, beside, water.floor - y});
         if (std::abs(distance) < far) to_surface.setValue({ix, iy, iz}, static_cast<float>(distance));
-        const double covered = place.foam * (1 - std::abs(above) / (k_foam_band * h));
+        const double covered = foam_beside(place.foam, above, h);
         if (covered > k_least_foam && beside <= 0) to_foam.setValue({ix, iy, iz}, static_cast<float>(covered));
         if (std::abs(above) < blurred && beside < far && water.floor - y < far)
           to_velocity.setValue({ix, iy, iz}, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
       }
     }
+  if (patch) {
+    double fastest = 0;
+    for (const Vec3f& v : water.velocities) fastest = std::max(fastest, static_cast<double>(v.norm()));
+    visit_patch(water, *patch, far + k_shutter / water.fps * fastest, [&](const VoxelOfSurface& voxel) {
+      if (std::abs(voxel.distance) < far) to_surface.setValue(voxel.place, voxel.distance);
+      if (!voxel.velocity) return;
+      const Vec3& v = *voxel.velocity;
+      if (std::abs(voxel.distance) < far + k_shutter / water.fps * v.norm())
+        to_velocity.setValue(voxel.place, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
+      const double covered = foam_beside(voxel.foam, voxel.distance, h);
+      if (covered > k_least_foam) to_foam.setValue(voxel.place, static_cast<float>(covered));
+    });
+  }
   vdb::tools::signedFloodFill(surface.tree());
 }
 

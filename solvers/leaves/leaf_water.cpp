@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace ft::inline solvers {
 namespace {
@@ -9,11 +10,12 @@ namespace {
 /// By which a vertex may be beside its place on the grid, of a cell [1].
 constexpr double k_beside = 1e-3;
 
-std::vector<double> heights_of(const Trajectory& surface, double time, std::vector<Vec3>& places) {
-  surface.sample(time, places);
-  std::vector<double> out(places.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = places[i].y();
-  return out;
+/// Between two vertices of a row that are known: straight. first: the first one that is not; end: behind the last.
+void bridge(std::span<double> row, std::size_t first, std::size_t end) {
+  for (std::size_t i = first; i < end; ++i) {
+    const double t = static_cast<double>(i + 1 - first) / static_cast<double>(end + 1 - first);
+    row[i] = first == 0 ? row[end] : end == row.size() ? row[first - 1] : (1 - t) * row[first - 1] + t * row[end];
+  }
 }
 
 }  // namespace
@@ -48,6 +50,25 @@ LeafWaters::LeafWaters(std::span<const LeafWater> waters) {
     if (auto grid = grid_of(water)) waters_.push_back(std::move(*grid));
 }
 
+std::vector<double> LeafWaters::Water::heights_at(double time, std::vector<Vec3>& places) const {
+  setup->surface->sample(time, places);
+  std::vector<double> out(places.size());
+  for (std::size_t k = 0; k < at(nz); ++k) {
+    const std::span<double> row = std::span(out).subspan(k * at(nx), at(nx));
+    std::size_t known = 0;  // behind the last vertex that is above its place
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const Vec3& p = places[k * at(nx) + i];
+      const Vec2 wanted = origin + Vec2(static_cast<double>(i), static_cast<double>(k)).cwiseProduct(cell);
+      row[i] = p.y();
+      if (!((Vec2(p.x(), p.z()) - wanted).norm() < k_beside * cell.minCoeff())) continue;
+      bridge(row, known, i);
+      known = i + 1;
+    }
+    if (known > 0) bridge(row, known, row.size());
+  }
+  return out;
+}
+
 double LeafWaters::Water::outside(const Vec3& place) const {
   const Vec2 p = Vec2(place.x(), place.z()) - origin, size = cell.cwiseProduct(Vec2(nx - 1, nz - 1));
   return (p - p.cwiseMax(Vec2::Zero()).cwiseMin(size)).norm();
@@ -58,11 +79,9 @@ void LeafWaters::begin_frame(double t0, double t1) {
   const double step = (t1 - t0) / static_cast<double>(last);
   std::vector<Vec3> places;
   for (Water& w : waters_) {
-    const Trajectory& surface = *w.setup->surface;
     places.resize(at(w.nx) * at(w.nz));
-    const std::vector<double> before = heights_of(surface, t0 - step, places);
-    for (std::size_t k = 0; k <= last; ++k)
-      w.height[k] = heights_of(surface, t0 + step * static_cast<double>(k), places);
+    const std::vector<double> before = w.heights_at(t0 - step, places);
+    for (std::size_t k = 0; k <= last; ++k) w.height[k] = w.heights_at(t0 + step * static_cast<double>(k), places);
     // Central differences; at the end one-sided of the same order, so that a frame hangs on nothing after it.
     for (std::size_t k = 0; k <= last; ++k) {
       w.rise[k].resize(before.size());

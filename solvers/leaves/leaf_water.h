@@ -52,6 +52,9 @@ class LeafWaters {
     /// At the ends of the slices, first the frame's start: heights [m], how fast they rise [m/s].
     std::array<std::vector<double>, LeafBodies::k_slices + 1> height, rise;
     std::array<std::vector<Vec3>, 2> flow;  ///< at the frame's ends [m/s]
+    /// Of the vertices' places on the grid; over a cavity, into which vertices are drawn, straight across. places: room
+    /// to work in.
+    std::vector<double> heights_at(double time, std::vector<Vec3>& places) const;
     /// How far outside a place is [m]; 0: within.
     double outside(const Vec3& place) const;
   };

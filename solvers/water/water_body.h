@@ -43,6 +43,18 @@ struct Droplet {
   double volume = 0;  ///< m3
 };
 
+/// A slice of air under the surface.
+struct AirDisc {
+  Vec3 centre = Vec3::Zero();        ///< m
+  double radius = 0, thickness = 0;  ///< m; it lies level
+};
+
+/// Air behind something that has dived in.
+struct WaterCavity {
+  double level = 0;              ///< of the water around, at rest [m]
+  std::vector<AirDisc> discs{};  ///< from the top down, each depth once; where some are missing it has closed
+};
+
 /// Where the water is [m3]. The total never changes but by rounding.
 struct WaterLedger {
   double columns = 0;   ///< in the height field

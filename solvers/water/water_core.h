@@ -81,6 +81,8 @@ class WaterCore {
   virtual void scalar(const State& /*state*/, std::size_t /*index*/, std::span<double> out) const {
     std::fill(out.begin(), out.end(), 0.0);
   }
+  /// Air in the water below its surface, which the surface's height knows nothing of.
+  virtual std::vector<WaterCavity> cavities(const State& /*state*/) const { return {}; }
   virtual std::vector<Droplet> droplets(const State& state) const = 0;
   /// Of all that floats, in the order of the setup.
   virtual std::vector<RigidMotion> floating(const State& state) const = 0;

@@ -12,6 +12,7 @@
 #include "baker/core/output_frame.h"
 #include "baker/core/parallel.h"
 #include "baker/core/volume.h"
+#include "solvers/water/cavity_skin.h"
 
 namespace ft::inline solvers {
 namespace {
@@ -42,6 +43,16 @@ void for_each_corner(const WaterGrid& grid, const Visit& visit) {
         visit(corner);
       }
   });
+}
+
+/// What is known of the surface goes with the vertices that are drawn in; walls of cavities have none of it.
+template <class Value>
+void put_drawn_in(const WaterGrid& grid, std::span<const DrawnIn> drawn, std::span<Value> values) {
+  if (drawn.empty()) return;
+  const std::vector<Value> level(values.begin(), values.end());
+  for (const DrawnIn& v : drawn)
+    values[v.vertex] =
+        v.on_wall ? Value(0 * level[v.vertex]) : between_vertices<Value>(grid, level, v.place.x(), v.place.z());
 }
 
 }  // namespace
@@ -91,7 +102,22 @@ State WaterSolver::initial_state() const {
   return state;
 }
 
+std::vector<DrawnIn> WaterSolver::drawn_in(const State& state) const {
+  const std::vector<WaterCavity> cavities = core_->cavities(state);
+  if (cavities.empty()) return {};
+  std::vector<Vec3> level(mesh_.positions.size());
+  level_positions(state, level);
+  std::vector<double> heights(level.size());
+  std::ranges::transform(level, heights.begin(), [](const Vec3& p) { return p.y(); });
+  return draw_in(core_->grid(), heights, cavities);
+}
+
 void WaterSolver::system_positions(const State& state, int, std::span<Vec3> positions) const {
+  level_positions(state, positions);
+  for (const DrawnIn& v : drawn_in(state)) positions[v.vertex] = v.place;
+}
+
+void WaterSolver::level_positions(const State& state, std::span<Vec3> positions) const {
   const WaterGrid grid = core_->grid();
   WaterSurface now;
   core_->surface(state, now);
@@ -110,15 +136,18 @@ void WaterSolver::system_positions(const State& state, int, std::span<Vec3> posi
 void WaterSolver::system_scalars(const State& state, int system, std::vector<std::vector<float>>& values) const {
   const std::size_t count = scalar_names(system).size();
   values.resize(count);
-  std::vector<double> of_cells(core_->grid().count());
+  const WaterGrid grid = core_->grid();
+  std::vector<double> of_cells(grid.count());
+  const std::vector<DrawnIn> drawn = drawn_in(state);
   for (std::size_t n = 0; n < count; ++n) {
     core_->scalar(state, n, of_cells);
     values[n].resize(mesh_.positions.size());
-    for_each_corner(core_->grid(), [&](const Corner& corner) {
+    for_each_corner(grid, [&](const Corner& corner) {
       double sum = 0;
       for (const std::size_t c : corner.cells()) sum += of_cells[c];
       values[n][corner.vertex] = static_cast<float>(sum / static_cast<double>(corner.count));
     });
+    put_drawn_in(grid, drawn, std::span(values[n]));
   }
 }
 
@@ -148,6 +177,7 @@ void WaterSolver::surface_flow(const State& state, int, std::span<Vec3> velociti
     if (norths > 0 && souths > 0) v.y() += v.z() * (south / souths - north / norths) / grid.cell;
     velocities[corner.vertex] = v;
   });
+  put_drawn_in(grid, drawn_in(state), velocities);
 }
 
 void WaterSolver::system_frame(const State& state, int system, FrameData& frame) const {

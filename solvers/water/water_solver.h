@@ -5,6 +5,9 @@
 // around it; where all of them are dry, a little below the ground, so that the ground hides it. Its scalars are means
 // over all cells around, wet or dry.
 //
+// Where something has dived in, the mesh goes down into the cavity (cavity_skin.h), and its vertices leave their places
+// on the grid.
+//
 // In the pre-roll the water stands still: bodies come out of their bind poses then, and nobody is to see their waves.
 #pragma once
 
@@ -38,6 +41,8 @@ struct WaterScene {
   std::vector<WaterVisitor> visitors;
   std::vector<WaterFloat> floats;
 };
+
+struct DrawnIn;
 
 /// The surface of still water as its mesh; level: m.
 Mesh water_mesh(const std::string& name, const WaterGrid& grid, double level);
@@ -74,6 +79,9 @@ class WaterSolver final : public Solver, public MovesPrimaries, public HasScalar
   const WaterCore& core() const { return *core_; }
 
  private:
+  /// Of the surface where no cavity is open.
+  void level_positions(const State& state, std::span<Vec3> positions) const;
+  std::vector<DrawnIn> drawn_in(const State& state) const;
   void say(std::string text, FrameReport& report) const;
   void add_forces(const WaterReport& done, std::span<const std::vector<Vec3>> to, FrameReport& report) const;
 

@@ -50,6 +50,7 @@ class PondCore final : public WaterCore {
   std::span<const std::string> scalar_names() const override { return scalars_; }
   void scalar(const State& state, std::size_t, std::span<double> out) const override { solver_->foam(state, out); }
   std::vector<Droplet> droplets(const State& state) const override { return solver_->droplets(state); }
+  std::vector<WaterCavity> cavities(const State& state) const override { return solver_->cavities(state); }
   std::vector<RigidMotion> floating(const State& state) const override { return solver_->float_motions(state); }
 
  private:

@@ -1,6 +1,7 @@
 // See pond_solver.h: what is read from a state.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "baker/core/parallel.h"
 #include "solvers/water/pond/pond_frame.h"
@@ -66,11 +67,24 @@ std::vector<RigidMotion> PondSolver::float_motions(const State& state) const {
   return out;
 }
 
-std::vector<PondCavity> PondSolver::cavities(const State& state) const {
-  std::vector<PondCavity> out;
-  for (const CavitySlice& s : memory(state).cavities)
-    out.push_back({setup_.corner + Vec3(s.x, -s.depth, s.z), std::sqrt(std::max(s.square, 0.0)), s.thickness,
-                   static_cast<int>(s.body)});
+std::vector<WaterCavity> PondSolver::cavities(const State& state) const {
+  std::map<double, WaterCavity> by_body;
+  for (const CavitySlice& s : memory(state).cavities) {
+    WaterCavity& cavity = by_body[s.body];
+    cavity.level = setup_.corner.y();
+    cavity.discs.push_back(
+        {setup_.corner + Vec3(s.x, -s.depth, s.z), std::sqrt(std::max(s.square, 0.0)), std::abs(s.thickness)});
+  }
+  std::vector<WaterCavity> out;
+  for (auto& [body, cavity] : by_body) {
+    // A body that has come twice has opened a depth twice: the wider one counts.
+    std::ranges::sort(cavity.discs, [](const AirDisc& a, const AirDisc& b) {
+      return a.centre.y() != b.centre.y() ? a.centre.y() > b.centre.y() : a.radius > b.radius;
+    });
+    const auto again = std::ranges::unique(cavity.discs, {}, [](const AirDisc& disc) { return disc.centre.y(); });
+    cavity.discs.erase(again.begin(), again.end());
+    out.push_back(std::move(cavity));
+  }
   return out;
 }
 

@@ -45,13 +45,6 @@ struct PondReport {
   bool finite = true;
 };
 
-/// Air below the surface, to be drawn as a hole.
-struct PondCavity {
-  Vec3 centre = Vec3::Zero();  ///< world [m]
-  double radius = 0, thickness = 0;
-  int driven = 0;
-};
-
 class PondSolver {
  public:
   /// Refuses, in one usage error, all faults of a setup.
@@ -74,7 +67,8 @@ class PondSolver {
   void foam(const State& state, std::span<double> out) const;
   std::vector<Droplet> droplets(const State& state) const;
   std::vector<RigidMotion> float_motions(const State& state) const;
-  std::vector<PondCavity> cavities(const State& state) const;
+  /// Behind each driven body that has any.
+  std::vector<WaterCavity> cavities(const State& state) const;
   WaterLedger ledger(const State& state) const;
   PondEnergy energy(const State& state) const;
   const PondModes& modes() const { return modes_; }
