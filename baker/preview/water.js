@@ -44,8 +44,9 @@ function makeWaterMaterial(colour, sky) {
       }
       // Thin foam is a net of walls, thick foam is closed.
       float foam_at(vec2 p, float share) {
-        float net = min(bubbles(p / 0.11), 0.6 * bubbles(p / 0.045) + 0.25);
-        return share <= 0.004 ? 0.0 : smoothstep(-0.12, 0.10, 1.15 * share - net) * smoothstep(0.0, 0.05, share);
+        // Bubbles of three sizes, so that nothing lines up; their walls are soft.
+        float net = min(bubbles(p / 0.07), min(0.7 * bubbles(p / 0.031 + 3.7) + 0.12, 0.5 * bubbles(p / 0.012 + 9.1) + 0.3));
+        return share <= 0.004 ? 0.0 : 0.85 * smoothstep(-0.22, 0.22, 0.95 * share - net) * smoothstep(0.0, 0.15, share);
       }
       void main() {
         vec3 V = normalize(-seen), N = normalize(out_of_it), up = normalize((viewMatrix * vec4(0.0, 1.0, 0.0, 0.0)).xyz);
