@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "baker/commands/command_line.h"
+#include "baker/commands/volumes.h"
 #include "baker/core/parallel.h"
 #include "baker/run/bake.h"
 #include "baker/run/profile_text.h"
@@ -52,7 +53,9 @@ int run(BakeArguments& a) {
   if (a.profile)
     for (const std::string& line : profile.lines()) std::printf("%s\n", line.c_str());
   for (const std::string& fault : result.faults) complain(fault);
-  return result.exit_code;
+  if (result.volumes.empty()) return result.exit_code;
+  const int written = run_volumes({.folder = result.volumes, .output = {}, .keep = true});
+  return result.exit_code != 0 ? result.exit_code : written;
 }
 
 }  // namespace

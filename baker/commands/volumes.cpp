@@ -41,6 +41,18 @@ std::filesystem::path alembic_of(const std::filesystem::path& folder, const Mani
   return found == system.caches.end() ? std::filesystem::path() : folder / found->file;
 }
 
+/// Whether the file of the last frame is there, which is written last, and is newer than its caches.
+bool is_there(const std::filesystem::path& folder, const Manifest& manifest, const ManifestSystem& system,
+              std::initializer_list<std::filesystem::path> caches) {
+  std::error_code failed;
+  const int last = manifest.first_written + manifest.written_count() - 1;
+  const auto written =
+      std::filesystem::last_write_time(folder / fmt::format("{}.{:04}.vdb", system.name, last), failed);
+  return !failed && std::ranges::all_of(caches, [&](const std::filesystem::path& cache) {
+    return cache.empty() || std::filesystem::last_write_time(cache, failed) <= written;
+  });
+}
+
 /// The lowest place of a surface in all frames, and the distance of its first two vertices [m].
 Result<std::pair<double, double>> measure(const std::filesystem::path& cache) {
   auto reader = open_cache(cache);
@@ -82,9 +94,11 @@ Result<std::vector<std::string>> write_volumes(const VolumesOptions& options) {
     if (!measured) return measured.error();
     const auto [lowest, cell] = *measured;
     const double voxel = options.voxel > 0 ? options.voxel : cell;
+    const bool kept = options.keep && is_there(output, *manifest, system, {surface, droplets});
     const auto done =
-        run_program(program, {surface.string(), droplets.empty() ? "-" : droplets.string(), output.string(),
-                              system.name, fmt::format("{}", lowest - 4 * voxel), fmt::format("{}", voxel)});
+        kept ? Result<int>(0)
+             : run_program(program, {surface.string(), droplets.empty() ? "-" : droplets.string(), output.string(),
+                                     system.name, fmt::format("{}", lowest - 4 * voxel), fmt::format("{}", voxel)});
     if (!done) return done.error();
     if (*done != 0) return output_error("volumes of \"" + system.name + "\" could not be written", output.string());
     out.push_back(

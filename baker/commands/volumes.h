@@ -13,6 +13,7 @@ struct VolumesOptions {
   std::filesystem::path folder;  ///< of the bake
   std::filesystem::path output;  ///< folder for the files; empty: the bake's
   double voxel = 0;              ///< m; 0: as large as the cells of the water's grid
+  bool keep = false;             ///< files that are there and newer than their caches stay
 };
 
 /// Names of the files of one system, "pond.0001.vdb ... pond.0192.vdb", and what to set where they are opened: lines to

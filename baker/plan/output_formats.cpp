@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "baker/plan/located.h"
+#include "baker/systems/interface/system.h"
 
 namespace ft::inline baker {
 namespace {
@@ -21,6 +24,21 @@ std::string quoted_list(std::span<const std::string> names) {
   return out;
 }
 
+/// Whether the water that is to go out as volumes exists, and its caches.
+Status check_volumes(const Shot& shot) {
+  if (!shot.cache_volumes) return {};
+  const auto is_water = [](const auto& secondary) {
+    const SystemKind* kind = find_system_kind(secondary->kind());
+    return kind && kind->is_liquid();
+  };
+  if (std::ranges::none_of(shot.secondaries, is_water))
+    return located(usage_error("volumes are of water, and this shot has none"), shot, "cache");
+  if (std::ranges::count(shot.cache_formats, "abc") == 0)
+    return located(usage_error("volumes are made from Alembic caches", {}, "formats = [\"abc\"] under [cache]"), shot,
+                   "cache");
+  return {};
+}
+
 }  // namespace
 
 std::vector<const CacheFormat*> formats_for(const Shot& shot, const FrameContent& content) {
@@ -35,6 +53,7 @@ std::vector<const CacheFormat*> formats_for(const Shot& shot, const FrameContent
 
 Status check_output_formats(BakePlan& plan) {
   const Shot& shot = plan.shot();
+  if (const Status volumes = check_volumes(shot); !volumes) return volumes;
   for (const auto& group : plan.groups)
     for (const SystemOutput& output : group->outputs) {
       const std::string owner = fmt::format("{} \"{}\"", group->role(), output.name());

@@ -114,6 +114,7 @@ std::vector<std::string> plan_lines(const BakePlan& plan, const std::filesystem:
   for (const std::string& f : shot.cache_formats) formats += (formats.empty() ? "" : ", ") + f;
   out.push_back(fmt::format("caches: {} frames as {}, about {}, in {}", plan.written_count(), formats,
                             size_text(cache_bytes(plan)), folder.string()));
+  if (shot.cache_volumes) out.push_back("volumes: the water as OpenVDB, a file for each frame, when all is baked");
   return out;
 }
 

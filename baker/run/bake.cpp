@@ -150,6 +150,7 @@ BakeResult run(const BakeOptions& options, const BakeServices& services, const B
   if (baked) baked = judge(result.manifest, gates_of(plan->shot()));
   BakeResult out;
   if (!baked) out = failed(baked.error());
+  if (result.status && plan->shot().cache_volumes) out.volumes = folder.path;
   progress.end({out.exit_code, baked ? closing(result.manifest, folder) : baked.error().text(),
                 interaction_lines(interactions(result.manifest, plan->primaries), plan->primaries), result.seconds});
   return out;
@@ -203,6 +204,7 @@ BakeResult bake(const BakeOptions& options, const BakeServices& services, Progre
     BakeResult out;
     if (const Status judged = judge(status.before, gates_of(inputs->shot)); !judged) out = failed(judged.error());
     out.lines.push_back(describe(status, folder));
+    if (inputs->shot.cache_volumes) out.volumes = folder.path;
     return out;
   }
   if (!kept) return failed(kept.error());

@@ -39,6 +39,8 @@ struct BakeResult {
   int exit_code = 0;
   std::vector<std::string> lines;   ///< answer of --explain and --dry-run, and "up to date"; for stdout
   std::vector<std::string> faults;  ///< for stderr
+  /// Of a finished bake whose water is to go out as OpenVDB, too: its folder; else empty.
+  std::filesystem::path volumes{};
 };
 
 /// The solver that the group's kind has for it.

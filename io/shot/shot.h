@@ -171,6 +171,7 @@ struct Shot {
   SolverSpec solver;
   std::vector<std::string> cache_formats = {"abc", "pc2"};
   bool cache_collider = true;   ///< the feasible collider, beside the cloth
+  bool cache_volumes = false;   ///< the water as OpenVDB, when all else is baked
   double gate_p99_strain = 0;   ///< quality gate: exit code 4 above it; 0 off
   bool gate_crossings = false;  ///< exit code 4 when any frame has crossings
   /// Exit code 4 when a metric of any frame is above its limit.

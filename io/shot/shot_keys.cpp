@@ -148,6 +148,9 @@ std::span<const ShotKey<Shot>> cache_keys() {
       {"formats", &Shot::cache_formats, 0, 0, "", "@formats", false, "format type", "One cache per cloth and format"},
       {"collider", &Shot::cache_collider, 0, 0, "", "", false, "body",
        "Also write the body that the cloth collided with"},
+      {"volumes", &Shot::cache_volumes, 0, 0, "", "", false, "vdb openvdb volume",
+       "Also write the water as OpenVDB, a file for each frame, when the bake is done; made from its abc caches, as by "
+       "`followthrough volumes`"},
   };
   return keys;
 }

@@ -35,13 +35,15 @@ constexpr const char* k_paper =
 class WaterBakeTest : public testing::Test {
  protected:
   /// A block comes down on a puddle, and a ball falls into a pond.
-  void write_shot(const std::string& water, int frames = 12) const {
+  void write_shot(const std::string& water, int frames = 12,
+                  const std::string& cache = "formats = [\"abc\", \"pc2\"]\n") const {
     std::ofstream(folder_ / "shot.toml")
         << "[shot]\nframes = \"1-" << frames
         << "\"\nfps = 24\npreroll = 0\n[primary.stamp]\nshape = \"box\"\nsize = [0.3, 0.2, 0.3]\n"
            "position = [0, 0.1, 0]\nvelocity = [0, -1.2, 0]\nrelease = 9999\n"
            "[primary.float_ball]\nshape = \"sphere\"\nradius = 0.3\nmass = 50\nposition = [0, 0.4, 0]\n"
-        << water << "[cache]\nformats = [\"abc\", \"pc2\"]\n";
+        << water << "[cache]\n"
+        << cache;
   }
   BakeResult run(const std::string& name) const { return bake_shot_in(folder_.path(), name); }
   std::string refusal(const std::string& water) const {
@@ -265,6 +267,33 @@ TEST_F(WaterBakeTest, Its_frames_are_written_as_volumes_with_the_same_bytes_whos
   EXPECT_LT(fastest("pond.0001.vdb"), fastest("pond.0012.vdb")) << "it knows the frame after it only";
   EXPECT_GT(fastest("pond.0012.vdb"), 0.05f) << "the ball has come down";
   EXPECT_NE(write_volumes({.folder = folder_ / "a", .output = {}}).error().text().find("manifest"), std::string::npos);
+}
+
+TEST_F(WaterBakeTest, A_shot_asks_for_volumes_which_are_made_once) {
+  write_shot(k_pond, 3, "formats = [\"abc\"]\nvolumes = true\n");
+  for (int turn = 0; turn < 2; ++turn) {
+    const BakeResult result = run("out");
+    ASSERT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.volumes, folder_ / "out") << turn;
+  }
+  const auto last = folder_ / "out/pond.0003.vdb";
+  const auto made = [&] {
+    EXPECT_TRUE(write_volumes({.folder = folder_ / "out", .output = {}, .keep = true}));
+    return std::filesystem::last_write_time(last);
+  };
+  const auto first = made();
+  EXPECT_EQ(made(), first);
+  std::filesystem::last_write_time(folder_ / "out/pond.abc", first + std::chrono::seconds(1));
+  EXPECT_NE(made(), first) << "its cache is newer";
+  write_shot(k_pond, 3);
+  EXPECT_TRUE(run("out").volumes.empty());
+  for (const auto& [water, cache, words] : {std::tuple(k_pond, "formats = [\"pc2\"]", "made from Alembic"),
+                                            {"[rope.line]\nlength = 1\n", "formats = [\"abc\"]", "has none"}}) {
+    write_shot(water, 3, std::string(cache) + "\nvolumes = true\n");
+    const auto made = plan_shot_in(folder_.path());
+    ASSERT_FALSE(made);
+    EXPECT_NE(made.error().text().find(words), std::string::npos) << made.error().text();
+  }
 }
 
 TEST_F(WaterBakeTest, What_makes_no_sense_is_refused_with_its_place) {
