@@ -25,11 +25,15 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& p) {
 
 }  // namespace
 
-std::optional<double> enclosed_volume(std::span<const Vec3> own_positions, std::span<const Triangle> own_triangles,
+std::optional<double> enclosed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                       double spacing) {
+  return enclosed_volume(positions, triangles, close_rims(positions, triangles), spacing);
+}
+
+std::optional<double> enclosed_volume(std::span<const Vec3> own_positions, std::span<const Triangle> own_triangles,
+                                      const Lids& lids, double spacing) {
   CHECK(spacing > 0);
   if (own_positions.empty() || own_triangles.empty()) return {};
-  const Lids lids = close_rims(own_positions, own_triangles);
   if (lids.share() > k_most_open) return {};
   std::vector<Vec3> positions(own_positions.begin(), own_positions.end());
   positions.insert(positions.end(), lids.middles.begin(), lids.middles.end());

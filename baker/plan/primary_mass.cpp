@@ -38,8 +38,8 @@ PrimaryMass primary_mass(const PrimarySpec& spec, const Trajectory& trajectory) 
   const double spacing = k_columns * bounds(bind).size().maxCoeff();
   const Surface& surface = trajectory.surface();
   const std::vector<Triangle> solid = solid_triangles(surface.triangles, surface.part_of_vertex, surface.parts);
-  if (spacing > 0) out.volume = enclosed_volume(bind, solid, spacing).value_or(0);
   const Lids lids = close_rims(bind, solid);
+  if (spacing > 0) out.volume = enclosed_volume(bind, solid, lids, spacing).value_or(0);
   out.lids = lids.share();
   out.open_edges = lids.edges > 0 ? lids.open_edges / lids.edges : 0;
   out.kilograms = k_body_density * out.volume;

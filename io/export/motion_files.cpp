@@ -5,6 +5,7 @@
 #include "io/export/glb_from_character.h"
 #include "io/export/gltf_export.h"
 #include "io/import/character/clips.h"
+#include "io/import/character/match_nodes.h"
 #include "io/import/import_cache.h"
 
 namespace ft::inline io {
@@ -13,7 +14,7 @@ namespace {
 /// Changes of a character as changes of the file that its clips came from: retarget_clips() backwards.
 Result<std::vector<ChangedChannel>> for_animation_file(const Character& character, const Character& file,
                                                        std::span<const ChangedChannel> changes) {
-  const std::vector<int> to = match_names(file, character);
+  const std::vector<int> to = match_nodes(file, character).to;
   std::vector<ChangedChannel> out(changes.begin(), changes.end());
   for (ChangedChannel& change : out) {
     const auto from = std::find(to.begin(), to.end(), change.node);

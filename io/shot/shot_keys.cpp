@@ -87,9 +87,8 @@ std::span<const ShotKey<PrimarySpec>> primary_keys() {
        "Time within the clip at the shot's first frame; garments for a geometry cache are modelled on its pose there"},
       {"speed", &PrimarySpec::speed, 0.01, 100, "1", "", false, "time_scale", "Playback speed; 2 is twice as fast"},
       {"loop", &PrimarySpec::loop, 0, 0, "", "", false, "loops looped looping cycle cycles cyclic",
-       "The clip repeats as long as the shot lasts; each cycle goes on from where the last one has got to on the "
-       "ground, "
-       "and in its heading"},
+       "The whole clip repeats as long as the shot lasts; each cycle goes on from where the last one has got to on "
+       "the ground, and in its heading"},
       {"repeat", &PrimarySpec::repeat, 1, 10'000, "times", "", false, "repeats times",
        "Plays the clip, from `clip_start` to its end, so often in a row, each time from where the last one has got to"},
       {"unit_scale", &PrimarySpec::unit_scale, 1e-6, 1000, "m per file unit", "", false, "scale units unit",

@@ -230,5 +230,74 @@ TEST(Collada, Comes_in_right) {
   EXPECT_LT(test::fault_error("dae_step", *imported), 6.7e-5);
 }
 
+/// The message with which the text is refused; empty when it is read.
+std::string refusal(const std::string& text) {
+  const test::ScratchFolder scratch;
+  const auto path = scratch / "a.dae";
+  std::ofstream(path) << text;
+  auto out = read_character(path);
+  return out ? "" : out.error().what;
+}
+
+/// A skinned triangle with a texture coordinate.
+std::string skinned() {
+  return dae({}, R"(<library_geometries><geometry id="g"><mesh>)" + source("gp", 3, "0 0 0 1 0 0 0 1 0") +
+                     source("gt", 2, "0 0 1 1") +
+                     R"(<vertices id="gv"><input semantic="POSITION" source="#gp"/></vertices>)"
+                     R"(<polylist count="1"><input semantic="VERTEX" source="#gv" offset="0"/>)"
+                     R"(<input semantic="TEXCOORD" source="#gt" offset="1"/><vcount>3</vcount><p>0 0 1 1 2 0</p>)"
+                     R"(</polylist></mesh></geometry></library_geometries>)"
+                     R"(<library_controllers><controller id="c"><skin source="#g">)" +
+                     source("cj", 1, "hips top", true) + source("cw", 1, "1 0.5 0.25") +
+                     source("cb", 16, "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1") +
+                     R"(<joints><input semantic="JOINT" source="#cj"/><input semantic="INV_BIND_MATRIX" source="#cb"/>)"
+                     R"(</joints><vertex_weights count="3"><input semantic="JOINT" source="#cj" offset="0"/>)"
+                     R"(<input semantic="WEIGHT" source="#cw" offset="1"/><vcount>1 2 1</vcount>)"
+                     R"(<v>0 0 0 1 1 1 1 0</v></vertex_weights></skin></controller></library_controllers>)");
+}
+
+// Each line is one number changed in a file that is read as it is: assimp alone reads beyond its arrays, goes round
+// until the memory ends, or gives a wrong skin.
+TEST(Collada, A_count_or_an_index_beyond_what_the_file_holds_is_refused_by_its_element) {
+  const std::string good = skinned();
+  EXPECT_EQ(refusal(good), "");
+  const struct {
+    const char *was, *is, *message;
+  } cases[] = {
+      {"\"gp-a\" count=\"9\"", "\"gp-a\" count=\"10\"", "<float_array> \"gp-a\" is to have 10 values and has 9"},
+      {"\"gp-a\" count=\"9\"", "\"gp-a\" count=\"1999999999\"", "<float_array> \"gp-a\" is to have 1999999999 values"},
+      {"\"gp-a\" count=\"9\"", "\"gp-a\" count=\"8\"",
+       "<accessor> in \"gp\" takes more than the 8 values of its array"},
+      {"count=\"3\" stride=\"3\"", "count=\"4\" stride=\"3\"", "<accessor> in \"gp\" takes more than the 9 values"},
+      {"count=\"3\" stride=\"3\"", "count=\"3\" stride=\"4\"", "<accessor> in \"gp\" takes more than the 9 values"},
+      {"count=\"3\" stride=\"3\"", "count=\"2\" stride=\"3\"", "<p> in \"g\" has the index 2 of 2 values"},
+      {"<p>0 0 1", "<p>0 2 1", "<p> in \"g\" has the index 2 of 2 values"},
+      {"<p>0 0 1", "<p>0 x 1", "<p> in \"g\" has \"x\" where an index belongs"},
+      {"<p>0 0 1", "<p>0 .5 1", "<p> in \"g\" has \".5\" where an index belongs"},
+      {"<p>0 0 1", "<p>-1 0 1", "<p> in \"g\" has \"-1\" where an index belongs"},
+      {"<p>0 0 1", "<p>0 1", "<p> in \"g\" has 5 indices, 2 of them to a point"},
+      {"<vcount>3<", "<vcount>4<", "<polylist> in \"g\" is to have 4 points and has 3"},
+      {"<vcount>3<", "<vcount>4000000000<", "<polylist> in \"g\" is to have 4000000000 points and has 3"},
+      {"<polylist count=\"1\"", "<polylist count=\"2\"", "<polylist> in \"g\" is to have 2 parts and has 1"},
+      {"#gt\" offset=\"1\"", "#gt\" offset=\"99999999\"", "<polylist> in \"g\" has an input at offset 99999999"},
+      {"weights count=\"3\"", "weights count=\"99999999\"",
+       "<vertex_weights> in \"c\" is to have 99999999 parts and has 3"},
+      {"weights count=\"3\"", "weights count=\"2\"", "<vertex_weights> in \"c\" is for 2 vertices, and \"g\" has 3"},
+      {"<vcount>1 2 1<", "<vcount>1 9 1<",
+       "<vertex_weights> in \"c\" is to have 11 pairs of joint and weight and has 8"},
+      {"<v>0 0 0 1 1", "<v>0 0 0 1 2", "<vertex_weights> in \"c\" has the joint 2 of 2"},
+      {"<v>0 0 0 1 1", "<v>0 3 0 1 1", "<vertex_weights> in \"c\" has the weight 3 of 3"},
+      {"<v>0 0 0 1 1", "<v>0 x 0 1 1", "<v> in \"c\" has \"x\" where an index belongs"},
+      {"\"cb-a\" count=\"32\">1", "\"cb-a\" count=\"31\">", "<accessor> in \"cb\" takes more than the 31 values"},
+  };
+  for (const auto& c : cases) {
+    std::string bad = good;
+    const auto place = bad.find(c.was);
+    ASSERT_NE(place, std::string::npos) << c.was;
+    bad.replace(place, std::string(c.was).size(), c.is);
+    EXPECT_NE(refusal(bad).find(c.message), std::string::npos) << c.is << ": " << refusal(bad);
+  }
+}
+
 }  // namespace
 }  // namespace ft

@@ -257,6 +257,25 @@ TEST(Cycle_curves, Repeat_key_by_key_and_hold_where_the_curve_holds) {
   EXPECT_NEAR(sampled.at(3.7), curve.at(2.7), 1e-2);
 }
 
+TEST(Cycle_curves, Jumps_stay_jumps_where_a_curve_is_not_repeated_by_its_keys) {
+  Curve steps;  // goes on beyond both ends of the cycle, which is from 2 to 3
+  steps.times = {1.7, 2.25, 2.5, 2.8, 3.4}, steps.values = {1, 4, -2, 6, 0};
+  steps.interpolation = {CurveInterpolation::k_constant, CurveInterpolation::k_constant_next,
+                         CurveInterpolation::k_constant, CurveInterpolation::k_linear, CurveInterpolation::k_constant};
+  Curve saw;  // begins anew at 2.3, 2.6 and 2.9
+  saw.times = {2, 2.3}, saw.values = {0, 1}, saw.after.rule = CurveInfinity::k_repeat;
+  for (const Curve* curve : {&steps, &saw}) {
+    const Curve repeated = repeated_curve(*curve, {2, 1, 0, 2});
+    for (int n = 0; n < 3; ++n)
+      for (const double place : {0.0, 0.25, 0.3, 0.5, 0.6, 0.8, 0.9})
+        for (const double off : {1e-7, 0.001, -0.001, -1e-7}) {
+          if (place + off < 0) continue;
+          EXPECT_NEAR(repeated.at(2 + n + place + off), curve->at(2 + place + off), 1e-9) << n << " " << place << off;
+        }
+    for (const double place : {0.25, 0.5, 0.8}) EXPECT_NEAR(repeated.at(2 + place), curve->at(2 + place), 1e-9);
+  }
+}
+
 TEST(Cycle, A_root_with_a_stack_of_transforms_is_carried_alike) {
   Walker walker;
   Clip& clip = walker.placed.character.clips[0];

@@ -56,17 +56,10 @@ SkinAtRest skin_at_rest(const CharacterMesh& mesh, const std::vector<Mat4>& glob
 
 }  // namespace
 
-std::vector<Mat4> rest_globals(const Character& character) {
-  std::vector<Mat4> locals, globals(character.nodes.size());
-  for (const CharacterNode& node : character.nodes) locals.push_back(node.local);
-  globals_from_locals(character.nodes, locals, globals);
-  return globals;
-}
-
 BindPose find_bind_pose(const Character& character) {
   const std::size_t n = character.nodes.size();
   BindPose out;
-  out.globals = rest_globals(character);
+  out.globals = rest_globals(character.nodes);
   for (const CharacterNode& node : character.nodes) out.locals.push_back(node.local);
 
   std::vector<char> known(n, 0);

@@ -19,7 +19,4 @@ BindPose find_bind_pose(const Character& character);
 /// The deepest node above everything that carries vertices of the chosen meshes.
 int find_pelvis(const Character& character, const std::vector<int>& meshes);
 
-/// Rest globals of all nodes.
-std::vector<Mat4> rest_globals(const Character& character);
-
 }  // namespace ft::inline io

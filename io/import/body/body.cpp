@@ -12,6 +12,7 @@
 #include "io/import/body/bind.h"
 #include "io/import/body/body_bones.h"
 #include "io/import/body/surface_nets.h"
+#include "io/import/character/pose.h"
 
 namespace ft::inline io {
 namespace {
@@ -289,7 +290,7 @@ Status add_capsules(const Character& character, const BodyFrame& frame, Characte
 }  // namespace
 
 Status add_body(Character& character, const std::string& style, const Mat3& axes, std::span<const Mat4> globals) {
-  const std::vector<Mat4> rest = rest_globals(character);
+  const std::vector<Mat4> rest = rest_globals(character.nodes);
   if (globals.empty()) globals = rest;
   std::vector<CharacterMesh> meshes;
   std::vector<std::pair<std::string, Error>> bare;  // roots without a body, and why

@@ -1,28 +1,15 @@
 #include "io/import/character/clips.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <set>
-#include <unordered_map>
 
+#include "io/import/character/match_nodes.h"
 #include "io/import/character/name_list.h"
 
 namespace ft::inline io {
 namespace {
-
-std::string lower(const std::string& text) {
-  std::string out;
-  for (const char c : text) out.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-  return out;
-}
-
-/// Without a namespace ("mixamorig:Hips") or a path ("Armature|Hips"), in small letters: the second try at a match.
-std::string bare(const std::string& name) {
-  const auto at = name.find_last_of(":|");
-  return lower(at == std::string::npos ? name : name.substr(at + 1));
-}
 
 std::size_t letters_changed(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -37,14 +24,6 @@ std::size_t letters_changed(const std::string& a, const std::string& b) {
     }
   }
   return row.back();
-}
-
-template <class Key>
-std::unordered_map<std::string, std::vector<int>> index_names(const Character& character, Key key) {
-  std::unordered_map<std::string, std::vector<int>> out;
-  for (std::size_t i = 0; i < character.nodes.size(); ++i)
-    out[key(character.nodes[i].name)].push_back(static_cast<int>(i));
-  return out;
 }
 
 std::string some_of(const std::vector<std::string>& names, std::size_t most) {
@@ -66,7 +45,7 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
   for (const std::string& c : candidates) {
-    const std::string a = lower(word), b = lower(c);
+    const std::string a = small_letters(word), b = small_letters(c);
     std::size_t changed = letters_changed(a, b);
     if (!a.empty() && (b.find(a) != std::string::npos || (!b.empty() && a.find(b) != std::string::npos)))
       changed = std::min<std::size_t>(changed, 1);
@@ -99,38 +78,22 @@ Result<int> select_clip(const Character& character, const std::string& name, con
   return usage_error("clip \"" + name + "\" does not exist", file, hint);
 }
 
-std::vector<int> match_names(const Character& source, const Character& target) {
-  const auto exact = index_names(target, [](const std::string& n) { return n; });
-  const auto loose = index_names(target, bare);
-  std::unordered_map<std::string, std::size_t> met;  // nodes that share a name are matched in their order
-  std::vector<int> to(source.nodes.size(), -1);
-  for (std::size_t i = 0; i < source.nodes.size(); ++i) {
-    const std::string& name = source.nodes[i].name;
-    const std::size_t nth = met[name]++;
-    if (const auto found = exact.find(name); found != exact.end())
-      to[i] = found->second[nth < found->second.size() ? nth : 0];
-    else if (const auto near = loose.find(bare(name)); near != loose.end())
-      to[i] = near->second.front();
-  }
-  return to;
-}
-
 double unit_ratio(const Character& source, const Character& target) {
   return source.file_unit > 0 && target.file_unit > 0 ? source.file_unit / target.file_unit : 1;
 }
 
 Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
                                          const std::string& source_file, std::vector<std::string>& notes) {
-  const std::vector<int> to = match_names(source, target);
+  const NodeMatch match = match_nodes(source, target);
+  const std::vector<int>& to = match.to;
   const double scale = unit_ratio(source, target);
   std::vector<Clip> out;
   std::vector<char> is_missing(source.nodes.size(), 0);
-  std::set<std::string> other_shapes;
+  std::set<std::string> other_shapes, guessed;
   std::size_t matched = 0;
   for (const Clip& clip : source.clips) {
     Clip moved = clip;
     moved.channels.clear(), moved.stacks.clear(), moved.shapes.clear();
-    std::set<int> moved_nodes;
     for (Channel channel : clip.channels) {
       const auto node = static_cast<std::size_t>(channel.node);
       if (to[node] < 0) {
@@ -138,6 +101,7 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
         continue;
       }
       ++matched;
+      if (match.in_order[node]) guessed.insert(source.nodes[node].name);
       channel.node = to[node];
       for (double& v : channel.translation.values) v *= scale;
       if (!channel.weights.empty() && static_cast<std::size_t>(channel.weights.width) !=
@@ -152,8 +116,8 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
         continue;
       }
       ++matched;
+      if (match.in_order[node]) guessed.insert(source.nodes[node].name);
       stack.node = to[node];
-      if (!moved_nodes.insert(stack.node).second) continue;  // two of the source are one here
       for (ElementaryTransform& e : stack.elements) {
         e.unit *= scale;
         e.matrix.topRightCorner<3, 1>() *= scale;
@@ -167,6 +131,7 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
         continue;
       }
       ++matched;
+      if (match.in_order[node]) guessed.insert(source.nodes[node].name);
       if (source.nodes[node].morph_weights.size() !=
           target.nodes[static_cast<std::size_t>(to[node])].morph_weights.size()) {
         other_shapes.insert(source.nodes[node].name);
@@ -188,6 +153,10 @@ Result<std::vector<Clip>> retarget_clips(const Character& source, const Characte
   if (!missing.empty())
     notes.push_back(std::to_string(missing.size()) +
                     " animated nodes are not in the character: " + some_of(missing, 8));
+  if (!guessed.empty())
+    notes.push_back(
+        "joints that share a name and the names above them were matched in their order, which is a guess: " +
+        name_list(guessed));
   if (!other_shapes.empty())
     notes.push_back("blend shapes of these nodes are not those of the character, and their keys were left out: " +
                     name_list(other_shapes));

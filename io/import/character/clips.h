@@ -14,15 +14,13 @@ namespace ft::inline io {
 Result<int> select_clip(const Character& character, const std::string& name, const std::string& file,
                         std::vector<std::string>& notes);
 
-/// For each node of `source` the one of `target` that has its name, else its name without a namespace or a path; -1:
-/// none.
-std::vector<int> match_names(const Character& source, const Character& target);
-
 /// File units of the target in one of the source; 1 where one of them carries no unit (BVH).
 double unit_ratio(const Character& source, const Character& target);
 
-/// Takes the clips of `source` (a file with the motion only) for `target`, node by name; lengths change from source's
-/// unit to target's. Nodes that are missing here are noted; no match at all is an error.
+/// Takes the clips of `source` (a file with the motion only) for `target`, node by name
+/// (match_nodes.h); lengths change from source's
+/// unit to target's. Nodes that are missing here are noted, and those that are
+/// matched by a guess; no match at all is an error.
 Result<std::vector<Clip>> retarget_clips(const Character& source, const Character& target,
                                          const std::string& source_file, std::vector<std::string>& notes);
 

@@ -1,4 +1,4 @@
-// Names in a message.
+// Names in a message, and compared.
 #pragma once
 
 #include <string>
@@ -16,6 +16,13 @@ std::string name_list(const Names& names) {
     out += (out.empty() ? "\"" : ", \"") + name + "\"";
   }
   return out;
+}
+
+/// A to Z in small letters.
+inline std::string small_letters(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
 }
 
 }  // namespace ft::inline io

@@ -180,4 +180,11 @@ void globals_from_locals(std::span<const CharacterNode> nodes, std::span<const M
   }
 }
 
+std::vector<Mat4> rest_globals(std::span<const CharacterNode> nodes) {
+  std::vector<Mat4> locals, globals(nodes.size());
+  for (const CharacterNode& node : nodes) locals.push_back(node.local);
+  globals_from_locals(nodes, locals, globals);
+  return globals;
+}
+
 }  // namespace ft::inline io

@@ -65,4 +65,7 @@ class ClipPose {
 /// Local to global, in node order (parents first).
 void globals_from_locals(std::span<const CharacterNode> nodes, std::span<const Mat4> locals, std::span<Mat4> globals);
 
+/// The rest places of nodes in the scene, file units and axes.
+std::vector<Mat4> rest_globals(std::span<const CharacterNode> nodes);
+
 }  // namespace ft::inline io

@@ -259,7 +259,7 @@ Status read_collada_clips(const ColladaFile& file, Character& character) {
 void note_collada_contents(const ColladaFile& file, Character& character) {
   std::set<std::string> driven, physics, morphs;
   std::int64_t driven_count = 0;
-  for (pugi::xml_node n = file.root(); n;) {
+  for (pugi::xml_node n = file.root(); n; n = next_element(n, file.root())) {
     std::string kind = n.name();
     std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
     const std::string own = n.attribute("name") ? n.attribute("name").value() : n.attribute("id").value();
@@ -279,12 +279,6 @@ void note_collada_contents(const ColladaFile& file, Character& character) {
                                   : own);
       ++driven_count;
     }
-    if (n.first_child()) {
-      n = n.first_child();
-      continue;
-    }
-    while (n && n != file.root() && !n.next_sibling()) n = n.parent();
-    n = n == file.root() ? pugi::xml_node() : n.next_sibling();
   }
   if (!driven.empty()) {
     character.notes.push_back(

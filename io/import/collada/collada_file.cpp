@@ -57,21 +57,29 @@ std::vector<double> collada_numbers(const char* text) {
   return out;
 }
 
+pugi::xml_node next_element(pugi::xml_node element, const pugi::xml_node& top) {
+  if (element.first_child()) return element.first_child();
+  while (element && element != top && !element.next_sibling()) element = element.parent();
+  return element == top ? pugi::xml_node() : element.next_sibling();
+}
+
+std::size_t collada_columns(const pugi::xml_node& param) {
+  const std::string type = param.attribute("type").value();
+  return type == "float4x4"   ? 16
+         : type == "float3x3" ? 9
+         : type == "float4"   ? 4
+         : type == "float3"   ? 3
+         : type == "float2"   ? 2
+                              : 1;
+}
+
 Result<ColladaFile> ColladaFile::open(const std::filesystem::path& path) {
   ColladaFile file;
   file.document_ = std::make_unique<pugi::xml_document>();
   const pugi::xml_parse_result read = file.document_->load_file(path.c_str());
   if (!read) return input_error(std::string("is no XML that can be read (") + read.description() + ")");
-  // Depth first without recursion: pugixml walks by links.
-  for (pugi::xml_node n = file.root(); n;) {
+  for (pugi::xml_node n = file.root(); n; n = next_element(n, file.root()))
     if (const pugi::xml_attribute id = n.attribute("id")) file.by_id_.emplace(id.value(), n);
-    if (n.first_child()) {
-      n = n.first_child();
-      continue;
-    }
-    while (n && n != file.root() && !n.next_sibling()) n = n.parent();
-    n = n == file.root() ? pugi::xml_node() : n.next_sibling();
-  }
   return file;
 }
 
@@ -106,14 +114,7 @@ Result<ColladaRows> ColladaFile::source(const std::string& reference) const {
   bool named = false;
   for (const pugi::xml_node param : accessor.children("param")) named = named || param.attribute("name");
   for (const pugi::xml_node param : accessor.children("param")) {
-    const std::string type = param.attribute("type").value();
-    // A matrix or a vector takes several columns under one name.
-    const std::size_t wide = type == "float4x4"   ? 16
-                             : type == "float3x3" ? 9
-                             : type == "float4"   ? 4
-                             : type == "float3"   ? 3
-                             : type == "float2"   ? 2
-                                                  : 1;
+    const std::size_t wide = collada_columns(param);
     for (std::size_t k = 0; k < wide; ++k, ++column)
       if (!named || param.attribute("name")) columns.push_back(column);
   }
@@ -145,11 +146,9 @@ double ColladaFile::unit() const {
   return std::isfinite(metres) && metres > 0 ? metres : 1;
 }
 
-std::string with_bind_shape_matrices(const std::filesystem::path& path) {
-  auto file = ColladaFile::open(path);
+std::string with_bind_shape_matrices(const ColladaFile& file) {
   bool changed = false;
-  if (!file) return {};
-  for (const pugi::xml_node library : file->root().children("library_controllers"))
+  for (const pugi::xml_node library : file.root().children("library_controllers"))
     for (const pugi::xml_node controller : library.children("controller"))
       for (pugi::xml_node skin : controller.children("skin")) {
         if (skin.child("bind_shape_matrix")) continue;
@@ -158,7 +157,7 @@ std::string with_bind_shape_matrices(const std::filesystem::path& path) {
       }
   if (!changed) return {};
   std::ostringstream out;
-  file->root().print(out, "", pugi::format_raw);
+  file.root().print(out, "", pugi::format_raw);
   return out.str();
 }
 

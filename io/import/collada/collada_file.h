@@ -47,8 +47,14 @@ using ColladaNode = std::pair<pugi::xml_node, int>;  ///< <node> and a node of t
 std::vector<ColladaNode> match_collada_nodes(const ColladaFile& file, const Character& character);
 
 /// The file's text with an identity in place of each <bind_shape_matrix> that a skin does without (it may; assimp 5.2.5
-/// then takes what the memory holds); empty when no skin does, or when it is no XML.
-std::string with_bind_shape_matrices(const std::filesystem::path& path);
+/// then takes what the memory holds); empty when no skin does.
+std::string with_bind_shape_matrices(const ColladaFile& file);
+
+/// The next element of a walk through all below `top`, parents first; an empty one at the end.
+pugi::xml_node next_element(pugi::xml_node element, const pugi::xml_node& top);
+
+/// Values of a row under the name of one <param>: a matrix or a vector has several.
+std::size_t collada_columns(const pugi::xml_node& param);
 
 /// Numbers of a text, separated by white space; what is no number ends them.
 std::vector<double> collada_numbers(const char* text);

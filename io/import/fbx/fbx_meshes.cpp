@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "io/import/character/polygons.h"
+#include "io/import/character/pose.h"
 #include "io/import/fbx/fbx_scene.h"
 #include "io/import/fbx/fbx_shapes.h"
 #include "io/import/fbx/fbx_skin.h"

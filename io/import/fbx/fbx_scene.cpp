@@ -10,15 +10,6 @@ int FbxScene::node_of(const FbxObject* model) const {
   return found != node_of_model.end() ? found->second : -1;
 }
 
-std::vector<Mat4> rest_globals(const std::vector<CharacterNode>& nodes) {
-  std::vector<Mat4> out(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const int parent = nodes[i].parent;
-    out[i] = parent < 0 ? nodes[i].local : Mat4(out[static_cast<std::size_t>(parent)] * nodes[i].local);
-  }
-  return out;
-}
-
 namespace {
 
 /// A handle of a control rig, which moves joints in its own program only.

@@ -27,7 +27,4 @@ Result<FbxScene> read_fbx_nodes(const FbxDocument& document, Character& out);
 /// Meshes with their geometric transforms, skins and blend shapes; fills scene.shapes and the rest weights of morphs.
 Status read_fbx_meshes(const FbxDocument& document, FbxScene& scene, Character& out);
 
-/// The rest places of nodes in the scene, in file units.
-std::vector<Mat4> rest_globals(const std::vector<CharacterNode>& nodes);
-
 }  // namespace ft::inline io

@@ -11,39 +11,39 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <map>
+#include <optional>
 #include <set>
 
 #include "baker/core/file.h"
+#include "io/import/collada/collada_check.h"
 #include "io/import/collada/collada_file.h"
 #include "io/import/collada/collada_read.h"
+#include "io/reading/lower_extension.h"
 #include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 namespace {
 
-/// Remembers which files were opened: they are part of the input.
+/// Remembers which files were opened: they are part of the input. Gives a text in place of the main file where one is
+/// set.
 class RecordingFiles : public Assimp::DefaultIOSystem {
  public:
+  RecordingFiles(std::string main_file, std::string text) : main_file_(std::move(main_file)), text_(std::move(text)) {}
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
     if (stream == nullptr) return stream;
     opened_.insert(file);
-    if (const std::string end = std::filesystem::path(file).extension(); end != ".dae" && end != ".DAE") return stream;
-    const auto [found, is_new] = repaired_.try_emplace(file);
-    if (is_new) found->second = with_bind_shape_matrices(file);
-    const std::string& text = found->second;
-    if (text.empty()) return stream;
+    if (text_.empty() || file != main_file_) return stream;
     Close(stream);
-    auto* copy = new std::uint8_t[text.size()];
-    std::copy(text.begin(), text.end(), copy);
-    return new Assimp::MemoryIOStream(copy, text.size(), true);
+    auto* copy = new std::uint8_t[text_.size()];
+    std::copy(text_.begin(), text_.end(), copy);
+    return new Assimp::MemoryIOStream(copy, text_.size(), true);
   }
   const std::set<std::string>& opened() const { return opened_; }
 
  private:
   std::set<std::string> opened_;
-  std::map<std::string, std::string> repaired_;  // texts, by file; empty where it is good as it is
+  std::string main_file_, text_;
 };
 
 std::string format_name(const Assimp::Importer& importer) {
@@ -91,8 +91,20 @@ std::vector<const aiNode*> read_nodes(const aiScene& scene, Character& out) {
 }
 
 Result<Character> read_with_assimp(const std::filesystem::path& file) {
+  std::optional<ColladaFile> collada;
+  std::string text;
+  if (const std::string end = lower_extension(file); end == ".dae" || end == ".xml") {
+    reading_step("the file as Collada");
+    auto opened = ColladaFile::open(file);
+    if (!opened && end == ".dae") return opened.error();
+    if (opened && std::string(opened->root().name()) == "COLLADA") {
+      if (Status s = check_collada(*opened); !s) return s.error();
+      text = with_bind_shape_matrices(*opened);
+      collada = std::move(*opened);
+    }
+  }
   Assimp::Importer importer;
-  auto* files = new RecordingFiles;  // owned by the importer
+  auto* files = new RecordingFiles(file.string(), std::move(text));  // owned by the importer
   importer.SetIOHandler(files);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
@@ -123,7 +135,9 @@ Result<Character> read_with_assimp(const std::filesystem::path& file) {
   read_clips(*scene, nodes, out);
   record_dependencies(file, files->opened(), out);
   if (out.format == "glTF") out.notes.emplace_back("is glTF 1.0: only its shapes were read");
-  if (out.format == "Collada") read_collada_over(file, out);
+  if (collada) read_collada_over(*collada, out);
+  if (out.format == "Collada" && !collada)
+    out.notes.emplace_back("is Collada in an archive: read by assimp, steps and curves in the file may be lost");
   return out;
 }
 

@@ -1,6 +1,5 @@
 #include "io/import/files/read_character.h"
 
-#include <algorithm>
 #include <fstream>
 
 #include "baker/core/file.h"
@@ -10,16 +9,11 @@
 #include "io/import/fbx/read_fbx.h"
 #include "io/import/files/assimp_read.h"
 #include "io/import/gltf/gltf_read.h"
+#include "io/reading/lower_extension.h"
 #include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 namespace {
-
-bool is_named_fbx(const std::filesystem::path& file) {
-  std::string end = file.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
-  return end == ".fbx";
-}
 
 /// What tells an FBX file from others.
 Bytes head_of(const std::filesystem::path& file) {
@@ -48,7 +42,7 @@ Result<Character> read_character(const std::filesystem::path& file) {
     if (out) put_one_root(*out);
     return out;
   }
-  if (is_named_fbx(file))
+  if (lower_extension(file) == ".fbx")
     return input_error("is no FBX file: it begins with neither \"Kaydara FBX Binary\" nor an FBX header in text", "",
                        "copy or export it again");
   return read_with_assimp(file);

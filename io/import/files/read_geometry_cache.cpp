@@ -9,6 +9,7 @@
 #include "baker/core/file.h"
 #include "io/cache/cache.h"
 #include "io/import/repair/stray_vertices.h"
+#include "io/reading/lower_extension.h"
 #include "io/reading/numbered_files.h"
 #include "io/shot/mesh_file.h"
 
@@ -16,12 +17,6 @@ namespace ft::inline io {
 namespace {
 
 constexpr float k_max_coordinate = 1e9f;
-
-std::string extension(const std::filesystem::path& file) {
-  std::string out = file.extension().string();
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
 
 std::uint32_t swapped(std::uint32_t v) {
   return v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24;
@@ -132,12 +127,12 @@ Status read_alembic(const std::filesystem::path& file, double fps, GeometryCache
 }  // namespace
 
 bool knows_its_times(const std::filesystem::path& file) {
-  const std::string e = extension(file);
+  const std::string e = lower_extension(file);
   return e == ".mdd" || e == ".abc";
 }
 
 bool is_geometry_cache(const std::filesystem::path& file) {
-  const std::string e = extension(file);
+  const std::string e = lower_extension(file);
   return e == ".pc2" || e == ".mdd" || e == ".obj" || e == ".abc";
 }
 
@@ -158,7 +153,7 @@ Result<GeometryCache> read_geometry_cache(const std::filesystem::path& file, con
                                           double fps, bool faces_needed) {
   GeometryCache out;
   Hasher hasher;
-  const std::string kind = extension(file), name = file.string();
+  const std::string kind = lower_extension(file), name = file.string();
   if (kind == ".obj") {
     out.format = "OBJ";
     if (Status s = read_obj_sequence(file, fps, hasher, out); !s) return s.error();

@@ -7,17 +7,11 @@
 #include "io/import/gltf/gltf_contents.h"
 #include "io/import/gltf/gltf_meshes.h"
 #include "io/import/gltf/gltf_nodes.h"
+#include "io/reading/lower_extension.h"
 #include "io/reading/reading_step.h"
 
 namespace ft::inline io {
 namespace {
-
-std::string ending(const std::filesystem::path& file) {
-  std::string out = file.extension().string();
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
-  return out;
-}
 
 Result<Character> read(gltf::GltfFile& file) {
   if (Status s = gltf::check_required(file.json()); !s) return s.error();
@@ -40,7 +34,7 @@ bool is_gltf(const std::filesystem::path& file) {
   char first[4] = {};
   std::ifstream in(file, std::ios::binary);
   if (in.read(first, sizeof first) && std::string_view(first, sizeof first) == "glTF") return true;
-  const std::string name = ending(file);
+  const std::string name = lower_extension(file);
   return name == ".gltf" || name == ".glb";
 }
 

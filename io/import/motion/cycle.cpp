@@ -279,7 +279,7 @@ Status repeat_clip(PlacedCharacter& placed, const std::vector<int>& meshes, doub
     for (const Track* track : {&channel.translation, &channel.rotation, &channel.scale, &channel.weights})
       keys += track->values.size();
   for (const Curve& curve : clip.curves.curves)
-    keys += std::max(curve.times.size(), static_cast<std::size_t>(480 * cycle.period));
+    keys += std::max(curve.times.size(), static_cast<std::size_t>(3 * k_curve_samples * cycle.period));  // with jumps
   const auto count = static_cast<std::size_t>(span.last - span.first + 1);
   if (keys > k_max_character_keys / count)
     return usage_error(fmt::format("its clip repeats {} times, which is more than {} million keys", count,

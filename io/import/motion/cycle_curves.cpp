@@ -6,12 +6,36 @@
 namespace ft::inline io {
 namespace {
 
-constexpr double k_near = 1e-6;    ///< a key so near to an end of the cycle lies on it [s]
-constexpr double k_samples = 480;  ///< 1/s
+constexpr double k_near = 1e-6;  ///< a key so near to an end of the cycle lies on it [s]
 
 void push(Curve& curve, double time, double value, CurveInterpolation how, const CurveHandles& handles) {
   curve.times.push_back(time), curve.values.push_back(value);
   curve.interpolation.push_back(how), curve.handles.push_back(handles);
+}
+
+/// Whether the curve may jump: at a key that is held, or where it begins anew.
+bool may_jump(const Curve& curve) {
+  const auto begins_anew = [](const CurveEnd& end) { return end.rule == CurveInfinity::k_repeat; };
+  return begins_anew(curve.before) || begins_anew(curve.after) ||
+         std::any_of(curve.interpolation.begin(), curve.interpolation.end(),
+                     [](CurveInterpolation how) { return how < CurveInterpolation::k_linear; });
+}
+
+/// Keys on both sides of the largest jump within (low, high], at the first time that has the new value; none where the
+/// curve only goes on.
+void push_jump(const Curve& curve, double low, double high, Curve& out) {
+  double before = curve.at(low), after = curve.at(high);
+  const double end = high, whole = std::abs(after - before);
+  for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high)) {
+    const double value = curve.at(middle);
+    if (std::abs(value - before) > std::abs(after - value))
+      high = middle, after = value;
+    else
+      low = middle, before = value;
+  }
+  if (!(std::abs(after - before) > 1e-3 * whole)) return;
+  push(out, high, before, CurveInterpolation::k_linear, {});
+  if (high < end) push(out, high, after, CurveInterpolation::k_linear, {});
 }
 
 /// With keys at both ends.
@@ -22,9 +46,12 @@ Curve one_cycle(const Curve& curve, double start, double end) {
   const bool held = (at_start || curve.before.rule == CurveInfinity::k_constant) &&
                     (at_end || curve.after.rule == CurveInfinity::k_constant);
   if (!within || !held) {
-    const int count = std::max(1, static_cast<int>(std::ceil((end - start) * k_samples)));
+    const int count = std::max(1, static_cast<int>(std::ceil((end - start) * k_curve_samples)));
+    const bool jumps = may_jump(curve);
+    const auto time_of = [&](int k) { return start + (end - start) * k / count; };
     for (int k = 0; k <= count; ++k) {
-      const double time = start + (end - start) * k / count;
+      const double time = time_of(k);
+      if (jumps && k > 0) push_jump(curve, time_of(k - 1), time, out);
       push(out, time, curve.at(time), CurveInterpolation::k_linear, {});
     }
     return out;

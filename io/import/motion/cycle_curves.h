@@ -14,8 +14,12 @@ struct RepeatedSpan {
   double begin_of(long cycle) const { return start + static_cast<double>(cycle) * period; }
 };
 
+inline constexpr double k_curve_samples =
+    480;  ///< straight lines per second of a curve that is not repeated by its keys
+
 /// The curve once for each cycle, key by key; the last key of a cycle and the first of the next share their time. Where
-/// the curve goes on beyond its keys, or beyond the cycle, it is straight lines of 1/480 s.
+/// the curve goes on beyond its keys, or beyond the cycle, it is straight lines of 1/480 s; of jumps within one of them
+/// the largest stays a jump.
 Curve repeated_curve(const Curve& curve, const RepeatedSpan& span);
 
 /// Puts a placement before the stack's own transforms, another one in each cycle: lengths as the stack has them.
