@@ -45,6 +45,18 @@ FloatingHull float_model(const FloatingBody& body) {
   return m;
 }
 
+std::vector<const FloatingBody*> bodies_of(std::span<const FloatingHull> hulls) {
+  std::vector<const FloatingBody*> out;
+  for (const FloatingHull& hull : hulls) out.push_back(&hull.body);
+  return out;
+}
+
+std::vector<RigidPose> poses_of(std::span<const FloatState> floats) {
+  std::vector<RigidPose> out;
+  for (const FloatState& f : floats) out.push_back(f.motion.pose);
+  return out;
+}
+
 void float_positions(const FloatingHull& model, const RigidPose& pose, std::vector<Vec3>& positions) {
   positions.resize(model.body.positions.size());
   const Mat3 r = pose.rotation.toRotationMatrix();

@@ -23,6 +23,8 @@ struct FloatingHull {
   double spin_drag = 0;  ///< torque by density and speed squared [m5]
 };
 FloatingHull float_model(const FloatingBody& body);
+std::vector<const FloatingBody*> bodies_of(std::span<const FloatingHull> hulls);
+std::vector<RigidPose> poses_of(std::span<const FloatState> floats);
 
 void float_positions(const FloatingHull& model, const RigidPose& pose, std::vector<Vec3>& positions);
 RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt);
