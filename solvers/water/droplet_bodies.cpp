@@ -1,5 +1,7 @@
 // See droplet_bodies.h. Triangles' corners go in straight lines in a step, as droplets do, so that a droplet is in a
-// triangle's plane at a root of a cubic. Boxes of triangles stand for them in the tree: they hold all of their way.
+// triangle's plane at a root of a cubic. Who may meet whom: a grid says where driven triangles come in the frame at
+// all; where it says so, a tree over boxes that hold the ways of triangles in a window of the frame, a few centimetres
+// long. Trees of what floats are in its own axes, in which ways of droplets are looked for.
 #include "solvers/water/droplet_bodies.h"
 
 #include <algorithm>
@@ -14,7 +16,9 @@ namespace ft::inline solvers {
 namespace {
 
 constexpr std::size_t k_block = 256;
-constexpr int k_most_meetings = 8;  ///< of a droplet in a step; then it goes with what it met last
+constexpr int k_grid = 64;             ///< cells along the longest side
+constexpr double k_window_way = 0.05;  ///< a driven vertex goes no farther in a window of several steps [m]
+constexpr int k_most_meetings = 8;     ///< of a droplet in a step; then it goes with what it met last
 constexpr int k_sweeps = 8;
 constexpr std::size_t k_most_contacts = 3;
 /// Of a droplet's speed: what it may still go against a contact [1].
@@ -24,6 +28,32 @@ struct Contact {
   Vec3 normal, velocity;
   double against(const Vec3& v) const { return (v - velocity).dot(normal); }
 };
+
+Box path_box(const Vec3& from, const Vec3& to) {
+  Box out;
+  out.include(from);
+  out.include(to);
+  out.inflate(2 * DropletBodies::k_skin);
+  return out;
+}
+
+/// Calls visit(cell) for the cells of a grid that a box overlaps, until it says true; whether it did.
+template <class Visit>
+bool for_cells(const Box& grid, double cell, const std::array<int, 3>& cells, const Box& box, Visit&& visit) {
+  std::array<int, 3> lo, hi;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    const auto index = [&](double x) {
+      return static_cast<int>(std::clamp((x - grid.lo[axis]) / cell, 0.0, cells[k] - 1.0));
+    };
+    lo[k] = index(box.lo[axis]), hi[k] = index(box.hi[axis]);
+  }
+  for (int z = lo[2]; z <= hi[2]; ++z)
+    for (int y = lo[1]; y <= hi[1]; ++y)
+      for (int x = lo[0]; x <= hi[0]; ++x)
+        if (visit(at(x) + at(cells[0]) * (at(y) + at(cells[1]) * at(z)))) return true;
+  return false;
+}
 
 /// Velocity without what goes against any of the contacts; the last one's where they leave no way.
 Vec3 held_off(Vec3 v, std::span<const Contact> contacts) {
@@ -53,16 +83,25 @@ DropletBodies::DropletBodies(std::span<const DrivenBody> driven, std::vector<con
     : driven_(driven.begin(), driven.end()), origin_(origin), friction_(friction) {
   bodies_.resize(driven_.size() + floats.size());
   for (std::size_t b = 0; b < driven_.size(); ++b) bodies_[b].driven = &driven_[b];
-  for (std::size_t b = 0; b < floats.size(); ++b) bodies_[driven_.size() + b].floating = floats[b];
+  for (std::size_t b = 0; b < floats.size(); ++b) {
+    Body& body = bodies_[driven_.size() + b];
+    body.floating = floats[b];
+    body.first = floats[b]->positions;
+    body.triangles = floats[b]->triangles;
+    for (const Vec3& p : body.first) body.reach = std::max(body.reach, p.norm());
+  }
 }
 
 void DropletBodies::set_step(double share0, double share1, std::span<const RigidPose> from,
                              std::span<const RigidPose> to) {
   CHECK(from.size() == to.size() && driven_.size() + from.size() == bodies_.size());
   share0_ = share0, share1_ = share1;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    bodies_[b].ready = false;
-    if (b >= driven_.size()) bodies_[b].pose0 = from[b - driven_.size()], bodies_[b].pose1 = to[b - driven_.size()];
+  for (std::size_t n = 0; n < from.size(); ++n) {
+    Body& body = bodies_[driven_.size() + n];
+    body.pose0 = from[n], body.pose1 = to[n];
+    // Between its ends a turn is off a straight line by its sagitta.
+    const double turn = body.pose0.rotation.angularDistance(body.pose1.rotation);
+    body.slack = 4 * body.reach * (1 - std::cos(0.5 * turn));
   }
 }
 
@@ -77,57 +116,65 @@ void DropletBodies::stop(std::span<Droplet> droplets, std::span<const Vec3> star
     paths.include(droplets[n].place);
     longest = std::max(longest, (droplets[n].place - starts[n]).squaredNorm());
   }
-  make_ready(paths, std::sqrt(longest));
+  cover(paths, std::sqrt(longest));
+  std::vector<char> near(droplets.size());
   parallel_for(droplets.size(), k_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) meet(droplets[n], starts[n], since.empty() ? 0 : since[n], dt);
+    for (std::size_t n = begin; n < end; ++n) near[n] = near_any(path_box(starts[n], droplets[n].place)) ? 1 : 0;
+  });
+  if (std::find(near.begin(), near.end(), 1) == near.end()) return;
+  set_window();
+  parallel_for(droplets.size(), k_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      if (near[n]) meet(droplets[n], starts[n], since.empty() ? 0 : since[n], dt);
   });
 }
 
-void DropletBodies::make_ready(const Box& paths, double longest) {
+void DropletBodies::cover(const Box& paths, double longest) {
+  if (driven_.empty()) return;
   if (covered_.empty())
     for (const DrivenBody& d : driven_)
       for (std::size_t v = 0; v < d.from.size(); ++v) way_ = std::max(way_, (d.to[v] - d.from[v]).norm());
   const double span = share1_ - share0_;
   // A droplet goes no farther than its own way and twice that of what it meets.
   Box near = paths;
-  near.inflate(longest + 2 * way_ * span + 2 * k_skin);
-  const bool inside = !covered_.empty() && (covered_.lo.array() <= near.lo.array()).all() &&
-                      (near.hi.array() <= covered_.hi.array()).all();
-  if (!inside) {
-    // So wide that the frame's other steps mostly find what they need.
-    covered_.include(near);
-    covered_.inflate(span > 0 ? (longest + 2 * way_ * span) / span : 0);
-    for (Body& body : bodies_)
-      if (body.driven) keep_near(body);
-  }
-  for (Body& body : bodies_) {
-    if (body.ready) continue;
-    if (body.floating) {
-      double reach = 0;
-      for (const Vec3& p : body.floating->positions) reach = std::max(reach, p.squaredNorm());
-      body.box = {};
-      body.box.include(body.pose0.position);
-      body.box.include(body.pose1.position);
-      body.box.inflate(std::sqrt(reach));
-      if (!body.box.overlaps(near)) continue;
+  near.inflate(longest + 2 * way_ * span + 2 * DropletBodies::k_skin);
+  if (!covered_.empty() && (covered_.lo.array() <= near.lo.array()).all() &&
+      (near.hi.array() <= covered_.hi.array()).all())
+    return;
+  // So wide that the frame's other steps mostly find what they need.
+  covered_.include(near);
+  covered_.inflate(span > 0 ? (longest + 2 * way_ * span) / span : 0);
+  window1_ = window0_ - 1;
+  seen_ = {};
+  for (std::size_t b = 0; b < driven_.size(); ++b) keep_near(bodies_[b]);
+  seen_.lo = seen_.lo.cwiseMax(covered_.lo), seen_.hi = seen_.hi.cwiseMin(covered_.hi);
+  driven_in_.clear();
+  if (seen_.empty()) return;
+  seen_.inflate(2 * DropletBodies::k_skin);
+  cell_ = seen_.size().maxCoeff() / k_grid;
+  for (std::size_t k = 0; k < 3; ++k) cells_[k] = static_cast<int>(seen_.size()[static_cast<int>(k)] / cell_) + 1;
+  driven_in_.assign(at(cells_[0]) * at(cells_[1]) * at(cells_[2]), 0);
+  for (std::size_t b = 0; b < driven_.size(); ++b)
+    for (const Triangle& t : bodies_[b].triangles) {
+      Box box;
+      for (const int v : t) box.include(bodies_[b].first[at(v)]), box.include(bodies_[b].last[at(v)]);
+      for_cells(seen_, cell_, cells_, box, [&](std::size_t c) {
+        driven_in_[c] = 1;
+        return false;
+      });
     }
-    place(body);
-  }
 }
 
-void DropletBodies::keep_near(Body& body) const {
+void DropletBodies::keep_near(Body& body) {
   const DrivenBody& d = *body.driven;
   body.first.clear(), body.last.clear(), body.triangles.clear();
   body.tree = {};
-  body.ready = false;
   std::vector<int> number(d.from.size(), -1);
   for (const Triangle& t : d.triangles) {
     Box box;
-    for (const int v : t) {
-      box.include(d.from[at(v)] - origin_);
-      box.include(d.to[at(v)] - origin_);
-    }
+    for (const int v : t) box.include(d.from[at(v)] - origin_), box.include(d.to[at(v)] - origin_);
     if (!box.overlaps(covered_)) continue;
+    seen_.include(box);
     Triangle kept;
     for (std::size_t k = 0; k < 3; ++k) {
       int& n = number[at(t[k])];
@@ -142,64 +189,85 @@ void DropletBodies::keep_near(Body& body) const {
   }
 }
 
-void DropletBodies::place(Body& body) const {
-  body.ready = true;
+void DropletBodies::set_window() {
+  for (std::size_t b = driven_.size(); b < bodies_.size(); ++b)
+    if (bodies_[b].tree.empty()) bodies_[b].tree = TriangleTree(bodies_[b].first, bodies_[b].triangles);
+  if (window0_ <= share0_ && share1_ <= window1_) return;
+  window0_ = share0_;
+  window1_ = way_ > 0 ? std::max(share1_, share0_ + k_window_way / way_) : 1;
+  for (std::size_t b = 0; b < driven_.size(); ++b) {
+    Body& body = bodies_[b];
+    if (body.triangles.empty()) continue;
+    body.corners.resize(2 * body.triangles.size());
+    for (std::size_t n = 0; n < body.triangles.size(); ++n) {
+      Box box;
+      for (const int v : body.triangles[n]) {
+        const Vec3 &first = body.first[at(v)], way = body.last[at(v)] - first;
+        box.include(first + window0_ * way);
+        box.include(first + window1_ * way);
+      }
+      body.corners[2 * n] = box.lo, body.corners[2 * n + 1] = box.hi;
+    }
+    if (!body.tree.empty()) {
+      body.tree.refit(body.corners, body.boxes);
+      continue;
+    }
+    body.boxes.clear();
+    for (int n = 0; n < static_cast<int>(body.triangles.size()); ++n)
+      body.boxes.push_back({2 * n, 2 * n + 1, 2 * n + 1});
+    body.tree = TriangleTree(body.corners, body.boxes);
+  }
+}
+
+bool DropletBodies::near_driven(const Box& path) const {
+  return !driven_in_.empty() && path.overlaps(seen_) &&
+         for_cells(seen_, cell_, cells_, path, [&](std::size_t c) { return driven_in_[c] != 0; });
+}
+
+bool DropletBodies::near_floating(const Body& body, const Box& path) {
+  Box box;
+  box.include(body.pose0.position);
+  box.include(body.pose1.position);
+  box.inflate(body.reach);
+  return box.overlaps(path);
+}
+
+bool DropletBodies::near_any(const Box& path) const {
+  if (near_driven(path)) return true;
+  return std::any_of(bodies_.begin() + static_cast<std::ptrdiff_t>(driven_.size()), bodies_.end(),
+                     [&](const Body& body) { return near_floating(body, path); });
+}
+
+Vec3 DropletBodies::corner(const Body& body, int vertex, double since) const {
+  const Vec3& first = body.first[at(vertex)];
   if (body.floating) {
-    if (body.triangles.empty()) body.triangles = body.floating->triangles;
-    const auto& in_body = body.floating->positions;
-    const Mat3 turn0 = body.pose0.rotation.toRotationMatrix(), turn1 = body.pose1.rotation.toRotationMatrix();
-    body.from.resize(in_body.size()), body.to.resize(in_body.size());
-    for (std::size_t v = 0; v < in_body.size(); ++v) {
-      body.from[v] = body.pose0.position + turn0 * in_body[v];
-      body.to[v] = body.pose1.position + turn1 * in_body[v];
-    }
-  } else {
-    body.from.resize(body.first.size()), body.to.resize(body.first.size());
-    for (std::size_t v = 0; v < body.first.size(); ++v) {
-      const Vec3 way = body.last[v] - body.first[v];
-      body.from[v] = body.first[v] + share0_ * way;
-      body.to[v] = body.first[v] + share1_ * way;
-    }
+    const Vec3 from = body.pose0 * first;
+    return from + since * (body.pose1 * first - from);
   }
-  body.box = {};
-  body.corners.resize(2 * body.triangles.size());
-  for (std::size_t n = 0; n < body.triangles.size(); ++n) {
-    Box box;
-    for (const int v : body.triangles[n]) {
-      box.include(body.from[at(v)]);
-      box.include(body.to[at(v)]);
-    }
-    body.corners[2 * n] = box.lo, body.corners[2 * n + 1] = box.hi;
-    body.box.include(box);
-  }
-  if (body.triangles.empty()) return;
-  if (!body.tree.empty()) {
-    body.tree.refit(body.corners, body.boxes);
-    return;
-  }
-  body.boxes.clear();
-  for (int n = 0; n < static_cast<int>(body.triangles.size()); ++n) body.boxes.push_back({2 * n, 2 * n + 1, 2 * n + 1});
-  body.tree = TriangleTree(body.corners, body.boxes);
+  return first + (share0_ + since * (share1_ - share0_)) * (body.last[at(vertex)] - first);
 }
 
 DropletBodies::Hit DropletBodies::first_hit(const Vec3& from, const Vec3& to, double since) const {
   Hit out;
-  Box path;
-  path.include(from);
-  path.include(to);
-  path.inflate(2 * k_skin);
-  const TreeBox asked = TreeBox::around(path.lo, path.hi);
+  const Box path = path_box(from, to);
+  const bool driven = near_driven(path);
   for (const Body& body : bodies_) {
-    if (!body.ready || body.tree.empty() || !body.box.overlaps(path)) continue;
-    body.tree.for_each_near(asked, [&](int n) {
-      const Vec3 &lo = body.corners[at(2 * n)], &hi = body.corners[at(2 * n + 1)];
-      if (!(lo.array() <= path.hi.array()).all() || !(path.lo.array() <= hi.array()).all()) return;
+    if (body.tree.empty() || (body.floating ? !near_floating(body, path) : !driven)) continue;
+    Box asked = path;
+    if (body.floating) {
+      asked = {};
+      for (const RigidPose* pose : {&body.pose0, &body.pose1})
+        for (const Vec3* p : {&from, &to}) asked.include(pose->rotation.conjugate() * (*p - pose->position));
+      asked.inflate(2 * k_skin + body.slack);
+    }
+    body.tree.for_each_near(TreeBox::around(asked.lo, asked.hi), [&](int n) {
       const Triangle& t = body.triangles[at(n)];
-      const auto corner = [&](std::size_t k) -> Vec3 {
-        return body.from[at(t[k])] + since * (body.to[at(t[k])] - body.from[at(t[k])]);
-      };
-      const MovingTriangle moving{{corner(0), corner(1), corner(2)},
-                                  {body.to[at(t[0])], body.to[at(t[1])], body.to[at(t[2])]}};
+      const MovingTriangle moving{{corner(body, t[0], since), corner(body, t[1], since), corner(body, t[2], since)},
+                                  {corner(body, t[0], 1), corner(body, t[1], 1), corner(body, t[2], 1)}};
+      Box box;
+      for (const auto& ends : {moving.from, moving.to})
+        for (const Vec3& p : ends) box.include(p);
+      if (!box.overlaps(path)) return;
       const auto found = crossing_inwards(moving, from, to, k_skin);
       if (!found || found->share > out.share || (found->share == out.share && out.body)) return;
       static_cast<DropletCrossing&>(out) = *found;
@@ -223,7 +291,7 @@ void DropletBodies::meet(Droplet& d, const Vec3& start, double since, double dt)
     const Triangle& t = hit.body->triangles[at(hit.triangle)];
     Vec3 velocity = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k)
-      velocity += hit.weight[k] / dt * (hit.body->to[at(t[k])] - hit.body->from[at(t[k])]);
+      velocity += hit.weight[k] / dt * (corner(*hit.body, t[k], 1) - corner(*hit.body, t[k], 0));
     if (count == k_most_contacts) {
       std::shift_left(contacts.begin(), contacts.end(), 1);
       --count;
@@ -241,7 +309,7 @@ void DropletBodies::meet(Droplet& d, const Vec3& start, double since, double dt)
   }
   // Between surfaces that close on it.
   const Triangle& t = hit.body->triangles[at(hit.triangle)];
-  const Vec3 &a = hit.body->to[at(t[0])], &b = hit.body->to[at(t[1])], &c = hit.body->to[at(t[2])];
+  const Vec3 a = corner(*hit.body, t[0], 1), b = corner(*hit.body, t[1], 1), c = corner(*hit.body, t[2], 1);
   d.place =
       hit.weight[0] * a + hit.weight[1] * b + hit.weight[2] * c + k_skin * (b - a).cross(c - a).stableNormalized();
   d.velocity = contacts[count - 1].velocity;

@@ -7,6 +7,7 @@
 // points; bodies feel nothing of them.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -38,29 +39,38 @@ class DropletBodies {
   struct Body {
     const DrivenBody* driven = nullptr;  ///< or
     const FloatingBody* floating = nullptr;
-    std::vector<Vec3> first, last;    ///< driven: of the kept vertices, over the frame [m]
+    /// Driven: of the kept triangles, over the frame; floating: `first`, all, in its own axes [m].
+    std::vector<Vec3> first, last;
     std::vector<Triangle> triangles;  ///< that are kept
-    std::vector<Vec3> from, to;       ///< of the step [m]
-    std::vector<Vec3> corners;        ///< least and most of each triangle in the step [m]
+    std::vector<Vec3> corners;        ///< driven: least and most of each triangle in the window [m]
     std::vector<Triangle> boxes;      ///< from those, for the tree
-    TriangleTree tree;                ///< over boxes
-    Box box;                          ///< of the step
+    TriangleTree tree;                ///< over boxes, or of the floating body in its own axes
     RigidPose pose0, pose1;           ///< floating: of the step
-    bool ready = false;               ///< for the step
+    double reach = 0, slack = 0;      ///< floating: from its middle; by how much a step's turn bends ways [m]
   };
   struct Hit;
 
-  void make_ready(const Box& paths, double longest);
-  void keep_near(Body& body) const;
-  void place(Body& body) const;
+  void cover(const Box& paths, double longest);
+  void keep_near(Body& body);
+  void set_window();
+  bool near_driven(const Box& path) const;
+  static bool near_floating(const Body& body, const Box& path);
+  bool near_any(const Box& path) const;
+  Vec3 corner(const Body& body, int vertex, double since) const;
   Hit first_hit(const Vec3& from, const Vec3& to, double since) const;
   void meet(Droplet& droplet, const Vec3& start, double since, double dt) const;
 
   std::vector<DrivenBody> driven_;
   std::vector<Body> bodies_;
   Vec3 origin_;
-  double friction_, share0_ = 0, share1_ = 1, way_ = 0;  ///< way: the longest of a driven vertex in the frame [m]
-  Box covered_;                                          ///< triangles that come into it in the frame are kept
+  double friction_, share0_ = 0, share1_ = 1;  ///< of the step
+  double window0_ = 0, window1_ = -1;          ///< shares of the frame for which the driven ones' trees are set
+  double way_ = 0;                             ///< the longest of a driven vertex in the frame [m]
+  Box covered_;                                ///< triangles that come into it in the frame are kept
+  Box seen_;                                   ///< of the grid
+  double cell_ = 1;                            ///< of the grid [m]
+  std::array<int, 3> cells_{};
+  std::vector<char> driven_in_;  ///< of each cell: whether a driven triangle comes into it in the frame
 };
 
 }  // namespace ft::inline solvers
