@@ -1,7 +1,7 @@
-// How droplets fly: by their weight and the drag of the air, as balls. They pass through bodies.
+// How droplets fly: by their weight and the drag of the air, as balls; bodies stop them.
 #pragma once
 
-#include "solvers/water/water_body.h"
+#include "solvers/water/droplet_bodies.h"
 
 namespace ft::inline solvers {
 
@@ -10,7 +10,8 @@ struct DropletAir {
   double drag = 0.47;    ///< coefficient of a droplet [1]; 0 flies as in a vacuum
 };
 
-/// Moves all on by dt [s]. density: of the water [kg/m3].
-void fly(std::vector<Droplet>& droplets, const DropletAir& air, double gravity, double density, double dt);
+/// Moves all on by dt [s]. density: of the water [kg/m3]. bodies: set to the same step.
+void fly(std::vector<Droplet>& droplets, const DropletAir& air, double gravity, double density, double dt,
+         DropletBodies& bodies);
 
 }  // namespace ft::inline solvers

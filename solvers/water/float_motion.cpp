@@ -15,6 +15,7 @@ namespace {
 constexpr double k_added_mass = 0.5;
 constexpr double k_ground_friction = 0.3;
 constexpr int k_contact_sweeps = 8;
+constexpr int k_meeting_passes = 2;
 
 }  // namespace
 
@@ -37,12 +38,24 @@ void write_float(const FloatState& s, std::span<double> n) {
 }
 
 FloatingHull float_model(const FloatingBody& body) {
-  FloatingHull m{body, 0, 0};
+  FloatingHull m{body, 0, 0, contact_spheres(body)};
   for (const Triangle& t : body.triangles)
     m.volume += body.positions[at(t[0])].dot(body.positions[at(t[1])].cross(body.positions[at(t[2])])) / 6;
   const double r = std::cbrt(std::max(0.0, m.volume) * 0.75 / std::numbers::pi);
   m.spin_drag = 0.05 * body.drag * std::pow(r, 5);
   return m;
+}
+
+std::vector<const FloatingBody*> bodies_of(std::span<const FloatingHull> hulls) {
+  std::vector<const FloatingBody*> out;
+  for (const FloatingHull& hull : hulls) out.push_back(&hull.body);
+  return out;
+}
+
+std::vector<RigidPose> poses_of(std::span<const FloatState> floats) {
+  std::vector<RigidPose> out;
+  for (const FloatState& f : floats) out.push_back(f.motion.pose);
+  return out;
 }
 
 void float_positions(const FloatingHull& model, const RigidPose& pose, std::vector<Vec3>& positions) {
@@ -99,6 +112,14 @@ FloatStep prepare_float(const FloatingHull& model, FloatState& state, std::span<
   out.free.head<3>() = v;
   out.free.tail<3>() = spin;
   return out;
+}
+
+void meet_one_another(std::span<const FloatingHull> models, std::span<FloatState> floats) {
+  for (int pass = 0; pass < k_meeting_passes; ++pass)
+    for (std::size_t a = 0; a < models.size(); ++a)
+      for (std::size_t b = a + 1; b < models.size(); ++b)
+        meet({&models[a].body.mass, &floats[a].motion, floats[a].added_mass}, models[a].contact,
+             {&models[b].body.mass, &floats[b].motion, floats[b].added_mass}, models[b].contact, k_float_restitution);
 }
 
 Vec6 keep_above(const GroundCells& ground, std::span<const Vec3> positions, const Vec3& about, const Mat6& mass,

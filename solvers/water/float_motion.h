@@ -2,6 +2,7 @@
 // The pressure of the water is its model's.
 #pragma once
 
+#include "solvers/water/float_meeting.h"
 #include "solvers/water/hydrostatics.h"
 #include "solvers/water/water_body.h"
 
@@ -21,8 +22,11 @@ struct FloatingHull {
   FloatingBody body;
   double volume = 0;     ///< m3
   double spin_drag = 0;  ///< torque by density and speed squared [m5]
+  ContactSpheres contact;
 };
 FloatingHull float_model(const FloatingBody& body);
+std::vector<const FloatingBody*> bodies_of(std::span<const FloatingHull> hulls);
+std::vector<RigidPose> poses_of(std::span<const FloatState> floats);
 
 void float_positions(const FloatingHull& model, const RigidPose& pose, std::vector<Vec3>& positions);
 RigidPose moved(const RigidPose& pose, const Vec6& velocity, double dt);
@@ -44,6 +48,9 @@ struct FloatStep {
 /// Sets the added mass of `state`, with the momentum kept; `positions` are those of its pose at the step's end.
 FloatStep prepare_float(const FloatingHull& model, FloatState& state, std::span<const Vec3> positions,
                         const FloatSurroundings& water, double gravity, double density, double dt);
+
+/// Bodies that overlap are moved apart and turned, one pair after another in the order of the list.
+void meet_one_another(std::span<const FloatingHull> models, std::span<FloatState> floats);
 
 /// The ground under columns: heights of cells, of which (i, k) is at first + i + row k.
 struct GroundCells {

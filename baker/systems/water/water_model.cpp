@@ -53,11 +53,12 @@ std::string doubt_of_model(const std::string& model, const WaterAdvice& advice, 
 std::vector<std::string> limits_of_model(const std::string& model, std::size_t floats) {
   std::vector<std::string> out;
   const auto note = [&](const char* text) { out.emplace_back(text); };
+  if (floats > 1)
+    note("what floats in it meets one another as balls or as boxes full of balls, which are round at their corners");
   if (model == "pond") {
     note("its waves are linear and do not break, its ground is even, and drag of bodies pushes no water back");
     return out;
   }
-  if (floats > 1) note("what floats in it does not meet one another");
   note("water in whose place a body stands in the first frame is taken away, and booked as outflow");
   note(
       "bodies move it as columns: what hangs over water, such as a breaking wave, is not there; droplets are drawn "

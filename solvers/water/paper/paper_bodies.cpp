@@ -99,6 +99,7 @@ void PaperFrame::move_floats(double dt) {
     m.spin = v.tail<3>();
     m.pose = moved(m.pose, v, dt);
   }
+  meet_one_another(hulls_, s_.floats);
 }
 
 }  // namespace ft::inline solvers

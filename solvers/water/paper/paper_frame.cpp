@@ -18,8 +18,13 @@ constexpr double k_margin = 1.1;
 }  // namespace
 
 PaperFrame::PaperFrame(const PaperSetup& setup, std::span<const FloatingHull> hulls, PaperScratch& scratch,
-                       double frame_time, std::uint64_t number)
-    : setup_(setup), hulls_(hulls), s_(scratch), frame_time_(frame_time), number_(number) {
+                       std::span<const DrivenBody> driven, double frame_time, std::uint64_t number)
+    : setup_(setup),
+      hulls_(hulls),
+      s_(scratch),
+      met_(driven, bodies_of(hulls)),
+      frame_time_(frame_time),
+      number_(number) {
   on_driven_.resize(s_.driven.size());
   report_.finite = true;
   for (const DrivenNear& d : s_.driven)
@@ -95,9 +100,11 @@ void PaperFrame::go() {
 void PaperFrame::step(double dt, std::uint64_t number) {
   PipeWater& w = s_.water;
   push_driven(dt);
+  const std::vector<RigidPose> from = poses_of(s_.floats);
   move_floats(dt);
   if (!s_.droplets.empty()) {
-    fly(s_.droplets, setup_.splash.air, setup_.gravity, setup_.density, dt);
+    met_.set_step(time_ / frame_time_, std::min(1.0, (time_ + dt) / frame_time_), from, poses_of(s_.floats));
+    fly(s_.droplets, setup_.splash.air, setup_.gravity, setup_.density, dt, met_);
     outflow_ += land(s_.droplets, w, setup_.origin, setup_.level);
   }
   outflow_ += w.step(s_.under, dt);

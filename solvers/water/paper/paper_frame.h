@@ -25,8 +25,9 @@ double float_rate(const FloatingHull& hull, const PaperSetup& setup);
 
 class PaperFrame {
  public:
-  PaperFrame(const PaperSetup& setup, std::span<const FloatingHull> hulls, PaperScratch& scratch, double frame_time,
-             std::uint64_t number);
+  /// driven: all of them, of which the scratch has what may meet the water; they have to stay.
+  PaperFrame(const PaperSetup& setup, std::span<const FloatingHull> hulls, PaperScratch& scratch,
+             std::span<const DrivenBody> driven, double frame_time, std::uint64_t number);
   /// Bodies where they are at a share of the frame, and heads.
   void meet(double share);
   /// Takes away the water in whose place driven bodies stand at the frame's start; how much [m3].
@@ -50,6 +51,7 @@ class PaperFrame {
   const PaperSetup& setup_;
   std::span<const FloatingHull> hulls_;
   PaperScratch& s_;
+  DropletBodies met_;
   double frame_time_, time_ = 0, outflow_ = 0, body_speed_ = 0;
   std::uint64_t number_;
   std::vector<WaterOnBody> on_driven_;

@@ -31,7 +31,7 @@ PaperSolver::PaperSolver(PaperSetup setup) : setup_(std::move(setup)) {
   for (const PlacedFloat& f : setup_.floats) floats_.push_back(float_model(f.body));
   const std::vector<double> depth = depths(initial_state());
   scratch_->water.depth = depth;
-  PaperFrame frame(setup_, floats_, *scratch_, 1, 0);
+  PaperFrame frame(setup_, floats_, *scratch_, {}, 1, 0);
   frame.meet(0);
   still_ = frame.potential();
 }
@@ -49,7 +49,7 @@ State PaperSolver::initial_state() const {
   scratch_->floats = scratch.floats;
   PipeWater& w = scratch.water;
   const std::vector<double> head = w.head;
-  PaperFrame frame(setup_, floats_, scratch, 1, 0);
+  PaperFrame frame(setup_, floats_, scratch, {}, 1, 0);
   frame.meet(0);
   const auto cells = scratch.under.cells();
   for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -84,7 +84,7 @@ WaterReport PaperSolver::advance_frame(State& state, double frame_time, std::spa
   const double top = w.highest() + k_above;
   for (const DrivenBody& d : driven) s.driven.emplace_back(d, top);
 
-  PaperFrame frame(setup_, floats_, s, frame_time, static_cast<std::uint64_t>(account[2]));
+  PaperFrame frame(setup_, floats_, s, driven, frame_time, static_cast<std::uint64_t>(account[2]));
   if (account[3] == 0) account[0] += frame.make_room();
   frame.go();
   WaterReport report = frame.report();

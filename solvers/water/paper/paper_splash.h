@@ -1,6 +1,6 @@
 // Droplets: thrown up where a column rises faster than a threshold (O'Brien and Hodgins 1995), flying with the drag of
 // the air, given back where they land. Their energy is taken from the pipes of their column, and no more than half of
-// that; their momentum is lost where they land. They pass through bodies.
+// that; their momentum is lost where they land.
 #pragma once
 
 #include "baker/core/random.h"

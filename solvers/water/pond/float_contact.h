@@ -1,8 +1,6 @@
-// Floating bodies meet one another, walls, the floor and skins that pass, so that nothing passes through. Plain on
-// purpose: bodies are spheres (balls) or boxes filled with spheres, skins their vertices; of two bodies the deepest
-// pair counts, one after another in the order of the list; impulses without friction, and what overlaps is moved apart.
-// Approximated: boats round off to their boxes' spheres, and a ball smaller than a skin's triangles may slip between
-// its vertices.
+// Floating bodies meet one another (float_meeting.h), walls, the floor and skins that pass, so that nothing passes
+// through: one after another in the order of the list. Skins are their vertices.
+// Approximated: a ball smaller than a skin's triangles may slip between its vertices.
 #pragma once
 
 #include <span>

@@ -140,6 +140,12 @@ void add_part(const FloatModel& m, const FloatWater& water, const RigidMotion& m
 
 }  // namespace
 
+std::vector<RigidPose> poses_of(const Floats& floats) {
+  std::vector<RigidPose> out;
+  for (const RigidMotion& m : floats.motion) out.push_back(m.pose);
+  return out;
+}
+
 void place_sources(std::span<const FloatModel> models, const Floats& floats, FloatScratch& scratch) {
   std::size_t count = 0;
   for (const FloatModel& m : models) count += m.shape.parts.size();

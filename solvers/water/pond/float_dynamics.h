@@ -39,6 +39,8 @@ struct Floats {
   std::vector<double> splash_energy, splash_speed;
 };
 
+std::vector<RigidPose> poses_of(const Floats& floats);
+
 /// What is known between two steps; forgotten after the frame.
 struct FloatScratch {
   std::vector<Submerged> wet;       ///< of parts

@@ -9,9 +9,6 @@
 namespace ft::inline solvers {
 namespace {
 
-/// Vertices of a ball lie this near to one radius, in shares of it, and are at least so many.
-constexpr double k_round = 1e-6;
-constexpr std::size_t k_round_vertices = 18;
 constexpr double k_sudden = 0.2732 / 0.5;
 
 double signed_volume(std::span<const Vec3> corners) {
@@ -114,23 +111,6 @@ void find_rest(const PondFloat& body, double density, double lowest, double high
   draft = level - lowest;
 }
 
-/// Spheres that fill a box: what a body that is no ball meets others with.
-void fill_contacts(const Box& box, FloatShape& shape) {
-  const Vec3 size = box.size();
-  const double radius = std::max(0.5 * size.minCoeff(), 0.08 * size.maxCoeff());
-  std::array<int, 3> count{};
-  for (int a = 0; a < 3; ++a)
-    count[at(a)] = std::max(1, static_cast<int>(std::ceil((size[a] - 2 * radius) / (1.2 * radius))) + 1);
-  shape.contact_radius = radius;
-  const auto place = [&](int a, int i) {
-    const double free = std::max(size[a] - 2 * radius, 0.0);
-    return box.lo[a] + 0.5 * (size[a] - free) + (count[at(a)] > 1 ? free * i / (count[at(a)] - 1) : 0.0);
-  };
-  for (int i = 0; i < count[0]; ++i)
-    for (int j = 0; j < count[1]; ++j)
-      for (int k = 0; k < count[2]; ++k) shape.contact_centres.push_back(Vec3(place(0, i), place(1, j), place(2, k)));
-}
-
 }  // namespace
 
 double sudden_share(double submerged_share) {
@@ -140,9 +120,8 @@ double sudden_share(double submerged_share) {
 FloatShape float_shape(const PondFloat& body, double density) {
   FloatShape out;
   std::vector<Vec3> corners;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& p : body.body.positions)
-    out.reach = std::max(out.reach, p.norm()), least = std::min(least, p.norm());
+  out.contact = contact_spheres(body.body);
+  out.reach = out.contact.reach;
   for (const Triangle& t : body.body.triangles)
     for (const int v : t) corners.push_back(body.body.positions[at(v)]);
   out.volume = signed_volume(corners);
@@ -153,14 +132,12 @@ FloatShape float_shape(const PondFloat& body, double density) {
   }
   double draft = 0;
   Submerged rest;
-  if (out.reach - least <= k_round * out.reach && body.body.positions.size() >= k_round_vertices) {
+  if (ball_radius(body.body) > 0) {
     FloatPart ball;
     ball.ball_radius = std::cbrt(out.volume * 3 / (4 * std::numbers::pi));
     ball.volume = out.volume;
     out.parts.push_back(ball);
     out.face = Vec3::Constant(std::numbers::pi * ball.ball_radius * ball.ball_radius);
-    out.contact_centres = {Vec3::Zero()};
-    out.contact_radius = ball.ball_radius;
     find_rest(body, density, -ball.ball_radius, ball.ball_radius, out, draft, rest);
     out.depth = std::clamp(1.5 * rest.volume / rest.area, 0.6 * ball.ball_radius, 1.5 * ball.ball_radius);
     return out;
@@ -184,7 +161,6 @@ FloatShape float_shape(const PondFloat& body, double density) {
       part.centre = signed_centre(part.corners);
       if (part.volume > 1e-9 * out.volume) out.parts.push_back(std::move(part));
     }
-  fill_contacts(box, out);
   Box world;
   for (const Vec3& p : body.body.positions) world.include(body.start.pose.rotation * p);
   find_rest(body, density, world.lo.y(), world.hi.y(), out, draft, rest);

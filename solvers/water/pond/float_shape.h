@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "solvers/water/float_meeting.h"
 #include "solvers/water/pond/pond_setup.h"
 
 namespace ft::inline solvers {
@@ -30,14 +31,13 @@ Submerged submerged(const FloatPart& part, const RigidPose& pose, double level);
 /// Model of a body; never changes.
 struct FloatShape {
   std::vector<FloatPart> parts;
-  double volume = 0;                  ///< m3
-  double depth = 0;                   ///< d of its kernel [m]: wave_kernel.h
-  Vec3 added = Vec3::Constant(0.5);   ///< added mass over displaced mass, body axes, slow motion [1]
-  Vec3 face = Vec3::Zero();           ///< area that it shows along its axes [m2]
-  std::vector<Vec3> contact_centres;  ///< of spheres in it, body axes [m]
-  double contact_radius = 0;          ///< m
-  double reach = 0;                   ///< farthest point from the centre of mass [m]
-  double rest_height = 0;             ///< of its centre of mass above the level at rest, upright [m]
+  double volume = 0;                 ///< m3
+  double depth = 0;                  ///< d of its kernel [m]: wave_kernel.h
+  Vec3 added = Vec3::Constant(0.5);  ///< added mass over displaced mass, body axes, slow motion [1]
+  Vec3 face = Vec3::Zero();          ///< area that it shows along its axes [m2]
+  ContactSpheres contact;            ///< what it meets others with
+  double reach = 0;                  ///< farthest point from the centre of mass [m]
+  double rest_height = 0;            ///< of its centre of mass above the level at rest, upright [m]
 };
 
 /// By its start attitude. density: of the water.

@@ -102,18 +102,24 @@ void PondSolver::cross_driven(Frame& f, std::span<const DrivenBody> driven, doub
   f.layers.pour(f.feed);
 }
 
-void PondSolver::throw_and_land(Frame& f, double frame_time) const {
+void PondSolver::throw_and_land(Frame& f, std::span<const DrivenBody> driven, std::vector<RigidPose> floats_from,
+                                double frame_time) const {
   const double faded = std::exp(-frame_time / setup_.splash.foam_life);
   for (double& x : f.foam) x *= faded;
   const SplashWater water{setup_.gravity, setup_.density, frame_time, setup_.seed, f.frame};
   VolumeLayers pushes(modes_, 1.5 * std::max(modes_.cell_x(), modes_.cell_z()));
-  const Landed landed = fly(modes_, water, f.heights, f.memory.droplets, f.layers, pushes, f.foam);
+  std::vector<const FloatingBody*> floating;
+  for (const PondFloat& body : setup_.floats) floating.push_back(&body.body);
+  PondMet met{DropletBodies(driven, std::move(floating), setup_.corner), std::move(floats_from),
+              poses_of(f.memory.floats)};
+  const Landed landed = fly(modes_, water, f.heights, met, f.memory.droplets, f.layers, pushes, f.foam);
   f.report.landed = landed.count;
   f.memory.account.outflow += landed.gone;
   const std::size_t before = f.memory.droplets.size();
+  ThrownWays ways;
   const auto give = [&](Throw t, std::uint64_t source) {
     t.source = source;
-    if (throw_water(t, setup_.splash, water, f.heights, modes_, f.memory.droplets, f.memory.account.next_droplet,
+    if (throw_water(t, setup_.splash, water, f.heights, modes_, f.memory.droplets, f.memory.account.next_droplet, ways,
                     f.layers) > 0)
       f.memory.account.thrown += t.energy;
   };
@@ -144,6 +150,8 @@ void PondSolver::throw_and_land(Frame& f, double frame_time) const {
     c.crown_energy = c.crown_speed = c.crown_radius = 0;
   }
   for (std::size_t j = 0; j < f.events.jets.size(); ++j) give(f.events.jets[j], 2000000 + j);
+  met.set_step(0, 1);
+  met.bodies.stop(std::span(f.memory.droplets).subspan(before), ways.starts, frame_time, ways.since);
   f.report.thrown = static_cast<int>(f.memory.droplets.size() - before);
   f.layers.pour(f.eta);
   pushes.pour(f.potential);

@@ -57,6 +57,7 @@ PondReport PondSolver::advance_frame(State& state, double frame_time, std::span<
   f.eta = *state.find("eta"), f.potential = *state.find("potential"), f.foam = *state.find("foam");
   const std::vector<double> heights = *state.find("height");
   f.heights = heights;
+  const std::vector<RigidPose> floats_from = poses_of(f.memory.floats);
   f.report.driven.resize(driven.size());
   f.report.skin_pushes.assign(driven.size(), Vec3::Zero());
 
@@ -71,7 +72,7 @@ PondReport PondSolver::advance_frame(State& state, double frame_time, std::span<
     cross_driven(f, driven, frame_time, slice, slices);
     step_slice(f, frame_time / slices, steps);
   }
-  throw_and_land(f, frame_time);
+  throw_and_land(f, driven, floats_from, frame_time);
   finish_frame(f, state, frame_time);
   return std::move(f.report);
 }

@@ -84,7 +84,8 @@ class PondSolver {
   int begin_driven(Frame& frame, std::span<const DrivenBody> driven, double frame_time) const;
   /// What skins and cavities give to the surface in a slice, crowns and jets that it makes, forces on skins.
   void cross_driven(Frame& frame, std::span<const DrivenBody> driven, double frame_time, int slice, int slices) const;
-  void throw_and_land(Frame& frame, double frame_time) const;
+  void throw_and_land(Frame& frame, std::span<const DrivenBody> driven, std::vector<RigidPose> floats_from,
+                      double frame_time) const;
   void step_slice(Frame& frame, double time, int steps) const;
   void finish_frame(Frame& frame, State& state, double frame_time) const;
 

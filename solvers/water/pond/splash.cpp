@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "baker/core/parallel.h"
 #include "baker/core/random.h"
@@ -37,7 +38,7 @@ void add_foam(const PondModes& m, double x, double z, double area, std::span<dou
 
 double throw_water(const Throw& t, const SplashSettings& settings, const SplashWater& water,
                    std::span<const double> heights, const PondModes& modes, std::vector<Droplet>& droplets,
-                   double& next_id, VolumeLayers& volumes) {
+                   double& next_id, ThrownWays& ways, VolumeLayers& volumes) {
   const double mean_square = (t.slow * t.slow + t.slow * t.fast + t.fast * t.fast) / 3;
   if (!(mean_square > 0) || !(t.energy > 0)) return 0;
   const double volume = 2 * t.energy / (mean_square * water.density);
@@ -78,6 +79,8 @@ double throw_water(const Throw& t, const SplashSettings& settings, const SplashW
     thrown += d.volume;
     // It has left at some time of the frame.
     const double rest = water.frame_time * random_uniform(k, 4);
+    ways.starts.push_back(d.place);
+    ways.since.push_back(1 - rest / water.frame_time);
     d.place += rest * d.velocity - Vec3(0, 0.5 * water.gravity * rest * rest, 0);
     d.velocity.y() -= water.gravity * rest;
     droplets.push_back(d);
@@ -85,25 +88,54 @@ double throw_water(const Throw& t, const SplashSettings& settings, const SplashW
   return thrown;
 }
 
-Landed fly(const PondModes& modes, const SplashWater& water, std::span<const double> heights,
+void PondMet::set_step(double share0, double share1) {
+  const auto poses_at = [&](double share) {
+    std::vector<RigidPose> out;
+    for (std::size_t b = 0; b < from.size(); ++b)
+      out.push_back(
+          {(1 - share) * from[b].position + share * to[b].position, from[b].rotation.slerp(share, to[b].rotation)});
+    return out;
+  };
+  bodies.set_step(share0, share1, poses_at(share0), poses_at(share1));
+}
+
+Landed fly(const PondModes& modes, const SplashWater& water, std::span<const double> heights, PondMet& met,
            std::vector<Droplet>& droplets, VolumeLayers& volumes, VolumeLayers& pushes, std::span<double> foam) {
   const double h = water.frame_time / k_flight_steps;
   std::vector<char> state(droplets.size(), 0);  // 1 landed, 2 gone
-  parallel_for(droplets.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Droplet& d = droplets[i];
-      const double drag = 0.75 * k_air_drag * k_air_density / (water.density * diameter(d.volume));
-      for (int n = 0; n < k_flight_steps && state[i] == 0; ++n) {
+  std::vector<Droplet> flying = droplets;
+  std::vector<std::size_t> who(droplets.size());
+  std::iota(who.begin(), who.end(), std::size_t{0});
+  std::vector<Vec3> starts;
+  for (int n = 0; n < k_flight_steps && !flying.empty(); ++n) {
+    starts.resize(flying.size());
+    parallel_for(flying.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Droplet& d = flying[i];
+        const double drag = 0.75 * k_air_drag * k_air_density / (water.density * diameter(d.volume));
         d.velocity.y() -= h * water.gravity;
         d.velocity /= 1 + h * drag * d.velocity.norm();
+        starts[i] = d.place;
         d.place += h * d.velocity;
-        const bool inside =
-            d.place.x() >= 0 && d.place.z() >= 0 && d.place.x() <= modes.length_x && d.place.z() <= modes.length_z;
-        const double level = height_at(modes, heights, d.place.x(), d.place.z());
-        if (d.velocity.y() < 0 && d.place.y() <= level) state[i] = inside ? 1 : 2;
       }
+    });
+    met.set_step(static_cast<double>(n) / k_flight_steps, static_cast<double>(n + 1) / k_flight_steps);
+    met.bodies.stop(flying, starts, h);
+    parallel_for(flying.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vec3& p = flying[i].place;
+        const bool inside = p.x() >= 0 && p.z() >= 0 && p.x() <= modes.length_x && p.z() <= modes.length_z;
+        if (flying[i].velocity.y() <= 0 && p.y() <= height_at(modes, heights, p.x(), p.z()))
+          state[who[i]] = inside ? 1 : 2;
+      }
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < flying.size(); ++i) {
+      droplets[who[i]] = flying[i];
+      if (state[who[i]] == 0) flying[kept] = flying[i], who[kept++] = who[i];
     }
-  });
+    flying.resize(kept), who.resize(kept);
+  }
   Landed out;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < droplets.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "solvers/water/droplet_bodies.h"
 #include "solvers/water/pond/pond_setup.h"
 #include "solvers/water/pond/volume_layers.h"
 
@@ -28,19 +29,33 @@ struct SplashWater {
   int frame = 0;
 };
 
+/// How droplets have come from where they were thrown to where they are at the frame's end.
+struct ThrownWays {
+  std::vector<Vec3> starts;   ///< pool [m]
+  std::vector<double> since;  ///< of the frame, 0 to 1
+};
+
 /// Volume that was thrown [m3]; taken from the layers' surface around the ring. next_id counts on.
 double throw_water(const Throw& t, const SplashSettings& settings, const SplashWater& water,
                    std::span<const double> heights, const PondModes& modes, std::vector<Droplet>& droplets,
-                   double& next_id, VolumeLayers& volumes);
+                   double& next_id, ThrownWays& ways, VolumeLayers& volumes);
 
 struct Landed {
   int count = 0;
   double gone = 0;  ///< volume that flew over the edge [m3]
 };
 
-/// A frame of flight with drag of the air; landed volumes go to the layers, their impulses over density [m4/s] to
-/// `pushes`, their foam (area covered, 1) to the grid.
-Landed fly(const PondModes& modes, const SplashWater& water, std::span<const double> heights,
+/// What droplets meet in a frame: driven bodies and what floats, from its start to its end; pool axes.
+struct PondMet {
+  DropletBodies bodies;
+  std::vector<RigidPose> from, to;
+  /// Sets the bodies to a step between shares of the frame.
+  void set_step(double share0, double share1);
+};
+
+/// A frame of flight with drag of the air among bodies; landed volumes go to the layers, their impulses over density
+/// [m4/s] to `pushes`, their foam (area covered, 1) to the grid.
+Landed fly(const PondModes& modes, const SplashWater& water, std::span<const double> heights, PondMet& met,
            std::vector<Droplet>& droplets, VolumeLayers& volumes, VolumeLayers& pushes, std::span<double> foam);
 
 /// Foam over an area [m2], shared out to the cells around a place of the pool.

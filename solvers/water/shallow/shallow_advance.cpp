@@ -34,7 +34,7 @@ ShallowReport ShallowSolver::advance_frame(State& state, double frame_time, std:
   const double top = highest_water(f);
   for (const DrivenBody& d : driven) s.driven.emplace_back(d, top + k_above);
 
-  ShallowFrame frame(setup_, floats_, s, frame_time, static_cast<std::uint64_t>(account[2]));
+  ShallowFrame frame(setup_, floats_, s, driven, frame_time, static_cast<std::uint64_t>(account[2]));
   if (account[3] == 0) account[0] += frame.make_room();
   frame.go();
 

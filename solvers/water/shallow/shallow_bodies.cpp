@@ -112,6 +112,7 @@ void ShallowFrame::step_bodies(double dt, double share1) {
     m.spin = v.tail<3>();
     m.pose = moved(m.pose, v, dt);
   }
+  meet_one_another(models_, s_.floats);
 }
 
 void ShallowFrame::add_forces(double dt) {

@@ -36,12 +36,13 @@ double fastest_in(const std::vector<double>& speeds, int across, const CellBox& 
 }  // namespace
 
 ShallowFrame::ShallowFrame(const ShallowSetup& setup, std::span<const FloatingHull> floats, ShallowScratch& scratch,
-                           double frame_time, std::uint64_t number)
+                           std::span<const DrivenBody> driven, double frame_time, std::uint64_t number)
     : setup_(setup),
       models_(floats),
       s_(scratch),
       laws_{setup.gravity, setup.manning, setup.viscosity},
       near_(near_laws(setup)),
+      met_(driven, bodies_of(floats)),
       frame_time_(frame_time),
       number_(number) {
   const std::size_t count = s_.driven.size() + models_.size();
@@ -154,12 +155,14 @@ void ShallowFrame::go() {
   flow_speeds(s_.flow, laws_, s_.speeds);
   while (frame_time_ - time_ > 1e-9 * frame_time_) {
     StepPlan p = plan();
+    const std::vector<RigidPose> from = poses_of(s_.floats);
     while (!step(p)) ++report_.retries;
     time_ += p.dt;
     ++s_.step;
     ++report_.steps;
     if (s_.droplets.empty()) continue;
-    fly(s_.droplets, {setup_.splash.air_density, setup_.splash.drag}, setup_.gravity, setup_.density, p.dt);
+    met_.set_step((time_ - p.dt) / frame_time_, std::min(1.0, time_ / frame_time_), from, poses_of(s_.floats));
+    fly(s_.droplets, {setup_.splash.air_density, setup_.splash.drag}, setup_.gravity, setup_.density, p.dt, met_);
     outflow_ += land(s_.droplets, s_.flow, setup_.origin.x(), setup_.origin.y(), setup_.level);
     fill_ghosts(s_.flow, s_.flow.h, -1);
     fill_ghosts(s_.flow, s_.flow.u, 0);

@@ -8,8 +8,9 @@ namespace ft::inline solvers {
 
 class ShallowFrame {
  public:
+  /// driven: all of them, of which the scratch has what may meet the water; they have to stay.
   ShallowFrame(const ShallowSetup& setup, std::span<const FloatingHull> floats, ShallowScratch& scratch,
-               double frame_time, std::uint64_t number);
+               std::span<const DrivenBody> driven, double frame_time, std::uint64_t number);
   /// Takes away the water in whose place driven bodies stand at the frame's start; how much [m3].
   double make_room();
   void go();
@@ -32,6 +33,7 @@ class ShallowFrame {
   ShallowScratch& s_;
   FlowLaws laws_;
   NearLaws near_;
+  DropletBodies met_;
   double frame_time_, time_ = 0, outflow_ = 0, patch_outflow_ = 0, patch_speed_ = 0, body_speed_ = 0;
   std::uint64_t number_;
   std::vector<Vec6> impulse_;

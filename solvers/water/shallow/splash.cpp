@@ -17,6 +17,20 @@ constexpr double k_lowest = 25 * k_pi / 180, k_highest = 70 * k_pi / 180, k_scat
 constexpr double k_covered = 0.5;
 /// A droplet that lands on a covered cell runs off to a free one, at most so many cells away.
 constexpr int k_run_off = 64;
+constexpr double k_wet = 1e-5;  ///< less is no level [m]
+
+/// Of a column that a body presses down, the nearest one that is free, along one of the axes; itself where there is
+/// none.
+std::size_t nearest_free(const Flow& f, int& i, int& k) {
+  for (int r = 1; r <= k_run_off; ++r)
+    for (const auto& [di, dk] : {std::pair{r, 0}, {-r, 0}, {0, r}, {0, -r}}) {
+      const int x = i + di, z = k + dk;
+      if (x < 0 || x >= f.nx || z < 0 || z >= f.nz || f.lift[f.of(x, z)] != 0) continue;
+      i = x, k = z;
+      return f.of(i, k);
+    }
+  return f.of(i, k);
+}
 
 }  // namespace
 
@@ -93,19 +107,15 @@ double land(std::vector<Droplet>& droplets, Flow& f, double world_x, double worl
     }
     int i = static_cast<int>(x), k = static_cast<int>(z);
     std::size_t c = f.of(i, k);
-    if (d.place.y() > f.bed[c] + f.h[c] || d.velocity.y() > 0) {
+    double top = f.bed[c] + f.h[c];
+    if (d.velocity.y() <= 0 && f.lift[c] != 0) {
+      c = nearest_free(f, i, k);
+      // On a body under water: the water stands over it as high as beside it.
+      if (f.lift[c] == 0 && f.h[c] > k_wet) top = std::max(top, f.bed[c] + f.h[c]);
+    }
+    if (d.place.y() > top || d.velocity.y() > 0) {
       droplets[kept++] = d;
       continue;
-    }
-    // Under a body there is no room: it runs off to the nearest column that is free.
-    if (f.lift[c] != 0) {
-      for (int r = 1; r <= k_run_off && f.lift[c] != 0; ++r)
-        for (const auto& [di, dk] : {std::pair{r, 0}, {-r, 0}, {0, r}, {0, -r}})
-          if (i + di >= 0 && i + di < f.nx && k + dk >= 0 && k + dk < f.nz && f.lift[f.of(i + di, k + dk)] == 0) {
-            c = f.of(i + di, k + dk);
-            break;
-          }
-      i = static_cast<int>((c % f.row)) - Flow::k_ghosts, k = static_cast<int>(c / f.row) - Flow::k_ghosts;
     }
     f.h[c] += d.volume / area;
     // Half its momentum to either face of the column.

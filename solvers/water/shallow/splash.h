@@ -1,6 +1,6 @@
 // Droplets: thrown up where water rushes out from under a body, flying with the drag of the air, given back where they
 // land. Each takes its volume from the column that it leaves, and with it that volume's momentum; it flies with no more
-// than that, the rest is the body's, which turned it upwards. Droplets pass through bodies.
+// than that, the rest is the body's, which turned it upwards.
 #pragma once
 
 #include "baker/core/random.h"
