@@ -1,6 +1,7 @@
 #include "io/volume/openvdb_cavity.h"
 
 #include <openvdb/math/Proximity.h>
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
 
@@ -109,7 +110,7 @@ void visit_patch(const LiquidFrame& water, const DrawnInPatch& patch, double far
     if (!voxel.isVoxelValue() || !(std::abs(distance) < far) ||
         !patch.holds(place.x() * water.voxel, place.z() * water.voxel))
       continue;
-    VoxelOfSurface out{place, static_cast<float>(distance)};
+    VoxelOfSurface out{{place.x(), place.y(), place.z()}, static_cast<float>(distance)};
     const int triangle = to_nearest.getValue(place);
     if (triangle >= 0 && static_cast<std::size_t>(triangle) < mesh.of_surface) {
       const vdb::Vec3I& corners = mesh.triangles[at(triangle)];

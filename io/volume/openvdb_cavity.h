@@ -1,8 +1,7 @@
 // Where a surface is no height field: around a cavity the vertices of its grid are drawn in and go down the wall.
 #pragma once
 
-#include <openvdb/openvdb.h>
-
+#include <array>
 #include <functional>
 #include <optional>
 
@@ -22,7 +21,7 @@ std::optional<DrawnInPatch> drawn_in_patch(const LiquidFrame& water);
 
 /// Of a voxel near the surface.
 struct VoxelOfSurface {
-  openvdb::Coord place{};
+  std::array<int, 3> place{};
   float distance = 0;  ///< to the liquid's surface, sides and floor; below 0 within [m]
   /// Of the nearest place of the surface; none nearest to a side or the floor.
   std::optional<Vec3> velocity{};

@@ -109,13 +109,14 @@ void fill_surface(const LiquidFrame& water, vdb::FloatGrid& surface, vdb::Vec3SG
     double fastest = 0;
     for (const Vec3f& v : water.velocities) fastest = std::max(fastest, static_cast<double>(v.norm()));
     visit_patch(water, *patch, far + k_shutter / water.fps * fastest, [&](const VoxelOfSurface& voxel) {
-      if (std::abs(voxel.distance) < far) to_surface.setValue(voxel.place, voxel.distance);
+      const vdb::Coord place(voxel.place[0], voxel.place[1], voxel.place[2]);
+      if (std::abs(voxel.distance) < far) to_surface.setValue(place, voxel.distance);
       if (!voxel.velocity) return;
       const Vec3& v = *voxel.velocity;
       if (std::abs(voxel.distance) < far + k_shutter / water.fps * v.norm())
-        to_velocity.setValue(voxel.place, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
+        to_velocity.setValue(place, vdb::Vec3s(vdb::Vec3d(v.x(), v.y(), v.z())));
       const double covered = foam_beside(voxel.foam, voxel.distance, h);
-      if (covered > k_least_foam) to_foam.setValue(voxel.place, static_cast<float>(covered));
+      if (covered > k_least_foam) to_foam.setValue(place, static_cast<float>(covered));
     });
   }
   vdb::tools::signedFloodFill(surface.tree());

@@ -287,12 +287,13 @@ TEST_F(WaterBakeTest, A_shot_asks_for_volumes_which_are_made_once) {
   EXPECT_NE(made(), first) << "its cache is newer";
   write_shot(k_pond, 3);
   EXPECT_TRUE(run("out").volumes.empty());
-  for (const auto& [water, cache, words] : {std::tuple(k_pond, "formats = [\"pc2\"]", "made from Alembic"),
-                                            {"[rope.line]\nlength = 1\n", "formats = [\"abc\"]", "has none"}}) {
+  for (const auto& [water, cache, words] :
+       {std::tuple(k_pond, "formats = [\"pc2\"]", "made from Alembic"),
+        {"[leaves.oak]\non = \"stamp\"\ncount = 20\nsize = [1, 2, 1]\n", "formats = [\"abc\"]", "has none"}}) {
     write_shot(water, 3, std::string(cache) + "\nvolumes = true\n");
-    const auto made = plan_shot_in(folder_.path());
-    ASSERT_FALSE(made);
-    EXPECT_NE(made.error().text().find(words), std::string::npos) << made.error().text();
+    const auto planned = plan_shot_in(folder_.path());
+    ASSERT_FALSE(planned);
+    EXPECT_NE(planned.error().text().find(words), std::string::npos) << planned.error().text();
   }
 }
 
